@@ -22,7 +22,7 @@ import sys
 import rclpy
 from rclpy.qos import HistoryPolicy, QoSProfile
 from eel_viz.bags.definitions import message_class
-from eel_viz.topics import OWN, SAMPLED
+from eel_base.topics import OWN, SAMPLED
 
 rclpy.init()
 node = rclpy.create_node("listener")

@@ -11,7 +11,7 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
-from eel_viz.topics import GLOBAL, OWN
+from eel_base.topics import GLOBAL, OWN
 
 ROOT = Path(__file__).resolve().parents[1]
 PYTHON_PACKAGES = ("eel_base", "eel_ros", "eel_gaits", "eel_dynamics", "eel_studies", "eel_gym", "eel_viz")

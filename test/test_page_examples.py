@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 from eel_base.command.suite import commands
-from eel_viz.topics import OWN
+from eel_base.topics import OWN
 from reference_pages import COMMANDS, NODES, ROOT, parameter_names
 from test_run_from_bag import write_bag
 

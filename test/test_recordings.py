@@ -9,8 +9,8 @@ import time
 
 import numpy as np
 import pytest
+from eel_base.topics import SAMPLED
 from eel_viz.recording.reading import read
-from eel_viz.topics import SAMPLED
 from eel_viz.viewer import free_port
 from rosbags.highlevel import AnyReader
 from soak import Clock

@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from builtin_interfaces.msg import Time
-from eel_dynamics.ros.messages import Sample, body_message, diagnostic_array
+from eel_base.topics import GLOBAL, OWN
+from eel_dynamics.ros.messages import SampleMessages, body_message, diagnostic_array
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_gaits.ros.messages import law_to_message
 from eel_viz.bags.definitions import definition, type_hash
-from eel_viz.topics import GLOBAL, OWN
 from rclpy.serialization import serialize_message
 from rosbags.rosbag2 import StoragePlugin, Writer
 
@@ -48,7 +48,7 @@ def write_bag(folder, run, *, left_out=(), space="", runs=1, laws=1, origin=0, f
             add(f"{space}/curvature_law", OWN["curvature_law"], serialize_message(message))
         told = diagnostic_array(0.0, "/dynamics", 0, "swimming", {"law": run.law.name, "accuracy": run.accuracy.name})
         add("/diagnostics", GLOBAL["/diagnostics"], serialize_message(told))
-        sample = Sample(SimpleNamespace(x=run.x, scene=run.scene, head_errors=None), DynamicsParameters())
+        sample = SampleMessages(SimpleNamespace(x=run.x, scene=run.scene, head_errors=None), DynamicsParameters())
         whole = [*[(0, 7)] * waiting, *((k, k) for k in range(first, len(run.time)))]
         for stamp, k in whole * runs:
             sample.set_time(round(run.time[stamp] * 1e9))

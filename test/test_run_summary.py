@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from eel_dynamics.runs.exchange.records import records
+from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
 from eel_gaits.ros.messages import law_to_message
 from run_summary import describe, summarise
 
@@ -20,7 +20,7 @@ def run():
 
 def messages(run, residual=1e-4, closure=1e-14, left_out=""):
     """What the nodes publish of a run, with a ledger and a closure that are off by so much of work and torque."""
-    for topic, message in records(run):
+    for topic, message in messages_of_run(run):
         if topic == "energy":
             message.residual = residual * run.energy.actuator_work[-1]
         if topic not in ("diagnostics", "curvature_law", left_out):

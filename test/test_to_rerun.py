@@ -9,10 +9,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from eel_dynamics.ros.messages import Sample, body_message, diagnostic_array
+from eel_dynamics.ros.messages import SampleMessages, body_message, diagnostic_array
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.runs.command import main
-from eel_dynamics.runs.exchange.records import records
+from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
 from eel_viz.recording.dispatcher import READERS
 from eel_viz.recording.reading import read
 from rclpy.serialization import deserialize_message
@@ -36,7 +36,7 @@ def node_messages(run, statuses):
     yield "body", body_message(run, "section")
     yield "curvature_law", CurvatureLaw(name=run.law.name)
     yield "diagnostics", statuses[0]
-    sample = Sample(SimpleNamespace(x=run.x, scene=run.scene, head_errors=None), DynamicsParameters())
+    sample = SampleMessages(SimpleNamespace(x=run.x, scene=run.scene, head_errors=None), DynamicsParameters())
     for k, time in enumerate(run.time):
         sample.set_time(round(time * 1e9))
         energy = SimpleNamespace(**{name: run.energy[name][k] for name in run.energy.keys()})  # noqa: SIM118
@@ -121,7 +121,7 @@ def test_two_runs_are_laid_over_each_other(run, tmp_path):
 
 def test_what_a_run_has_not_computed_is_not_shown(tmp_path):
     bare = simulate(straight(), duration=0.1, scene=Scene(internal_wrench=False, ledger=False))
-    topics = {topic for topic, _ in records(bare)}
+    topics = {topic for topic, _ in messages_of_run(bare)}
     assert topics == {
         "body", "curvature_law", "diagnostics", "head_pose", "head_twist", "odom", "backbone", "curvature"
     }  # fmt: skip

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from eel_dynamics.runs.exchange.records import records
+from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
 from eel_viz.messages import read_backbone, read_body, read_load, read_wrench
 from eel_viz.pictures.drawing import drawn
 from eel_viz.pictures.film import film
@@ -85,7 +85,7 @@ def keep(png: bytes, name: str) -> Path:
 def draw_markers(file: Path) -> None:
     """What the node `markers` makes of the falling gait at the moment. All triangles are one collection, so that near
     ones hide those behind."""
-    topics = dict(records(simulate(falling(), MOMENT, sample_period=MOMENT, load=True)))
+    topics = dict(messages_of_run(simulate(falling(), MOMENT, sample_period=MOMENT, load=True)))
     backbone, settings = read_backbone(topics["backbone"]), MarkerSettings()
     skin = SkinMarker(read_body(topics["body"]), settings.colour_limit)
     shown = skin.marker(Header(), backbone, read_wrench(topics["internal_wrench"]))

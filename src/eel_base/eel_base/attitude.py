@@ -69,3 +69,16 @@ def world_from_body(orientation: np.ndarray) -> np.ndarray:
         (2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)),
     )
     return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
+
+
+def section_axes(orientation: np.ndarray) -> np.ndarray:
+    """The section axes 1, 2, 3 in the world, columns of (..., 3, 3), of sections turned by `orientation` (..., 4).
+
+    They are -x (towards the tail), -y and +z of the section turned as the head.
+    """
+    return world_from_body(orientation) * (-1.0, -1.0, 1.0)
+
+
+def world_from_section(orientation: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """`vectors` (..., 3), given in section axes, in the world, for the `orientation` (..., 4) of their sections."""
+    return np.asarray((section_axes(orientation) @ np.asarray(vectors)[..., None])[..., 0])

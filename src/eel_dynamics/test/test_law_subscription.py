@@ -25,7 +25,7 @@ class FakeRun:
     def put(self, action, *arguments, newest):
         action(*arguments)
 
-    def adopt(self, law, origin):
+    def take_law(self, law, origin):
         self.laws.append((law, origin))
 
 
@@ -99,10 +99,10 @@ def test_a_law_that_replaces_samples_says_which_it_drops(last):
     simulation, log = Simulation(scene=Scene(planar=True)), Log()
     adopter = LawAdopter(simulation, Report(log))
     rows = {name: [0.0, 0.0] for name in ("pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel")}
-    adopter.adopt(falling(pitch_bend=0.0), 0.0)
+    adopter.try_law(falling(pitch_bend=0.0), 0.0)
     for time in (0.1, 0.2, last) if last else ():
         adopter.add_samples({"time": time, "x": [0.0, 1.0], **rows})
-    adopter.adopt(Law(name="next"), 0.0)
+    adopter.try_law(Law(name="next"), 0.0)
     warnings = [text for level, text in log.lines if level == "warning"]
     assert warnings == ["curvature samples up to t = 0.5 s are dropped: law 'next' is newer"][: bool(last)]
     assert log.lines[-1 - bool(last)] == ("info", "law 'next' adopted at t = 0 s")

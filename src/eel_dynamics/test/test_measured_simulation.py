@@ -135,7 +135,7 @@ def test_a_companion_that_stops_leaves_the_motion_alone(monkeypatch):
         each.advance(1.0)
     assert simulation.state.tobytes() == bare.state.tobytes()
     assert simulation.error_estimate.position == np.inf
-    assert "not known" in simulation.error_estimate.missed(1e-4, 1.0)
+    assert "not known" in simulation.error_estimate.over_target(1e-4, 1.0)
     simulation.reset()
     simulation.advance(1.0)
     assert simulation.error_estimate.position < 1e-4

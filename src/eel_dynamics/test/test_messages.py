@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from eel_dynamics.accuracy.error_estimate import HeadErrors
-from eel_dynamics.ros.messages import Sample, body_message, diagnostic_array, samples_from_message
+from eel_dynamics.ros.messages import SampleMessages, body_message, diagnostic_array, samples_from_message
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.serialised_message import MARKED_TIME, SerialisedMessage
 from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
@@ -48,7 +48,7 @@ def filled(sample, name, snapshot):
 
 
 def with_errors(simulation, errors):
-    """What `Sample` reads of a simulation whose errors are estimated."""
+    """What `SampleMessages` reads of a simulation whose errors are estimated."""
     return SimpleNamespace(x=simulation.x, scene=simulation.scene, head_errors=errors)
 
 
@@ -59,9 +59,9 @@ def swum():
     simulation.adopt(falling())
     simulation.advance(2.3)
     snapshot = simulation.observe()
-    sample = Sample(simulation, DynamicsParameters())
+    sample = SampleMessages(simulation, DynamicsParameters())
     assert np.isnan(filled(sample, "swim_state", snapshot).estimated_error)
-    sample = Sample(with_errors(simulation, ERRORS), DynamicsParameters())
+    sample = SampleMessages(with_errors(simulation, ERRORS), DynamicsParameters())
     sample.set_time(2_300_000_000)
     return snapshot, {name: filled(sample, name, snapshot) for name in sample.kinds}
 
@@ -152,7 +152,7 @@ def test_the_covariance_of_odom_is_the_square_of_the_estimated_errors_on_its_dia
 def test_the_covariance_of_odom_begins_with_minus_1_where_the_errors_are_not_known(unknown):
     simulation = Simulation(law=falling())
     swimmer = with_errors(simulation, None)
-    sample = Sample(swimmer, DynamicsParameters())
+    sample = SampleMessages(swimmer, DynamicsParameters())
     firsts = []
     for swimmer.head_errors in (ERRORS, unknown, ERRORS):
         odom = filled(sample, "odom", simulation.observe())
@@ -168,16 +168,16 @@ def test_joint_states_are_the_actuators_of_the_library():
     simulation.adopt(law)
     simulation.advance(duration)
     snapshot = simulation.observe()
-    sample = Sample(simulation, DynamicsParameters(yaw_joints=5, pitch_joints=3))
+    sample = SampleMessages(simulation, DynamicsParameters(yaw_joints=5, pitch_joints=3))
     message = filled(sample, "joint_states", snapshot)
     assert message.name == [*(f"yaw_{k}" for k in range(1, 6)), *(f"pitch_{k}" for k in range(1, 4))]
     yaw, pitch = run.actuators(5).yaw, run.actuators(3).pitch
     for field, name in (("position", "angle"), ("velocity", "speed"), ("effort", "torque")):
         expected = np.concatenate((getattr(yaw, name)[-1], getattr(pitch, name)[-1]))
         assert np.allclose(getattr(message, field), expected, rtol=1e-6, atol=1e-9) and np.any(expected), field
-    without = Sample(Simulation(scene=Scene(internal_wrench=False)), DynamicsParameters(yaw_joints=1))
+    without = SampleMessages(Simulation(scene=Scene(internal_wrench=False)), DynamicsParameters(yaw_joints=1))
     assert not filled(without, "joint_states", snapshot).effort
-    assert "joint_states" not in Sample(simulation, DynamicsParameters()).kinds
+    assert "joint_states" not in SampleMessages(simulation, DynamicsParameters()).kinds
 
 
 def test_energy_has_every_field(swum):
@@ -198,7 +198,7 @@ def test_refilling_replaces_all_that_was_there(swum):
     snapshot, messages = swum
     simulation = Simulation(stations=17)
     simulation.adopt(falling())
-    sample = Sample(with_errors(simulation, ERRORS), DynamicsParameters())
+    sample = SampleMessages(with_errors(simulation, ERRORS), DynamicsParameters())
     for name in sample.kinds:
         sample.fill(name, simulation.observe())
     sample.set_time(2_300_000_000)
@@ -207,7 +207,7 @@ def test_refilling_replaces_all_that_was_there(swum):
 
 
 def test_what_the_scene_leaves_out_is_not_offered():
-    kinds = Sample(Simulation(scene=Scene(internal_wrench=False, ledger=False)), DynamicsParameters()).kinds
+    kinds = SampleMessages(Simulation(scene=Scene(internal_wrench=False, ledger=False)), DynamicsParameters()).kinds
     assert "internal_wrench" not in kinds and "energy" not in kinds and "curvature" in kinds
 
 
@@ -224,7 +224,7 @@ def test_start_is_given_in_ros_frames_and_published_back():
     assert simulation.scene.current == (0.5, 0.25, 0.0)
     snapshot = simulation.observe()
     assert snapshot.twist[3] == pytest.approx(0.4)
-    sample = Sample(simulation, DynamicsParameters())
+    sample = SampleMessages(simulation, DynamicsParameters())
     pose = filled(sample, "head_pose", snapshot).pose
     twist = filled(sample, "head_twist", snapshot).twist
     assert np.allclose(xyz(pose.position), (1.0, 2.0, 3.0), rtol=0, atol=1e-15)
@@ -273,7 +273,7 @@ def test_diagnostics_are_text():
 def test_zero_is_never_minus_zero():
     simulation = Simulation(stations=5)
     simulation.adopt(Law(name="still"))
-    sample = Sample(simulation, DynamicsParameters())
+    sample = SampleMessages(simulation, DynamicsParameters())
     for name in ("head_pose", "head_twist", "odom"):
         assert "-0.0" not in repr(filled(sample, name, simulation.observe()))
     assert "-0.0" not in repr(list(filled(sample, "backbone", simulation.observe()).orientation))
@@ -312,7 +312,7 @@ def test_transforms_of_the_stations_turn_section_axes_into_the_world(swum):
     assert [each.child_frame_id for each in messages["/tf"].transforms] == ["base_link"]
     x = snapshot.x
     parameters = DynamicsParameters(publish_tf_stations=True, section_frame="eel1/section", world_frame="eel1/odom")
-    sample = Sample(SimpleNamespace(x=x, scene=Scene(), head_errors=None), parameters)
+    sample = SampleMessages(SimpleNamespace(x=x, scene=Scene(), head_errors=None), parameters)
     sample.set_time(2_300_000_000)
     head, *stations = filled(sample, "/tf", snapshot).transforms
     assert head.child_frame_id == "base_link" and head.transform == messages["/tf"].transforms[0].transform
@@ -331,6 +331,6 @@ def test_a_left_bend_of_the_gait_generator_swims_to_the_left():
     simulation = Simulation(accuracy="draft", stations=2)
     simulation.adopt(law)
     simulation.advance(4.0)
-    sample = Sample(simulation, DynamicsParameters())
+    sample = SampleMessages(simulation, DynamicsParameters())
     position = filled(sample, "head_pose", simulation.observe()).pose.position
     assert position.x > 0.5 and position.y > 0.2

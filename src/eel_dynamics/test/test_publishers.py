@@ -34,7 +34,7 @@ def publishers_of(monkeypatch, node, factor, log=None):
         set_time=lambda nanoseconds: None,
         fill=lambda name, snapshot: (name, snapshot.torque, snapshot.fluid_force),
     )
-    monkeypatch.setattr("eel_dynamics.ros.publishers.Sample", lambda simulation, values: sample)
+    monkeypatch.setattr("eel_dynamics.ros.publishers.SampleMessages", lambda simulation, values: sample)
     monkeypatch.setattr("eel_dynamics.ros.publishers.Publishers.publish_body", lambda self, simulation: None)
     parameters = SimpleNamespace(values=DynamicsParameters(real_time_factor=factor))
     return Publishers(node, None, parameters, Report(log or Log()))

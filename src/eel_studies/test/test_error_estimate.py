@@ -55,7 +55,7 @@ def test_a_distance_that_has_saturated_still_tells_its_growth():
     found = relative_errors(run_at(beside, time), run_at(still, time))
     assert found.growth_rate == pytest.approx(5.0, rel=1e-3) and found.position == 0.5
     assert found.hopeless(1e-3, 10.0)
-    assert "grow by a factor of e in 0.2 s, so that round-off alone may spoil it" in found.missed(1e-3, 10.0)
+    assert "grow by a factor of e in 0.2 s, so that round-off alone may spoil it" in found.over_target(1e-3, 10.0)
 
 
 def test_torques_that_are_round_off_have_no_relative_error():
@@ -67,9 +67,11 @@ def test_torques_that_are_round_off_have_no_relative_error():
 
 
 def test_what_is_missed_is_said_in_one_line():
-    assert ErrorEstimate(1e-5, 2e-4).missed(1e-3, 10.0) == ErrorEstimate(1.0, None).missed(None, 10.0) == ""
-    assert ErrorEstimate(2e-3, None).missed(1e-3, 1.0) == "the error is estimated at 2.0e-03, above the target 0.001"
-    assert "not known" in ErrorEstimate(np.inf, None).missed(1e-3, 1.0)
+    assert ErrorEstimate(1e-5, 2e-4).over_target(1e-3, 10.0) == ErrorEstimate(1.0, None).over_target(None, 10.0) == ""
+    assert (
+        ErrorEstimate(2e-3, None).over_target(1e-3, 1.0) == "the error is estimated at 2.0e-03, above the target 0.001"
+    )
+    assert "not known" in ErrorEstimate(np.inf, None).over_target(1e-3, 1.0)
 
 
 def test_a_sensitive_swim_converges_or_is_told(monkeypatch):

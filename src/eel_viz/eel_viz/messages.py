@@ -11,6 +11,7 @@ from math import isfinite
 from typing import Any
 
 import numpy as np
+from eel_base.topics import ENERGY_FIELDS
 from eel_base.wording import shown
 
 UNIT_TOLERANCE = 1e-6  # of a quaternion's norm
@@ -96,16 +97,6 @@ class Status:
     values: dict[str, str]
 
 
-ENERGY_FIELDS = (
-    "kinetic_body",
-    "kinetic_fluid",
-    "potential",
-    "actuator_power",
-    "wake_power",
-    "nose_power",
-    "drag_power",
-    "residual",
-)
 WRENCH_FIELDS = ("torque_1", "torque_2", "torque_3", "force_1", "force_2", "force_3")
 CURVATURE_FIELDS = ("pitch", "pitch_rate", "yaw", "yaw_rate")
 LOAD_FIELDS = ("force_1", "force_2", "force_3", "resistive_1", "resistive_2", "resistive_3")

@@ -11,9 +11,9 @@ import made_up
 import rclpy
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from eel_base.topics import OWN, SAMPLED
 from eel_viz.bags.definitions import message_class
 from eel_viz.recording.dispatcher import READERS
-from eel_viz.topics import OWN, SAMPLED
 from geometry_msgs.msg import Vector3
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 

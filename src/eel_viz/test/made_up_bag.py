@@ -4,8 +4,8 @@
 import pathlib
 
 import made_up
+from eel_base.topics import GLOBAL, OWN
 from eel_viz.bags.definitions import definition, type_hash
-from eel_viz.topics import GLOBAL, OWN
 from fake_swimmer import body_message, diagnostics, messages
 from nav_msgs.msg import Path
 from rclpy.serialization import serialize_message

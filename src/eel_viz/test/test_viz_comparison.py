@@ -4,7 +4,7 @@
 import made_up
 import numpy as np
 import pytest
-from eel_viz.plots.pairs import Pairs, Sample
+from eel_viz.plots.pairs import Pairs, Stamped
 from eel_viz.recording.loggers import Loggers
 from eel_viz.recording.rates import Rates
 from eel_viz.recording.reading import read
@@ -54,27 +54,27 @@ def made(tmp_path_factory):
 
 def test_pairs_are_exact_at_equal_stamps_and_linear_between():
     pairs = Pairs()
-    assert pairs.add(Sample(10, np.array([1.0])), of_other=False) == []
-    assert pairs.add(Sample(0, np.array([4.0])), of_other=True) == []
-    ((stamp, _, this, other),) = pairs.add(Sample(40, np.array([8.0])), of_other=True)
+    assert pairs.add(Stamped(10, np.array([1.0])), of_other=False) == []
+    assert pairs.add(Stamped(0, np.array([4.0])), of_other=True) == []
+    ((stamp, _, this, other),) = pairs.add(Stamped(40, np.array([8.0])), of_other=True)
     assert (stamp, *this, *other) == (10, 1.0, 5.0)
-    ((stamp, _, this, other),) = pairs.add(Sample(40, np.array([2.0])), of_other=False)
+    ((stamp, _, this, other),) = pairs.add(Stamped(40, np.array([2.0])), of_other=False)
     assert (stamp, *this, *other) == (40, 2.0, 8.0)
 
 
 def test_pairs_are_brought_to_the_first_s_stations():
     pairs = Pairs()
     x, own = np.array([0.0, 0.25, 1.0]), np.array([0.0, 1.0])
-    pairs.add(Sample(0, np.array([[0.0], [4.0]]), own), of_other=True)
-    ((_, _, _, other),) = pairs.add(Sample(0, np.zeros((3, 1)), x), of_other=False)
+    pairs.add(Stamped(0, np.array([[0.0], [4.0]]), own), of_other=True)
+    ((_, _, _, other),) = pairs.add(Stamped(0, np.zeros((3, 1)), x), of_other=False)
     np.testing.assert_array_equal(other, [[0.0], [1.0], [4.0]])
 
 
 def test_a_run_that_is_far_ahead_is_bounded_and_the_rest_still_pairs():
     pairs = Pairs()
     for k in range(5000):
-        pairs.add(Sample(k, np.zeros(1)), of_other=False)
-    found = [pair[0] for k in range(5000) for pair in pairs.add(Sample(k, np.zeros(1)), of_other=True)]
+        pairs.add(Stamped(k, np.zeros(1)), of_other=False)
+    found = [pair[0] for k in range(5000) for pair in pairs.add(Stamped(k, np.zeros(1)), of_other=True)]
     assert found == list(range(5000 - 1024, 5000))
 
 

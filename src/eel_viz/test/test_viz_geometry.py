@@ -4,10 +4,9 @@
 import made_up
 import numpy as np
 import pytest
-from eel_base.attitude import world_from_body
+from eel_base.attitude import world_from_body, world_from_section
 from eel_viz.scene3d import camera, colours
 from eel_viz.scene3d.centre_line import Resampling
-from eel_viz.scene3d.orientation import world_from_section
 from eel_viz.scene3d.skin import Skin
 
 

@@ -8,7 +8,7 @@ from types import SimpleNamespace as NS
 import made_up
 import numpy as np
 import pytest
-from eel_base.attitude import attitude, world_from_body
+from eel_base.attitude import attitude, world_from_body, world_from_section
 from eel_viz.plots import heat_map
 from eel_viz.recording.dispatcher import Dispatcher
 from eel_viz.recording.loggers import Loggers
@@ -18,7 +18,6 @@ from eel_viz.recording.recording_file import FileDestination
 from eel_viz.recording.recordings import Recordings
 from eel_viz.scene3d import camera
 from eel_viz.scene3d.colours import diverging_index
-from eel_viz.scene3d.orientation import world_from_section
 from eel_viz.scene3d.skin import Skin
 from eel_viz.scene3d.track import LENGTH, PIECES, POINTS, STROBE_PERIOD, THREADS
 from eel_viz.scene3d.water import GRID, LABELS, WALLS

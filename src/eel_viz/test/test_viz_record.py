@@ -10,10 +10,10 @@ import made_up
 import numpy as np
 import pytest
 import yaml
+from eel_base.topics import GLOBAL, OWN
 from eel_ros.testing.node_process import PROMPT
 from eel_viz.bags.definitions import definition, message_class, type_hash
 from eel_viz.ros.echo import as_yaml, picked
-from eel_viz.topics import GLOBAL, OWN
 from fake_swimmer import TOPICS, arrived, diagnostics, found, messages
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader

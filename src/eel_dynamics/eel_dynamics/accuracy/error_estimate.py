@@ -60,7 +60,7 @@ class ErrorEstimate:
         """Whether grown round-off alone takes more of the `target` than `ROUND_OFF_SHARE`: no settings help."""
         return self.round_off(duration) > ROUND_OFF_SHARE * target
 
-    def missed(self, target: float | None, duration: float) -> str:
+    def over_target(self, target: float | None, duration: float) -> str:
         """One line if the error is above the `target`, else an empty text."""
         if target is None or self.worst <= target:
             return ""

@@ -7,10 +7,9 @@ import numpy as np
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.spline import natural_spline
-from eel_gaits.laws.term import Term, amplitude_of
+from eel_gaits.laws.term import LAW_ROW, Term, amplitude_of
 from eel_gaits.sources.sampled_law import SampledLaw
 
-AXES = {"pitch": 0, "yaw": 1}
 PART_OF_PEAK = 0.75  # of the turns where all terms bend the body most
 TURN_POINTS = 64  # along the body, for the angle that a law bends it by
 MOST_KNOTS = 8  # of laws whose panels are cut at them
@@ -53,7 +52,7 @@ def _waves(waveforms: tuple, length: float) -> float:
     bends = [np.abs(amplitude_of(amplitude, knots, x)) for _, (amplitude, knots, _, _) in waveforms]
     together = np.zeros((2, TURN_POINTS))
     for (axis, _), bend in zip(waveforms, bends, strict=True):
-        together[AXES[axis]] += bend
+        together[LAW_ROW[axis]] += bend
     turns = [*(np.mean(bend) for bend in bends), PART_OF_PEAK * np.max(np.hypot(*together))]
     return float(max(*waves, *(length / (2.0 * np.pi) * turn for turn in turns), 0.0))
 

@@ -24,6 +24,9 @@ DEFAULT_TRANSITION = 1.0  # s
 class Blend(NamedTuple):
     """The difference (6, width) between two motions at `start` [s]. It dies out until `end` [s].
 
+    Its factors in time are `Quintic::set_blend` in eel_core/law.hpp. Swimmers marched together (`SampledMarch` in
+    eel_core/march/sampled_march.hpp) have their one blend, into the first sample, in C++.
+
     The rows are the value, the rate and the acceleration for each axis.
     """
 
@@ -74,7 +77,7 @@ class LawFollower:
         self._tabulation, self._spline, self._last = tabulation, None, None
         self._follow(source)
 
-    def adopt(self, law: Law | SampledLaw, *, origin: float, time: float, transition: float):
+    def blend_into(self, law: Law | SampledLaw, *, origin: float, time: float, transition: float):
         """Follow `law` from `time` [s] on, with a blend over `transition` [s]."""
         self._forget_samples()
         self._take_over(self._begun(law, origin, time), time, transition)

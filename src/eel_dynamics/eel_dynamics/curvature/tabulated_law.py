@@ -18,10 +18,10 @@ import numpy as np
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import factors_of
 from eel_gaits.laws.spline import natural_spline
-from eel_gaits.laws.term import amplitude_of
+from eel_gaits.laws.term import LAW_ROW, amplitude_of
 
 import eel_core
-from eel_dynamics.accuracy.law_waves import AXES, groups_of
+from eel_dynamics.accuracy.law_waves import groups_of
 
 SEGMENT_AXES = np.repeat((0, 1), 6)  # of the rows of a quintic between two samples
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(10)  # of Gauss, per interval, for the Magnus moments
@@ -164,6 +164,6 @@ def _rows_of(groups: tuple, tabulation: Tabulation) -> tuple:
         cosine.append(len(rows) if moving else sine[-1])
         if moving:
             rows.append(sum(a * np.cos(b) for a, b in zip(amplitude, angle, strict=True)))
-        axis += [AXES[name]] * (2 if moving else 1)
+        axis += [LAW_ROW[name]] * (2 if moving else 1)
     tabulated = tabulation.columns(np.array(rows))
     return tabulated, np.array(axis), tabulation.law_tables(tabulated, axis), tuple(sine), tuple(cosine)

@@ -8,10 +8,9 @@ and out.
 """
 
 import numpy as np
-from eel_base.attitude import world_from_body
 from numpy.typing import ArrayLike
 
-REP103, PAPER = AXES = ("rep103", "paper")  # of world and head; the first are the library's
+REP103, PAPER = CONVENTIONS = ("rep103", "paper")  # of world and head; the first are the library's
 VECTOR, QUATERNION = np.array([-1.0, -1.0, 1.0]), np.array([-1.0, -1.0, 1.0, 1.0])
 SIGNS = {  # of the components of what is observed, under the half turn
     **dict.fromkeys(("position", "center_of_mass", "backbone"), VECTOR),
@@ -34,11 +33,6 @@ def with_section_axes(orientation: np.ndarray) -> np.ndarray:
     """World from the paper's section axes, for an `orientation` (..., 4) x y z w of a section turned as the head."""
     x, y, z, w = np.moveaxis(np.asarray(orientation, dtype=float), -1, 0)
     return np.stack([y, -x, w, -z], axis=-1)
-
-
-def in_world(vector: np.ndarray, orientation: np.ndarray) -> np.ndarray:
-    """`vector` (..., 3), given in section axes, in the world, for the `orientation` (..., 4) of its section."""
-    return (world_from_body(orientation) @ turn_vector(vector)[..., None])[..., 0]
 
 
 def turned(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:

@@ -51,7 +51,7 @@ class LawSubscription:
         except ValueError as error:
             self._report.event("law", f"law {SHOWN.repr(name)} refused: {error}", ERROR, differing=True)
         else:
-            self._run.requests.put(self._run.adopt, law, origin, newest=True)
+            self._run.requests.put(self._run.take_law, law, origin, newest=True)
 
     def _is_outdated(self, info: Mapping[str, Any], subscription: int) -> bool:
         """Whether the other subscription has received a later law of the same publisher."""

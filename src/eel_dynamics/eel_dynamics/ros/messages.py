@@ -14,6 +14,7 @@ import numpy as np
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from eel_base.attitude import heading
+from eel_base.topics import ENERGY_FIELDS
 from eel_base.wording import shown
 from eel_gaits.laws.law import MAXIMUM_TERMS
 from eel_gaits.ros.messages import ROWS
@@ -31,7 +32,7 @@ from eel_dynamics.curvature.curvature_samples import LateSample, check_points
 from eel_dynamics.model.axes import with_section_axes
 from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
 from eel_dynamics.ros.serialised_message import SerialisedMessage
-from eel_dynamics.runs.exchange.records import outline
+from eel_dynamics.runs.exchange.messages_of_run import outline
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
 from eel_msgs import msg
@@ -45,7 +46,7 @@ FAR_AHEAD = 3600.0  # s: a stamp further ahead of the simulation is wall time by
 LARGEST_LAW = 2**19  # bytes, without the name: 1,000 terms of 30 knots, which are adopted in half a second
 
 
-class Sample:
+class SampleMessages:
     """The serialised messages of one sample of a `simulation`: `fill` returns that of a topic, `tick` that of /clock.
 
     Attributes:
@@ -204,7 +205,6 @@ POSITION, ORIENTATION, ANGULAR, LINEAR = slice(0, 3), slice(3, 7), slice(7, 10),
 TORQUES, FORCES, RESISTANCES = (
     tuple(f"{name}_{axis}" for axis in (1, 2, 3)) for name in ("torque", "force", "resistive")
 )
-ENERGY_FIELDS = tuple(name for name, kind in msg.EnergyLedger.get_fields_and_field_types().items() if kind == "double")
 
 
 def root_message(parameters: DynamicsParameters) -> TFMessage:

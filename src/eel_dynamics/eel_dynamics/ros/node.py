@@ -27,6 +27,7 @@ from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.diagnostics import Report
 from eel_dynamics.ros.law_subscription import LawSubscription
@@ -34,10 +35,9 @@ from eel_dynamics.ros.loop.followed_clock import ClockSubscription, FollowedCloc
 from eel_dynamics.ros.loop.requests import Answer
 from eel_dynamics.ros.loop.run_loop import RunLoop
 from eel_dynamics.ros.messages import diagnostic_array, root_message, state_from_message, time_message, values_of_status
-from eel_dynamics.ros.neighbours import Identity, Neighbours
+from eel_dynamics.ros.other_nodes import Identity, OtherNodes
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.publishers import Publishers
-from eel_dynamics.ros.sample_inbox import SampleInbox
 from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
 from eel_dynamics.ros.status import Status
 from eel_msgs.srv import SetState, Step
@@ -65,9 +65,9 @@ class DynamicsNode(ParameterNode):
         self.parameters = Declaration(self)
         with one_line_warnings(NAME):
             simulation = simulation_from_parameters(self.parameters.values, self.parameters.scene)
-        self._samples = Publishers(self, simulation, self.parameters, self._report)
-        self._inbox = SampleInbox(self, self._report)
-        self.run_loop = RunLoop(simulation, self.parameters, self._samples, self._inbox, self._report)
+        self._publishers = Publishers(self, simulation, self.parameters, self._report)
+        self._inbox = CurvatureInbox(self, self._report)
+        self.run_loop = RunLoop(simulation, self.parameters, self._publishers, self._inbox, self._report)
         self._status = Status(self.run_loop, self._report, self.parameters)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self._root: Any = None  # publisher of /tf_static
@@ -75,7 +75,7 @@ class DynamicsNode(ParameterNode):
         self._laws = LawSubscription(self, self.run_loop, self._report)
         pace, requests = self.run_loop.pace, self.run_loop.requests
         self._followed_clock = ClockSubscription(self, pace, requests) if isinstance(pace, FollowedClock) else None
-        self._neighbours = Neighbours(self, self.resolve_topic_name("head_pose"), Identity.own(), self._report)
+        self._other_nodes = OtherNodes(self, self.resolve_topic_name("head_pose"), Identity.own(), self._report)
         self._holding, self._offers_clock = "", False  # what the run loop knows of the neighbours
         self.create_subscription(DiagnosticArray, "/diagnostics", self._receive_diagnostics, 10)
         calls, steps = MutuallyExclusiveCallbackGroup(), ReentrantCallbackGroup()  # the calls are answered in order
@@ -118,11 +118,11 @@ class DynamicsNode(ParameterNode):
         if self._ended is None:
             self._ended = now
             self._publish_diagnostics(final=True)
-        return not self._samples.all_received([self._diagnostics], now - self._ended)
+        return not self._publishers.all_received([self._diagnostics], now - self._ended)
 
     def close(self) -> None:
         """End the run, if a signal came before its end."""
-        self._samples.stopped = True
+        self._publishers.stopped = True
         self.run_loop.requests.stop()
         self._thread.join(SIGNAL_TIMEOUT)
         if self._ended is None:
@@ -139,13 +139,13 @@ class DynamicsNode(ParameterNode):
 
     def _look_at_neighbours(self) -> None:
         makes_clock, requests = self.parameters.values.makes_clock, self.run_loop.requests
-        self._neighbours.look(makes_clock)
-        holding = self._neighbours.holding
-        offers = makes_clock and self._neighbours.clock_is_free and not holding
+        self._other_nodes.look(makes_clock)
+        holding = self._other_nodes.holding
+        offers = makes_clock and self._other_nodes.clock_is_free and not holding
         if holding != self._holding:
             requests.put(self.run_loop.hold, holding, urgent=True)
         if offers != self._offers_clock:
-            requests.put(self._samples.enable_clock, offers)
+            requests.put(self._publishers.enable_clock, offers)
         self._holding, self._offers_clock = holding, offers
 
     def _publish_root(self) -> None:
@@ -158,13 +158,13 @@ class DynamicsNode(ParameterNode):
     def _publish_diagnostics(self, final: bool = False) -> None:
         """Publish /diagnostics; `final`: at the end of the run."""
         level, text, values = self._status.collect(self.count_publishers("curvature_law"), final)
-        values |= self._neighbours.values(self.parameters.values.makes_clock)
+        values |= self._other_nodes.values(self.parameters.values.makes_clock)
         name = self.get_fully_qualified_name()
         self._diagnostics.publish(diagnostic_array(self.run_loop.time, name, level, text, values))
 
     def _receive_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:
-            self._neighbours.receive(status.name, values_of_status(status))
+            self._other_nodes.receive(status.name, values_of_status(status))
 
     # Services.
 

@@ -19,7 +19,7 @@ from rosgraph_msgs.msg import Clock
 
 from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.diagnostics import Report
-from eel_dynamics.ros.messages import Sample, body_message
+from eel_dynamics.ros.messages import SampleMessages, body_message
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
 from eel_msgs.msg import BodyGeometry
@@ -88,7 +88,7 @@ class Publishers:
     def begin(self, simulation: Simulation) -> None:
         """Change to the topics of another `simulation`, and publish its body."""
         values = self._parameters.values
-        self._sample = Sample(simulation, values)
+        self._sample = SampleMessages(simulation, values)
         for name in [name for name in self._channels if name not in self._sample.kinds]:
             self._channels.pop(name).close()
         for name, kind in self._sample.kinds.items():

@@ -118,7 +118,7 @@ class Batch:
     def above_target(self) -> np.ndarray:
         """(B,) bool: swimmers whose estimated error exceeds their target."""
         pairs = zip(self.error_estimates, self.accuracies, strict=True)
-        return np.array([bool(error and error.missed(each.target, float(self.time[-1]))) for error, each in pairs])
+        return np.array([bool(error and error.over_target(each.target, float(self.time[-1]))) for error, each in pairs])
 
     def __getitem__(self, index: int) -> Run:
         """Swimmer `index` as a `Run`, with the samples that it has."""

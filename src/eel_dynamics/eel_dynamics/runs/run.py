@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
+from eel_base.attitude import world_from_section
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
@@ -23,14 +24,14 @@ from eel_dynamics.analysis.model_limits import warnings_of
 from eel_dynamics.analysis.peaks import FINER, MOST_SAMPLES, greatest_torque_of
 from eel_dynamics.analysis.run_summary import describe
 from eel_dynamics.analysis.settling import Unsettled
-from eel_dynamics.model.axes import AXES, REP103, SIGNS, in_world, turn_vector, turned
+from eel_dynamics.model.axes import CONVENTIONS, REP103, SIGNS, turn_vector, turned
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.companion import stable_step, with_error_estimate
 from eel_dynamics.runs.exchange.eel_viz_functions import recorder_of_runs
+from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
 from eel_dynamics.runs.exchange.recorded_run import fields_of_bag
-from eel_dynamics.runs.exchange.records import records
 from eel_dynamics.runs.motions import Motion, SmoothingEffect, effect_of_smoothing, law_from
 from eel_dynamics.runs.progress_monitor import ProgressMonitor
 from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
@@ -136,8 +137,8 @@ class Run:
         In the paper's axes the eel swims towards -x. What has section axes is the same in both. `ValueError` for other
         axes.
         """
-        if axes not in AXES:
-            raise ValueError(f"axes must be {' or '.join(AXES)}, got {shown(axes)}")
+        if axes not in CONVENTIONS:
+            raise ValueError(f"axes must be {' or '.join(CONVENTIONS)}, got {shown(axes)}")
         if axes == self.axes:
             return self
         scene = replace(self.scene, current=tuple(turn_vector(self.scene.current).tolist()))
@@ -148,7 +149,7 @@ class Run:
         if getattr(self, name) is None:
             raise ValueError(f"{name}_world needs a run with scene internal_wrench on")
         own = self.in_axes(REP103)
-        found = in_world(getattr(own, name), own.section_orientation)
+        found = world_from_section(own.section_orientation, getattr(own, name))
         return found if self.axes == REP103 else turn_vector(found)
 
     @property
@@ -211,7 +212,7 @@ class Run:
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """One line each: an error above the target, and the model's limits that were exceeded (`model_limits.py`)."""
-        missed = self.error_estimate and self.error_estimate.missed(self.accuracy.target, float(self.time[-1]))
+        missed = self.error_estimate and self.error_estimate.over_target(self.accuracy.target, float(self.time[-1]))
         return (missed, *warnings_of(self)) if missed else warnings_of(self)
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -271,7 +272,7 @@ class Run:
         """
         record, runs = recorder_of_runs(), [self] if compare is None else [self, compare]
         names = [f"{run.law.name} {run.accuracy.name}" for run in runs]
-        record(target, [records(run) for run in runs], names, **settings)
+        record(target, [messages_of_run(run) for run in runs], names, **settings)
 
     @cached_property
     def refined(self) -> "Run":
@@ -377,7 +378,7 @@ def simulate(
         stopped.run = swim.run
         raise stopped if settings.step is None else _with_stable_step(stopped, request, settings)
     run = (with_error_estimate(swim, request) if estimate else swim).run
-    if run.error_estimate is not None and (missed := run.error_estimate.missed(run.accuracy.target, seconds)):
+    if run.error_estimate is not None and (missed := run.error_estimate.over_target(run.accuracy.target, seconds)):
         warnings.warn(missed, stacklevel=2)
     return run
 

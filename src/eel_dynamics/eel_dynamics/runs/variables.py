@@ -79,7 +79,7 @@ class Contents(NamedTuple):
     """A run or a batch, taken apart.
 
     kind: "run" or "batch". values: what JSON can hold. arrays: by the names of `VARIABLES` and `OF_SWIMMERS`. axes: of
-    world and head, one of `model.axes.AXES`.
+    world and head, one of `model.axes.CONVENTIONS`.
     """
 
     kind: str

@@ -88,9 +88,9 @@ class ErrorMeter:
         if self._companion is not None and self._companion.time < march.time:
             self._repeat(lambda companion: companion.advance(march.time, interrupted))
 
-    def adopt(self, march: March, law: Law | SampledLaw, origin: float, transition: float, needs: ShapeNeeds):
-        """As the `march` has done: `March.adopt`."""
-        self._repeat(lambda companion: companion.adopt(law, origin, transition, needs))
+    def change_law(self, march: March, law: Law | SampledLaw, origin: float, transition: float, needs: ShapeNeeds):
+        """As the `march` has done: `March.change_law`."""
+        self._repeat(lambda companion: companion.change_law(law, origin, transition, needs))
         if self._has_same_grid(march):
             self.begin_again(march)
 

@@ -84,14 +84,14 @@ class March:
 
     # -- law and grid
 
-    def adopt(self, law: Law | SampledLaw, origin: float, transition: float, needs: ShapeNeeds):
+    def change_law(self, law: Law | SampledLaw, origin: float, transition: float, needs: ShapeNeeds):
         """Follow `law` from now on, with a blend over `transition` [s].
 
         origin [s]: the time of the law's own t = 0. The grid fits the `needs` of the law and of the last one.
         """
         both = ShapeNeeds(max(self._needs.waves, needs.waves), needs.knots)
         self._use(self.settings.at_least(GridSettings.of(self.setup.settings, both)))
-        self.follower.adopt(law, origin=origin, time=self.time, transition=transition)
+        self.follower.blend_into(law, origin=origin, time=self.time, transition=transition)
         self._hand_over_law()
         self._needs = needs
 

@@ -158,9 +158,9 @@ class Simulation:
         if self._started:
             if meter is not None:
                 meter.catch_up(march)
-            march.adopt(law, origin, blend, needs)
+            march.change_law(law, origin, blend, needs)
             if meter is not None:
-                meter.adopt(march, law, origin, blend, needs)
+                meter.change_law(march, law, origin, blend, needs)
         else:
             self._march = march = March.from_start(self._setup, law, origin, march.settings)
             if meter is not None:

@@ -2,15 +2,19 @@
 """Gaits by name, and those of other packages.
 
 A gait is written as a function that makes terms from its numbers. `register` lists it, and turns it into a function
-that takes the numbers as keywords and returns a `Law`. The gaits are in the other files of this folder. A package that
-is installed adds its own by an entry point, whose value is a function with the decorator `eel_gaits.register`:
+that takes the numbers as keywords and returns a `Law`. `load_gaits` imports all files of this folder, so that no gait
+is left out; `eel_gaits/__init__.py` has the names for users of the library. A package that is installed adds its own by
+an entry point, whose value is a function with the decorator `eel_gaits.register`:
 
     [project.entry-points."eel_gaits.gaits"]
     wiggle = "my_package.gaits:wiggle"
 """
 
 import functools
+import importlib
 import inspect
+import os
+import pkgutil
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -86,7 +90,12 @@ def register(numbers_class: type[Quantities]) -> Callable[[Callable[..., Any]], 
 
 
 def load_gaits() -> None:
-    """Load the gaits of other packages, each of which lists itself. One that cannot be loaded gives a warning."""
+    """Load the gaits of this folder, and those of other packages: each lists itself.
+
+    One of another package that cannot be loaded gives a warning.
+    """
+    for module in pkgutil.iter_modules([os.path.dirname(__file__)], "eel_gaits.gaits."):
+        importlib.import_module(module.name)
     for entry in entry_points(group=GROUP):
         try:
             function = entry.load()

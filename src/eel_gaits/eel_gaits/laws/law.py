@@ -22,7 +22,7 @@ import numpy as np
 from eel_base.quantity import number, numbers, positive
 from eel_base.wording import not_one_of, shown
 
-from eel_gaits.laws.term import AXES, Term
+from eel_gaits.laws.term import SECTION_COLUMN, Term
 
 MAXIMUM_TERMS = 1000
 MAXIMUM_NAME = 200  # characters
@@ -97,7 +97,7 @@ class Law:
         time = number("time", time)
         total = np.zeros((3, x.size, 3))
         for term in self.terms:
-            total[:, :, AXES[term.axis]] += term.curvature(time, x)
+            total[:, :, SECTION_COLUMN[term.axis]] += term.curvature(time, x)
         return total[0], total[1], total[2]
 
     # -- laws made of laws
@@ -125,8 +125,8 @@ class Law:
 
     def mirrored(self, axis: str = "yaw") -> "Law":
         """The law with the opposite curvature about one `axis`: left and right ("yaw") or up and down ("pitch")."""
-        if not isinstance(axis, str) or axis not in AXES:
-            raise ValueError(not_one_of("axis", axis, AXES))
+        if not isinstance(axis, str) or axis not in SECTION_COLUMN:
+            raise ValueError(not_one_of("axis", axis, SECTION_COLUMN))
         return self._of(term.scaled(-1.0) if term.axis == axis else term for term in self.terms)
 
     def ramped_in(self, start: float, end: float) -> "Law":

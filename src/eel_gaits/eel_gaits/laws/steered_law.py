@@ -16,10 +16,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eel_gaits.laws.law import Law
-from eel_gaits.laws.term import Term
+from eel_gaits.laws.term import LAW_ROW, Term
 
 Jet = tuple[Any, Any, Any]  # value, rate and acceleration, of one swimmer or several
-AXES = {"pitch": 0, "yaw": 1}
 
 
 class Number(NamedTuple):
@@ -56,7 +55,7 @@ class SteeredLaw:
 
     def __init__(self, law: Law, *, response: float = 0.2, length: float = 1.0, points: int = 21):
         self.law, self.x, self._rate = law, np.linspace(0.0, length, points), 1.0 / response
-        self._waves = [(term.angular_frequency, AXES[term.axis]) for term in law.terms]
+        self._waves = [(term.angular_frequency, LAW_ROW[term.axis]) for term in law.terms]
         self._rows = np.concatenate([_rows(term, self.x) for term in law.terms] + [np.ones((1, points))])
         self._rest = {name: (number.rest, 0.0, 0.0) for name, number in NUMBERS.items()}
         self.period = min((term.period for term in law.terms if term.period), default=1.0)  # s, of the fastest wave
@@ -106,17 +105,17 @@ class SteeredLaw:
                 s, c = float(s), float(c)
             _put(factors[..., axis, :, :], 2 * k, _product(size, c, -frequency * s, frequency, speed))
             _put(factors[..., axis, :, :], 2 * k + 1, _product(size, -s, -frequency * c, frequency, speed))
-            if frequency and axis == AXES["yaw"]:
+            if frequency and axis == LAW_ROW["yaw"]:
                 for name, (now, later) in ROLLING.items():
                     number = self.values[name]
                     if number is not self._rest[name]:
                         f, g = now * c + later * s, later * c - now * s
-                        parts = factors[..., AXES["pitch"], :, 2 * k : 2 * k + 2]
+                        parts = factors[..., LAW_ROW["pitch"], :, 2 * k : 2 * k + 2]
                         for row, (value, slope) in enumerate(((f, frequency * g), (g, -frequency * f))):
                             _put(parts, row, _product(number, value, slope, frequency, speed), parts[..., row])
         for name, bent in BENDS.items():
             if self.values[name] is not self._rest[name]:
-                _put(factors[..., AXES[bent], :, :], -1, tuple(-value for value in self.values[name]))
+                _put(factors[..., LAW_ROW[bent], :, :], -1, tuple(-value for value in self.values[name]))
         return np.asarray(factors.reshape(*swimmers, 6, -1) @ self._rows)
 
 

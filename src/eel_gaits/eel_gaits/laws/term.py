@@ -12,7 +12,8 @@ from eel_base.wording import not_one_of, shown
 from eel_gaits.laws.ramp import Ramp, begun, ended, envelope_at
 from eel_gaits.laws.spline import natural_spline
 
-AXES = {"pitch": 1, "yaw": 2}  # name of the axis: its column in a curvature array
+SECTION_COLUMN = {"pitch": 1, "yaw": 2}  # name of the axis: its column in a curvature array
+LAW_ROW = {"pitch": 0, "yaw": 1}  # name of the axis: its place in the rows of a law
 MAXIMUM_VALUES = 1000  # coefficients or knots of a term, ramps of an envelope
 
 
@@ -44,8 +45,8 @@ class Term:
     envelope: tuple[Ramp, ...] = ()
 
     def __post_init__(self) -> None:
-        if not isinstance(self.axis, str) or self.axis not in AXES:
-            raise ValueError(not_one_of("axis", self.axis, AXES))
+        if not isinstance(self.axis, str) or self.axis not in SECTION_COLUMN:
+            raise ValueError(not_one_of("axis", self.axis, SECTION_COLUMN))
         for field in ("amplitude", "knots"):
             object.__setattr__(self, field, _numbers(field, getattr(self, field)))
         for field, least in (("wavelength", None), ("period", 0.0), ("phase", None)):

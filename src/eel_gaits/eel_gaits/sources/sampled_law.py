@@ -16,11 +16,10 @@ from eel_base.wording import shown
 
 from eel_gaits.laws.law import checked_name
 from eel_gaits.laws.spline import natural_spline
-from eel_gaits.laws.term import Term
+from eel_gaits.laws.term import LAW_ROW, Term
 from eel_gaits.sources.body_points import points_for
 from eel_gaits.sources.period import first_harmonics
 
-AXES = {"pitch": 0, "yaw": 1}  # name of the axis: its place in `values`
 FEWEST_ROWS = 2
 LEAST_POINTS = 2
 IN_MESSAGES = 1.0 / 300.0  # part of the greatest curvature by which the points of messages may miss the rows
@@ -63,7 +62,7 @@ class SampledLaw:
             raise ValueError(f"values must have the shape {shape}, got {self.values.shape}")
         if not np.all(np.isfinite(self.values)):
             row, axis, _, point = np.argwhere(~np.isfinite(self.values))[0]
-            where = f"{list(AXES)[axis]} at t = {self.time[row]:g} s, X = {self.x[point]:g} m"
+            where = f"{list(LAW_ROW)[axis]} at t = {self.time[row]:g} s, X = {self.x[point]:g} m"
             raise ValueError(f"values must be finite, got none of {where}")
         for array in (self.time, self.x, self.values):
             array.flags.writeable = False
@@ -108,12 +107,12 @@ class SampledLaw:
     @cached_property
     def in_plane(self) -> bool:
         """Whether the body bends only in yaw."""
-        return not np.any(self.values[:, AXES["pitch"]])
+        return not np.any(self.values[:, LAW_ROW["pitch"]])
 
     @cached_property
     def waves(self) -> tuple[Term, ...]:
         """The first harmonic in yaw and in pitch, of the later half of the rows; none where these do not repeat."""
-        return first_harmonics(self.time, self.x, {axis: self.values[:, place, 0] for axis, place in AXES.items()})
+        return first_harmonics(self.time, self.x, {axis: self.values[:, place, 0] for axis, place in LAW_ROW.items()})
 
     def with_fewer_points(self) -> "SampledLaw":
         """The law at as few points as carry its rows to 1/300 of the greatest curvature: for messages."""
@@ -146,7 +145,7 @@ class SampledLaw:
         step = self.time[row + 1] - self.time[row]
         start, end = self.values[row], self.values[row + 1]
         found = np.zeros((3, len(x), 3))
-        for axis in AXES.values():
+        for axis in LAW_ROW.values():
             rows = quintic(start[axis], end[axis], step, (inside - self.time[row]) / step)
             found[:, :, 1 + axis] = natural_spline(self.x, rows, x)
         if inside != time:

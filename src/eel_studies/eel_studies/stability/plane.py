@@ -22,7 +22,7 @@ LONG = 10_000  # periods
 LOOKED_AT = 50  # instants of a long run that are evaluated
 ACCURACIES = (1e-2, 1e-4, 1e-6)
 PUSHES = (1e-15, 1e-12)  # rad/s, or m/s
-AXES = {"roll": 0, "pitch": 1, "vertical": 5}  # of the head's twist
+TWIST_COLUMN = {"roll": 0, "pitch": 1, "vertical": 5}  # of the head's twist
 LONGEST = 40  # periods over which a perturbation is followed
 LINEAR = 1e-6  # m/s: below it, growth is linear in the perturbation
 COLUMNS = (
@@ -53,11 +53,11 @@ def out_of_plane(
 ) -> np.ndarray:
     """(Omega1 l, Omega2 l, V3) of the head (T, 3) [m/s], in head axes, at `periods` (T,) of the gait `straight`.
 
-    push: initial perturbation [rad/s or m/s] of the `axis` in `AXES`. orientation: initial quaternion. scene: fields of
-    `Scene`. `SimulationStopped` where the run cannot go on.
+    push: initial perturbation [rad/s or m/s] of the `axis` in `TWIST_COLUMN`. orientation: initial quaternion. scene:
+    fields of `Scene`. `SimulationStopped` where the run cannot go on.
     """
     twist = np.zeros(6)
-    twist[AXES[axis]] = push
+    twist[TWIST_COLUMN[axis]] = push
     swimmer, out, _ = recorded(
         np.asarray(periods, dtype=float),
         body=body,
@@ -69,7 +69,7 @@ def out_of_plane(
         twist=twist,
     )
     length = swimmer.body.length
-    return np.asarray(out.twist[:, list(AXES.values())] * (length, length, 1.0))
+    return np.asarray(out.twist[:, list(TWIST_COLUMN.values())] * (length, length, 1.0))
 
 
 def growth(**swimmer: Any) -> Growth:
@@ -87,7 +87,7 @@ def table(long: int = LONG) -> str:
     """The result in words and numbers, as Markdown. long: periods of the run without a perturbation."""
     found, rows = [], []
     for accuracy in ACCURACIES:
-        pushed = [[growth(accuracy=accuracy, push=push, axis=axis) for push in PUSHES] for axis in AXES]
+        pushed = [[growth(accuracy=accuracy, push=push, axis=axis) for push in PUSHES] for axis in TWIST_COLUMN]
         turned = [growth(accuracy=accuracy, push=0.0, orientation=TURNED)]
         rows.append((f"{accuracy:g}", *(", ".join(f"{each.rate:.3f}" for each in row) for row in (*pushed, turned))))
         found += [each for row in (*pushed, turned) for each in row]

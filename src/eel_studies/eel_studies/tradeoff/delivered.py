@@ -124,7 +124,7 @@ def trial_of(swim: dict[str, Any]) -> Trial | None:
         error=None if reference is None else relative_errors(run, reference),
         uncertainty=uncertainty,
         estimate=estimate,
-        reported=bool(estimate.missed(swim["accuracy"], float(run.time[-1]))),
+        reported=bool(estimate.over_target(swim["accuracy"], float(run.time[-1]))),
         cost=1.0 + estimate.cost / (run.nodes * run.evaluations),
     )
 

@@ -6,12 +6,12 @@ import warnings
 from collections.abc import Iterator
 from typing import Any
 
+from eel_base.topics import DIAGNOSTICS, GLOBAL, OWN, SAMPLED
 from eel_base.wording import shown
 
 from eel_viz.bags.bag import Bag, DamagedBag
 from eel_viz.recording.destination import LogFunction
 from eel_viz.recording.dispatcher import READERS
-from eel_viz.topics import DIAGNOSTICS, GLOBAL, OWN, SAMPLED
 
 
 class SwimmerMessages:

@@ -13,7 +13,7 @@ import rerun as rr
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import Backbone, Body, Pose, Profiles, Status, Twist
-from eel_viz.plots.pairs import Pairs, Sample
+from eel_viz.plots.pairs import Pairs, Stamped
 from eel_viz.plots.profile_plot import ProfilePlot
 from eel_viz.plots.readable import number, quantity
 from eel_viz.plots.state_text import Summary
@@ -68,7 +68,7 @@ class Comparison:
 
     def add_head(self, side: "Side", stamp: int, position: np.ndarray) -> None:
         """Take a head's position (3,) [m]; log the distance between the two heads for each complete pair."""
-        for pair in self._heads.add(Sample(stamp, position), of_other=side is self.other):
+        for pair in self._heads.add(Stamped(stamp, position), of_other=side is self.other):
             self.this.summary.add_position(pair.stamp, pair.this)
             self.other.summary.add_position(pair.stamp, pair.other)
             if self._due("compared", pair.stamp, SUMMARY_PERIOD):
@@ -81,7 +81,7 @@ class Comparison:
     def add_torque(self, side: "Side", stamp: int, wrench: Profiles) -> None:
         """Take torques; log C3 of both runs and the differences of C1, C2, C3 [N m] for each complete pair."""
         torque = wrench.together("torque_1", "torque_2", "torque_3")
-        for at, x, this, other in self._torques.add(Sample(stamp, torque, wrench.x), of_other=side is self.other):
+        for at, x, this, other in self._torques.add(Stamped(stamp, torque, wrench.x), of_other=side is self.other):
             assert x is not None  # torques have stations
             self.this.summary.add_torque(at, x, this[:, 2])
             self.other.summary.add_torque(at, x, other[:, 2])

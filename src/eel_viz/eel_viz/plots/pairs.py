@@ -14,7 +14,7 @@ from eel_viz.messages import same
 MAXIMUM_WAITING = 1024  # samples of either run; older ones are dropped
 
 
-class Sample(NamedTuple):
+class Stamped(NamedTuple):
     """Values (n,) at a stamp [ns], or (M, n) at stations `x` (M,) [m] and a stamp."""
 
     stamp: int
@@ -35,10 +35,10 @@ class Pairs:
     """Pairs of one kind of sample."""
 
     def __init__(self) -> None:
-        self._these: deque[Sample] = deque(maxlen=MAXIMUM_WAITING)
-        self._others: deque[Sample] = deque(maxlen=MAXIMUM_WAITING)
+        self._these: deque[Stamped] = deque(maxlen=MAXIMUM_WAITING)
+        self._others: deque[Stamped] = deque(maxlen=MAXIMUM_WAITING)
 
-    def add(self, sample: Sample, *, of_other: bool) -> list[Pair]:
+    def add(self, sample: Stamped, *, of_other: bool) -> list[Pair]:
         """Add a sample of this run or of the other one; returns the pairs that are complete now."""
         (self._others if of_other else self._these).append(sample)
         found, others = [], self._others
@@ -50,7 +50,7 @@ class Pairs:
                 found.append(Pair(this.stamp, this.x, this.values, self._other_at(this)))
         return found
 
-    def _other_at(self, this: Sample) -> np.ndarray:
+    def _other_at(self, this: Stamped) -> np.ndarray:
         before = self._others[0]
         values = _on(this.x, before)
         if before.stamp == this.stamp:
@@ -60,7 +60,7 @@ class Pairs:
         return (1.0 - share) * values + share * _on(this.x, after)
 
 
-def _on(x: np.ndarray | None, sample: Sample) -> np.ndarray:
+def _on(x: np.ndarray | None, sample: Stamped) -> np.ndarray:
     """The values of `sample`, interpolated from its stations to `x`."""
     if x is None or sample.x is None or same(x, sample.x):
         return sample.values

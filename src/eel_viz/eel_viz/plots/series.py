@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The time series: names and colours of each entity's values, in order; the attitude without jumps."""
+"""The time series: names and colours of each entity's values, in order; the attitude without jumps.
+
+Paths are those of entities.py; next come a new curve's values, in recording/loggers.py.
+"""
 
 import numpy as np
 import rerun as rr

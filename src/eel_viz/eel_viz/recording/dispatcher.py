@@ -11,11 +11,12 @@ from collections import Counter
 from collections.abc import Callable, Hashable
 from typing import Any
 
+from eel_base.topics import SAMPLED
+
 from eel_viz import messages
 from eel_viz.messages import BadMessage, stamp_of
 from eel_viz.recording.destination import LogFunction
 from eel_viz.recording.recordings import Recordings
-from eel_viz.topics import SAMPLED
 
 COARSE = 4  # stations, below which a backbone says little about the shape
 BODY_LIMIT = 2.0  # s after the first backbone within which the body is expected

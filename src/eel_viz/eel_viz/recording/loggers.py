@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Logs the swimmer's messages to one Rerun recording: one method per topic, called with the message's own stamp.
 
+A new curve or drawing is logged here under a path of entities.py, and an arrangement of views/blueprint.py shows it.
+
 Geometry is drawn in single precision at one rate. Scalars and profiles are logged in double precision at another rate
 (see `Rates`). The skin takes its shape from the backbone and its colour from the torque of the same stamp, in any
 order. Rows are sent in batches (see `batched_stream`): call `send_due` regularly, and `flush` at the end.

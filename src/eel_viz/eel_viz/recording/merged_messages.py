@@ -4,11 +4,12 @@
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
+from eel_base.topics import SAMPLED
+
 from eel_viz.messages import stamp_of
 from eel_viz.recording.destination import Destination, LogFunction
 from eel_viz.recording.dispatcher import Dispatcher
 from eel_viz.recording.recordings import Recordings
-from eel_viz.topics import SAMPLED
 
 Messages = Iterable[tuple[str, Any]]  # topic, a name of `Dispatcher.topics`, and message
 MESSAGES_PER_POLL = 100

@@ -10,6 +10,7 @@ import sys
 import time
 from typing import Any
 
+from eel_base.topics import DIAGNOSTICS, GLOBAL, LATCHED, OWN
 from eel_base.wording import shown
 from eel_ros.command_line import handle_arguments
 from eel_ros.parameter_node import ParameterNode
@@ -24,7 +25,6 @@ from eel_viz.recording.recordings import Recordings
 from eel_viz.recording.sinks import destinations
 from eel_viz.ros.polled_subscriptions import PolledSubscriptions, SwimmerPresence
 from eel_viz.settings import Settings
-from eel_viz.topics import DIAGNOSTICS, GLOBAL, LATCHED, OWN
 from eel_viz.without_pandas import keep_pandas_out
 
 NAME = "visualiser"

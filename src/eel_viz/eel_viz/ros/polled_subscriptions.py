@@ -11,6 +11,7 @@ from collections.abc import Callable, Hashable, Mapping
 from functools import partial
 from typing import Any
 
+from eel_base.topics import SWIMMER
 from eel_ros.deliveries import Deliveries
 from eel_ros.run_node import is_from_before
 from eel_ros.serving import PolledGroup, log_dropped, read_message
@@ -19,7 +20,6 @@ from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
 from eel_viz.ros.publisher_change import PublisherChange
-from eel_viz.topics import SWIMMER
 
 BATCH = 64  # messages taken from one subscription before the next one
 TAKE_LIMIT = 0.2  # s after which `take` returns, so that the node hears calls and signals

@@ -16,6 +16,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from eel_base.command.command_line import Parser, check_seconds
+from eel_base.topics import GLOBAL, LATCHED, OWN, SAMPLED
 from eel_ros.qos import fitting, keep_all, matches
 from eel_ros.run_node import run_node
 from eel_ros.serving import PolledGroup
@@ -29,7 +30,6 @@ from rosbags.interfaces import Connection, Qos, QosDurability, QosHistory, QosLi
 from eel_viz.bags.definitions import definition, message_class, type_hash
 from eel_viz.bags.growing_bag import GrowingBag
 from eel_viz.ros.polled_subscriptions import Receive, SwimmerPresence, take_waiting, unused
-from eel_viz.topics import GLOBAL, LATCHED, OWN, SAMPLED
 
 NAME, COMMAND = "record", "eel record"
 LOOK_PERIOD = 0.2  # s between two look-ups of the topics

@@ -9,13 +9,13 @@ from typing import TypeVar
 
 import numpy as np
 import rerun as rr
+from eel_base.attitude import world_from_section
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import Backbone, Load
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.load_vectors import LoadVectors
-from eel_viz.scene3d.orientation import world_from_section
 from eel_viz.scene3d.track import Wake
 
 Waiting = TypeVar("Waiting")

@@ -5,7 +5,7 @@ So the skin has its own abscissae, finer at the nose, and keeps its mesh when th
 """
 
 import numpy as np
-from eel_base.attitude import world_from_body
+from eel_base.attitude import section_axes
 
 from eel_viz.messages import same
 
@@ -34,7 +34,7 @@ class Resampling:
 
         `position` (M, 3) [m] and `orientation` (M, 4) are those of the message `Backbone` (REP-103 axes).
         """
-        axes = world_from_body(orientation) * (-1.0, -1.0, 1.0)
+        axes = section_axes(orientation)
         position = np.asarray(position, dtype=float)
         s = self.fraction[:, None]
         slope = axes[:, :, 0]

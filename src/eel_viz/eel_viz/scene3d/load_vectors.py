@@ -2,10 +2,10 @@
 """Turns a load into vectors in the world: along the body, and at nose and tail."""
 
 import numpy as np
+from eel_base.attitude import world_from_section
 
 from eel_viz.messages import Backbone, Load, same
 from eel_viz.scene3d.centre_line import Resampling
-from eel_viz.scene3d.orientation import world_from_section
 
 ALONG = 24  # vectors between nose and tail
 

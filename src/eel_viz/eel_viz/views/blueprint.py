@@ -2,6 +2,7 @@
 """The arrangements of a recording, as functions without data. Each fits a window of 1280 by 720 pixels.
 
 A recording carries all of them as tabs: those of `ARRANGEMENTS`, and `compare` where another run is laid over this one.
+What a view shows is logged by recording/loggers.py under a path of entities.py.
 """
 
 from collections.abc import Callable

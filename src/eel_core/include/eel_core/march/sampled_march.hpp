@@ -124,6 +124,7 @@ class SampledMarch {
     }
 
     // Has the difference between the straight body and the first sample, whose rows are in `rows_`, die out.
+    // Other blends are made in Python: `LawFollower` in eel_dynamics/curvature/law_follower.py.
     void begin_blend(double start)
     {
         std::vector<Jet> factor(tables_->rows());

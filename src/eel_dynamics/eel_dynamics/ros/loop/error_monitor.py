@@ -26,7 +26,7 @@ class ErrorMonitor:
         simulation, error = self._simulation, self._simulation.error_estimate
         if error is None:
             return
-        missed = error.missed(simulation.accuracy.target, simulation.time - (simulation.measured_since or 0.0))
+        missed = error.over_target(simulation.accuracy.target, simulation.time - (simulation.measured_since or 0.0))
         if missed and not self._report.lasts(TARGET):
             self._report.begin(TARGET, f"at t = {simulation.time:g} s {missed}")
         if simulation.lost_at is not None and not self._report.lasts(LOST):

@@ -47,7 +47,7 @@ class LawAdopter:
             return "curvature_samples"
         return simulation.law.name if simulation.law is not None else ""
 
-    def adopt(self, law: Law, origin: float) -> None:
+    def try_law(self, law: Law, origin: float) -> None:
         """Adopt a law whose own t = 0 lies at simulation time `origin` [s]; log a refusal."""
         simulation = self.simulation
         driven = simulation.law is not None and simulation.samples_until is None and not simulation.resting

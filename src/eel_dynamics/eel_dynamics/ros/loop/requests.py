@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Generator
 from typing import Any, NamedTuple
 
-from eel_dynamics.ros.sample_inbox import SampleInbox
+from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 
 INTERRUPT_AFTER = 1.0  # s of wall time for one sample, after which any request interrupts its computation
 
@@ -22,7 +22,7 @@ class Answer:
         deadline: [s, steady clock] until when it is awaited.
     """
 
-    def __init__(self, inbox: SampleInbox) -> None:
+    def __init__(self, inbox: CurvatureInbox) -> None:
         self._inbox, self._awaited, self.done = inbox, False, threading.Event()
         self.time, self.failure, self.deadline = math.nan, "", math.inf
 
@@ -55,7 +55,7 @@ class RequestQueue:
         stopped: the run is to end.
     """
 
-    def __init__(self, inbox: SampleInbox) -> None:
+    def __init__(self, inbox: CurvatureInbox) -> None:
         self._guard, self._inbox = threading.Lock(), inbox
         self._waiting: list[Request] = []
         self._urgent = self.stopped = False

@@ -5,7 +5,7 @@ Only this thread uses the simulation. Callbacks put requests into `requests`, wh
 urgent request interrupts the computation of a sample, and so does any request once that has taken long.
 
 Why no executor of rclpy runs it: a turn of rclpy's executor takes 140 us of CPU time, as it builds its wait set anew; a
-sample with its messages takes 60 us, and the wait in SampleInbox 18 us. A law may also need seconds for a sample, in
+sample with its messages takes 60 us, and the wait in CurvatureInbox 18 us. A law may also need seconds for a sample, in
 which services have to answer, and a publisher whose history is full has to wait. A callback group or a timer would
 move that wait to a thread of the executor's pool, and could not be interrupted.
 """
@@ -19,18 +19,18 @@ import numpy as np
 from eel_base.wording import one_line
 from eel_gaits.laws.law import Law
 
+from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.diagnostics import ERROR, Report
 from eel_dynamics.ros.loop.clock_ticks import TICK
 from eel_dynamics.ros.loop.followed_clock import FollowedClock
 from eel_dynamics.ros.loop.law_adopter import LawAdopter
-from eel_dynamics.ros.loop.obstacles import Obstacles
 from eel_dynamics.ros.loop.pacing import Pace
 from eel_dynamics.ros.loop.requests import Answer, RequestQueue
+from eel_dynamics.ros.loop.run_gate import RunGate
 from eel_dynamics.ros.loop.sample_output import SampleOutput, nanoseconds
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.publishers import Publishers
-from eel_dynamics.ros.sample_inbox import SampleInbox
 from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.stopping import SimulationStopped
 
@@ -50,7 +50,7 @@ class RunLoop:
         standing: what the simulation waits for, as text; empty while it runs.
         requests: RequestQueue, for other threads.
         wall_time: [s] spent on samples.
-        obstacles: Obstacles. laws: LawAdopter. output: SampleOutput. pace: Pace.
+        gate: RunGate. laws: LawAdopter. output: SampleOutput. pace: Pace.
     """
 
     def __init__(
@@ -58,14 +58,14 @@ class RunLoop:
         simulation: Simulation,
         parameters: Declaration,
         publishers: Publishers,
-        inbox: SampleInbox,
+        inbox: CurvatureInbox,
         report: Report,
     ) -> None:
         self._simulation, self._parameters, self._publishers = simulation, parameters, publishers
         self._inbox, self._report = inbox, report
         values = parameters.values
         self.requests = RequestQueue(inbox)
-        self.obstacles = Obstacles(simulation, publishers, values.wait_for_subscribers)
+        self.gate = RunGate(simulation, publishers, values.wait_for_subscribers)
         self.pace = (FollowedClock if values.follow_clock else Pace)(1.0 / values.rate, values.real_time_factor)
         self.laws = LawAdopter(simulation, report)
         self.output = SampleOutput(simulation, parameters, publishers, report)
@@ -82,7 +82,7 @@ class RunLoop:
     @property
     def given_up(self) -> bool:
         """The simulation has stopped, and it is unattended: no reset is expected."""
-        return self.obstacles.failed and self.pace.factor == 0.0 and self._parameters.values.duration > 0.0
+        return self.gate.failed and self.pace.factor == 0.0 and self._parameters.values.duration > 0.0
 
     # In the run loop's thread.
 
@@ -94,7 +94,7 @@ class RunLoop:
                 self._execute(self.laws.add_samples, samples, self.pace.period)
             for request in self.requests.take():
                 request.answer.give(*self._execute(request.action, *request.arguments))
-            obstacle = self.obstacles.find(self.time) or self.pace.obstacle(self.samples_published)
+            obstacle = self.gate.find(self.time) or self.pace.obstacle(self.samples_published)
             if obstacle:
                 self._idle(obstacle)
             elif self._wait_for_turn():
@@ -102,7 +102,7 @@ class RunLoop:
         self.output.end()
         if self.samples_published > self._last_sample:
             self._report.info(f"finished at t = {self.time:g} s")
-        self.obstacles.end_steps(self.time, "the run has ended")
+        self.gate.end_steps(self.time, "the run has ended")
 
     def _execute(self, action: Callable[..., None], *arguments: Any) -> tuple[float, str]:
         """Execute `action(*arguments)`; returns the simulation time [s] afterwards, and why it was refused."""
@@ -126,7 +126,7 @@ class RunLoop:
             self._report.info(obstacle)
         now = time.monotonic()
         self.output.clock.repeat(self._stamp, now)
-        if self.samples_published == 0 and self.output.start_is_due(now) and self.obstacles.start_may_be_shown(now):
+        if self.samples_published == 0 and self.output.start_is_due(now) and self.gate.start_may_be_shown(now):
             try:
                 self.output.show_start(now)
             except SimulationStopped as error:
@@ -178,7 +178,7 @@ class RunLoop:
                 "late", f"late by {lost:.3g} s at t = {self.time:g} s: accuracy is kept, not the pace{more}"
             )
         if self.samples_published > 0:
-            self.obstacles.count_step(self.time)
+            self.gate.count_step(self.time)
         self.samples_published += 1
 
     def _advance(self) -> bool:
@@ -192,8 +192,8 @@ class RunLoop:
         return reached
 
     def _fail(self, error: SimulationStopped) -> None:
-        self.obstacles.failed, self._sample_begun = True, None
-        self.obstacles.end_steps(self.time, f"simulation {error}")
+        self.gate.failed, self._sample_begun = True, None
+        self.gate.end_steps(self.time, f"simulation {error}")
         then = "this run ends here, with status 1" if self.given_up else "reset starts it again"
         self._report.begin("stopped", f"simulation {error}; {then}", ERROR)
 
@@ -212,22 +212,22 @@ class RunLoop:
 
     # Requests, executed between two samples.
 
-    def adopt(self, law: Law, origin: float) -> None:
+    def take_law(self, law: Law, origin: float) -> None:
         """Adopt a law whose own t = 0 lies at simulation time `origin` [s]."""
-        self.laws.adopt(law, origin)
+        self.laws.try_law(law, origin)
         self.output.forget_start()
 
     def pause(self, paused: bool) -> None:
         """Pause the run, or continue it."""
-        self.obstacles.pause(paused, self.time)
+        self.gate.pause(paused, self.time)
 
     def hold(self, reason: str) -> None:
         """Hold the run for a `reason`, before its next sample; continue it with an empty one."""
-        self.obstacles.held = reason
+        self.gate.held = reason
 
     def step(self, samples: int, steps: Answer) -> None:
         """Publish so many `samples` of a paused run; `steps` is answered with the last. Sample 0 is none of them."""
-        self.obstacles.begin_steps(samples, steps, self.time)
+        self.gate.begin_steps(samples, steps, self.time)
 
     def set_state(self, position: np.ndarray, orientation: np.ndarray, twist: np.ndarray) -> None:
         """Put the head elsewhere, as `Simulation.set_state` does."""
@@ -247,15 +247,15 @@ class RunLoop:
         except ValueError as error:  # a law that could be blended into may not begin from the initial state
             self._report.event("reset", f"reset refused: {error}", ERROR)
             raise
-        self.obstacles.end_steps(self.time, "the run was reset")
+        self.gate.end_steps(self.time, "the run was reset")
         if simulation is not None and values is not None:
             self._parameters.begin(values, simulation.scene)
             self._publishers.begin(simulation)
-            self._simulation = self.obstacles.simulation = self.laws.simulation = simulation
+            self._simulation = self.gate.simulation = self.laws.simulation = simulation
             self.pace.period = 1.0 / values.rate
         now = time.monotonic()
         self.time, self.samples_published = 0.0, 0
-        self.obstacles.failed, self._sample_begun = False, None
+        self.gate.failed, self._sample_begun = False, None
         self.output.restart(self._simulation)
         self.wall_time, self._lap = 0.0, now
         self._report.end("stopped")

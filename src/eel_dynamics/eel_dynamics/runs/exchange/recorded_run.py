@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the fields of a run from the messages of a node: the reverse of `records`.
+"""Makes the fields of a run from the messages of a node: the reverse of `messages_of_run`.
 
 What messages do not carry is computed from them: the head's acceleration and the works by splines in time, the centre
 of mass by splines along the body.
@@ -14,10 +14,11 @@ from typing import Any
 import numpy as np
 from eel_base.files.input_file import reading
 from eel_base.quantity import checked_instance, is_finite
+from eel_base.topics import ENERGY_FIELDS
 from eel_base.wording import one_line, shown
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
-from eel_gaits.laws.term import AXES, Term
+from eel_gaits.laws.term import SECTION_COLUMN, Term
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.budget import Budget
@@ -27,7 +28,6 @@ from eel_dynamics.model.moments import with_moments
 from eel_dynamics.model.panels import panels_of
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.exchange.eel_viz_functions import messages_of_bag
-from eel_dynamics.runs.exchange.records import ENERGIES
 from eel_dynamics.simulation.energy import EnergyLedger
 
 NEEDED = ("head_pose", "head_twist", "backbone", "curvature")
@@ -35,7 +35,7 @@ FURTHER = ("internal_wrench", "hydrodynamic_load", "energy")
 ENDS = ("tail_force", "nose_force", "wake_momentum_rate")
 WORKS = ("actuator", "wake", "nose", "drag")
 FEWEST = 4  # samples, for splines through them
-AXIS_OF_NUMBER = {column + 1: name for name, column in AXES.items()}  # as in CurvatureTerm
+AXIS_OF_NUMBER = {column + 1: name for name, column in SECTION_COLUMN.items()}  # as in CurvatureTerm
 
 
 def fields_of_bag(path, namespace: str | None, body: Body | None, scene: Scene | None) -> dict:
@@ -49,8 +49,8 @@ def fields_of_bag(path, namespace: str | None, body: Body | None, scene: Scene |
         with reading(""):
             return fields_of_messages(messages(path, namespace), body, scene)
     except ValueError as error:
-        told = "" if shown(os.fspath(path)) in str(error) else f"bag {shown(os.fspath(path))} holds no run: "
-        raise ValueError(one_line(f"{told}{error}")) from None
+        named = "" if shown(os.fspath(path)) in str(error) else f"bag {shown(os.fspath(path))} holds no run: "
+        raise ValueError(one_line(f"{named}{error}")) from None
 
 
 def fields_of_messages(messages: Iterable[tuple[str, object]], body: Body | None, scene: Scene | None) -> dict:
@@ -148,23 +148,23 @@ def _energy(rows: dict, time: np.ndarray) -> EnergyLedger | None:
     """The ledger, with works since the first sample."""
     if "energy" not in rows:
         return None
-    told = {name: np.array([getattr(each, name) for each in rows["energy"]]) for name in ENERGIES}
+    ledger = {name: np.array([getattr(each, name) for each in rows["energy"]]) for name in ENERGY_FIELDS}
     works = {}
     for part in WORKS:
-        total = _spline(time, told[f"{part}_power"]).antiderivative()
+        total = _spline(time, ledger[f"{part}_power"]).antiderivative()
         works[f"{part}_work"] = total(time) - total(time[0])
-    return EnergyLedger(**told, **works)
+    return EnergyLedger(**ledger, **works)
 
 
 def _law(once: dict) -> Law:
     """The last law, in the time of the simulation."""
-    told = once["curvature_law"]
-    if not told:
+    laws = once["curvature_law"]
+    if not laws:
         warnings.warn("there is no message on curvature_law: the run's law is the straight body's", stacklevel=4)
         return Law(name="unknown")
-    if len(told) > 1:
-        warnings.warn(f"there are {len(told)} laws: the run's law is the last one", stacklevel=4)
-    message = told[-1]
+    if len(laws) > 1:
+        warnings.warn(f"there are {len(laws)} laws: the run's law is the last one", stacklevel=4)
+    message = laws[-1]
     origin = message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec
     law = Law(*map(_term, message.terms), name=message.name, transition=message.transition)
     return law.delayed(origin)
@@ -196,9 +196,9 @@ def _body(once: dict, scene: Scene) -> Body:
 def _accuracy(once: dict, scene: Scene) -> Accuracy:
     """The accuracy that the diagnostics name, or `standard`."""
     statuses = getattr(once.get("diagnostics"), "status", ())
-    told = [pair.value for status in statuses for pair in status.values if pair.key == "accuracy"]
+    names = [pair.value for status in statuses for pair in status.values if pair.key == "accuracy"]
     try:
-        wanted = Accuracy.of(told[-1] if told else "standard")
+        wanted = Accuracy.of(names[-1] if names else "standard")
     except ValueError as error:
         warnings.warn(f"the accuracy is not known: {one_line(error)}", stacklevel=4)
         wanted = Accuracy.of("standard")

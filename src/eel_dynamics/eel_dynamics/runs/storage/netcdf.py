@@ -17,7 +17,7 @@ from eel_base.files.input_file import InputFile, from_json, reading
 from eel_base.files.output_file import check_output, replacing
 from eel_base.wording import shown
 
-from eel_dynamics.model.axes import AXES, PAPER, REP103
+from eel_dynamics.model.axes import CONVENTIONS, PAPER, REP103
 from eel_dynamics.runs.storage.digest import add_digest, check_digest
 from eel_dynamics.runs.storage.run_contents import in_rep103_axes
 from eel_dynamics.runs.variables import LABELS, OF_SWIMMERS, VARIABLES, Contents
@@ -95,8 +95,8 @@ def read(path, kind: str) -> Contents:
     if not isinstance(path, (str, os.PathLike)):
         raise ValueError(f"path must be that of a {SUFFIX} file, got {shown(path)}")
     named = f"{kind} file {shown(os.fspath(path))}"
-    told = f"{named} cannot be read"
-    with reading(told), InputFile(path) as content, netcdf_file(content, "r", mmap=False) as file:
+    problem = f"{named} cannot be read"
+    with reading(problem), InputFile(path) as content, netcdf_file(content, "r", mmap=False) as file:
         about: dict[str, Any] = {name: getattr(file, name, None) for name in ("software", "kind", "format", "eel")}
         of_sweep = about["kind"] is None and hasattr(file, "sweep")
         ours = {} if of_sweep else {name: file.variables[name] for name in KNOWN if name in file.variables}
@@ -114,11 +114,11 @@ def read(path, kind: str) -> Contents:
             raise ValueError(f"{named} has format {about['format']}, of {writer}; {software()} reads up to {FORMAT}")
         if about["kind"].decode() != kind:
             raise ValueError(f"{named} holds a {about['kind'].decode()}, not a {kind}")
-    with reading(told):
+    with reading(problem):
         contents = Contents(kind, from_json(about["eel"]), arrays, axes.decode())
         sizes_of(contents)
-        if contents.axes not in AXES:
-            raise ValueError(f"its axes must be {' or '.join(AXES)}, got {shown(contents.axes)}")
+        if contents.axes not in CONVENTIONS:
+            raise ValueError(f"its axes must be {' or '.join(CONVENTIONS)}, got {shown(contents.axes)}")
     return contents
 
 

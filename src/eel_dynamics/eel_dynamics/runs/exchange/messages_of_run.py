@@ -5,20 +5,16 @@ from collections.abc import Iterator
 from types import SimpleNamespace
 
 import numpy as np
+from eel_base.topics import ENERGY_FIELDS
 
 SECOND = 1_000_000_000  # ns
-AXES = (1, 2, 3)
-ENERGIES = (
-    *("kinetic_body", "kinetic_fluid", "potential", "actuator_power", "wake_power", "nose_power"),
-    *("drag_power", "residual"),
-)
 
 
-def records(run) -> Iterator[tuple[str, SimpleNamespace]]:
+def messages_of_run(run) -> Iterator[tuple[str, SimpleNamespace]]:
     """Yield topic and message in the order of time: body and law, then all samples, then the diagnostics."""
     run = run.in_axes("rep103")
     start, end = (_stamp(run.time[k]) for k in (0, -1))
-    yield "body", body_record(run)
+    yield "body", _body_of(run)
     yield "curvature_law", SimpleNamespace(name=run.law.name)
     yield "diagnostics", _status(run, start, "computed", {})
     for k, time in enumerate(run.time):
@@ -41,7 +37,7 @@ def outline(body, x: np.ndarray) -> dict[str, np.ndarray]:
     }
 
 
-def body_record(run) -> SimpleNamespace:
+def _body_of(run) -> SimpleNamespace:
     """The body as a BodyGeometry."""
     return SimpleNamespace(length=float(run.body.length), mass=float(run.body_mass), **outline(run.body, run.x))
 
@@ -83,7 +79,7 @@ def _sample(run, k: int) -> dict[str, dict]:
         if run.wake_momentum_rate is not None:  # a file of an older version has none
             found["hydrodynamic_load"]["wake_momentum_rate"] = _named("xyz", run.wake_momentum_rate[k])
     if run.energy is not None:
-        found["energy"] = {name: float(run.energy[name][k]) for name in ENERGIES}
+        found["energy"] = {name: float(run.energy[name][k]) for name in ENERGY_FIELDS}
     return found
 
 
@@ -99,10 +95,10 @@ def _checks(run) -> dict[str, float]:
 
 def _status(run, stamp: SimpleNamespace, text: str, values: dict[str, float]) -> SimpleNamespace:
     """One DiagnosticArray."""
-    told = {"law": run.law.name, "accuracy": run.accuracy.name} | {
+    pairs = {"law": run.law.name, "accuracy": run.accuracy.name} | {
         name: f"{value:.9g}" for name, value in values.items()
     }
-    entries = [SimpleNamespace(key=key, value=value) for key, value in told.items()]
+    entries = [SimpleNamespace(key=key, value=value) for key, value in pairs.items()]
     status = SimpleNamespace(name="/simulate", level=0, message=text, values=entries)
     return SimpleNamespace(header=SimpleNamespace(stamp=stamp), status=[status])
 
@@ -118,4 +114,4 @@ def _named(names: str, values: np.ndarray) -> SimpleNamespace:
 
 def _by_axis(**vectors: np.ndarray) -> dict[str, np.ndarray]:
     """name_1, name_2, name_3 (M,) of each vector (M, 3)."""
-    return {f"{name}_{axis}": values[:, axis - 1] for name, values in vectors.items() for axis in AXES}
+    return {f"{name}_{axis}": values[:, axis - 1] for name, values in vectors.items() for axis in (1, 2, 3)}

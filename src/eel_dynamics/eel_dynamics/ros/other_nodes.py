@@ -38,7 +38,7 @@ class Identity(NamedTuple):
         return Identity(datetime.now(UTC).isoformat(), socket.gethostname(), str(os.getpid()))
 
 
-class Neighbour(NamedTuple):
+class OtherNode(NamedTuple):
     """What another dynamics node has last said of itself."""
 
     name: str
@@ -47,7 +47,7 @@ class Neighbour(NamedTuple):
     seen: float  # s, steady clock
 
 
-class Neighbours:
+class OtherNodes:
     """Compares this node, which publishes the `topic`, with the others on the network.
 
     Attributes:
@@ -57,7 +57,7 @@ class Neighbours:
 
     def __init__(self, node: ServedNode, topic: str, own: Identity, report: Report) -> None:
         self._node, self._topic, self._own, self._report = node, topic, own, report
-        self._others: dict[Identity, Neighbour] = {}
+        self._others: dict[Identity, OtherNode] = {}
         self._strangers: dict[str, float] = {}  # publishers of /clock, and since when they are there [s, steady clock]
         self.holding, self.clock_is_free = "", True
 
@@ -71,7 +71,7 @@ class Neighbours:
             identity = Identity(*(values[field] for field in Identity._fields))
             if identity != self._own:
                 makes_clock = values.get("makes_clock") == str(True)
-                self._others[identity] = Neighbour(name, values["swimmer"], makes_clock, time.monotonic())
+                self._others[identity] = OtherNode(name, values["swimmer"], makes_clock, time.monotonic())
 
     def look(self, makes_clock: bool) -> None:
         """Decide again; call this a few times a second. `makes_clock`: whether this node is to publish /clock."""

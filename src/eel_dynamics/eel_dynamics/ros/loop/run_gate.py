@@ -10,8 +10,8 @@ from eel_dynamics.simulation.simulation import Simulation
 WAITING = "waiting for curvature_law or curvature_samples"
 
 
-class Obstacles:
-    """Finds the obstacles of a `simulation`.
+class RunGate:
+    """What lets the next sample of a `simulation` through, or says why not.
 
     publishers: of its samples. wanted: subscribers to wait for before the first sample.
 
@@ -30,7 +30,7 @@ class Obstacles:
         self._steps_left = 0
 
     def find(self, simulation_time: float) -> str:
-        """The first obstacle as text, at `simulation_time` [s]; empty if there is none."""
+        """What holds the run, as text, at `simulation_time` [s]; empty if there is none."""
         if self.held:
             return self.held
         if self.failed:

@@ -4,9 +4,9 @@
 from types import SimpleNamespace
 
 import pytest
-from eel_dynamics.ros import neighbours
+from eel_dynamics.ros import other_nodes
 from eel_dynamics.ros.diagnostics import Report
-from eel_dynamics.ros.neighbours import Identity, Neighbours
+from eel_dynamics.ros.other_nodes import Identity, OtherNodes
 from fake_log import Log
 
 FIRST, SECOND = Identity("2026-01-01T00:00:00", "a", "7"), Identity("2026-01-01T00:00:01", "a", "8")
@@ -17,10 +17,10 @@ class Network:
 
     def __init__(self, monkeypatch, identities, topics):
         self.time, self.strangers, self.makes_clock = 0.0, [], True
-        monkeypatch.setattr(neighbours.time, "monotonic", lambda: self.time)
+        monkeypatch.setattr(other_nodes.time, "monotonic", lambda: self.time)
         self.logs = [Log() for _ in identities]
         self.nodes = [
-            Neighbours(self.node(f"/{k}"), topic, each, Report(log, lambda: self.time))
+            OtherNodes(self.node(f"/{k}"), topic, each, Report(log, lambda: self.time))
             for k, (each, log, topic) in enumerate(zip(identities, self.logs, topics, strict=True))
         ]
         self.present = range(len(identities))

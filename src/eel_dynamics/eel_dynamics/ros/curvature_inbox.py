@@ -21,7 +21,7 @@ TOPIC = "curvature_samples"
 BATCH = 1000  # samples taken from one subscription at once
 
 
-class SampleInbox:
+class CurvatureInbox:
     """The subscriptions of `node` to samples, and what wakes the run loop.
 
     There is one without loss, and from `look` on a second one, if some publisher is best-effort. That one takes the

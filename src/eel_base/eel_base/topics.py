@@ -1,5 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names and types of the swimmer's topics, as texts: no ROS is imported."""
+"""Names and types of the swimmer's topics, and fields of its ledger, as texts: no ROS is imported.
+
+A new topic has its name here. `SampleMessages` (eel_dynamics/ros/messages.py) fills its message, and `messages_of_run`
+(eel_dynamics/runs/exchange) the same from a run. `READERS` (eel_viz/recording/dispatcher.py) and the method of its name
+in `Loggers` draw it.
+"""
 
 OWN = {  # relative: below the swimmer's namespace
     "head_pose": "geometry_msgs/msg/PoseStamped",
@@ -22,3 +27,8 @@ GLOBAL = {"/clock": "rosgraph_msgs/msg/Clock", DIAGNOSTICS: "diagnostic_msgs/msg
 LATCHED = ("body", "curvature_law", "goal")  # transient local
 SAMPLED = tuple(name for name in OWN if name not in (*LATCHED, "curvature_samples"))  # once a sample
 SWIMMER = "head_pose"  # without publishers of this topic the swimmer has gone
+ENERGY_FIELDS = (  # of an EnergyLedger, in its order
+    *("kinetic_body", "kinetic_fluid", "potential"),
+    *("actuator_power", "wake_power", "nose_power", "drag_power"),
+    "residual",
+)
