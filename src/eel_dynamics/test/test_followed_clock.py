@@ -103,7 +103,7 @@ def test_a_clock_that_stands_is_an_obstacle_with_its_time():
     clock = FollowedClock(0.01, 1.0)
     clock.show(2.0, 0.0)  # long ago
     clock.show(2.0, 1e9)  # it ticks at a time that stands
-    assert clock.obstacle(200) == "" and clock.obstacle(201) == "waiting for /clock, which stands at t = 2 s"
+    assert clock.held_by(200) == "" and clock.held_by(201) == "waiting for /clock, which stands at t = 2 s"
 
 
 @pytest.mark.parametrize("reliability", [ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT])

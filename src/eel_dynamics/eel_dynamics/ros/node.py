@@ -65,9 +65,9 @@ class DynamicsNode(ParameterNode):
         self.parameters = Declaration(self)
         with one_line_warnings(NAME):
             simulation = simulation_from_parameters(self.parameters.values, self.parameters.scene)
-        self._publishers = Publishers(self, simulation, self.parameters, self._report)
+        self._sample_publishers = Publishers(self, simulation, self.parameters, self._report)
         self._inbox = CurvatureInbox(self, self._report)
-        self.run_loop = RunLoop(simulation, self.parameters, self._publishers, self._inbox, self._report)
+        self.run_loop = RunLoop(simulation, self.parameters, self._sample_publishers, self._inbox, self._report)
         self._status = Status(self.run_loop, self._report, self.parameters)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self._root: Any = None  # publisher of /tf_static
@@ -118,11 +118,11 @@ class DynamicsNode(ParameterNode):
         if self._ended is None:
             self._ended = now
             self._publish_diagnostics(final=True)
-        return not self._publishers.all_received([self._diagnostics], now - self._ended)
+        return not self._sample_publishers.all_received([self._diagnostics], now - self._ended)
 
     def close(self) -> None:
         """End the run, if a signal came before its end."""
-        self._publishers.stopped = True
+        self._sample_publishers.stopped = True
         self.run_loop.requests.stop()
         self._thread.join(SIGNAL_TIMEOUT)
         if self._ended is None:
@@ -145,7 +145,7 @@ class DynamicsNode(ParameterNode):
         if holding != self._holding:
             requests.put(self.run_loop.hold, holding, urgent=True)
         if offers != self._offers_clock:
-            requests.put(self._publishers.enable_clock, offers)
+            requests.put(self._sample_publishers.enable_clock, offers)
         self._holding, self._offers_clock = holding, offers
 
     def _publish_root(self) -> None:

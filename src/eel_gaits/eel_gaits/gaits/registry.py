@@ -69,8 +69,8 @@ def register(numbers_class: type[Quantities]) -> Callable[[Callable[..., Any]], 
         def made(*, transition: float = 0.0, **numbers: float) -> Law:
             unknown = [key for key in numbers if key not in own_names]
             if unknown:
-                told = named_instead(unknown[0], own_names)
-                raise ValueError(f"gait {shown(name)} has no number {shown(unknown[0])}{told}")
+                hint = named_instead(unknown[0], own_names)
+                raise ValueError(f"gait {shown(name)} has no number {shown(unknown[0])}{hint}")
             return Law(*terms_of(numbers_class(**numbers)), name=name, transition=transition)
 
         keyword = inspect.Parameter("transition", inspect.Parameter.KEYWORD_ONLY, default=0.0)

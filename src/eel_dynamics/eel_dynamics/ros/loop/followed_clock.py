@@ -62,7 +62,7 @@ class FollowedClock(Pace):
         behind = self.lost(sample)
         return behind if behind > LITTLE else 0.0
 
-    def obstacle(self, sample: int) -> str:
+    def held_by(self, sample: int) -> str:
         """Why `sample` is not due, as text, where that is not only a matter of moments."""
         if self.due(sample) < 0.0:
             return ""

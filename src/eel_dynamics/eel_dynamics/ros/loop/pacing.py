@@ -60,7 +60,7 @@ class Pace:
         self.given_up = given_up + lost - self._lost
         return delay
 
-    def obstacle(self, sample: int) -> str:
+    def held_by(self, sample: int) -> str:
         """Why `sample` is not due, as text, where that is not only a matter of time: never."""
         return ""
 

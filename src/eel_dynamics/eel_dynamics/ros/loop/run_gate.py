@@ -29,7 +29,7 @@ class RunGate:
         self._steps: Answer | None = None
         self._steps_left = 0
 
-    def find(self, simulation_time: float) -> str:
+    def held_by(self, simulation_time: float) -> str:
         """What holds the run, as text, at `simulation_time` [s]; empty if there is none."""
         if self.held:
             return self.held

@@ -94,9 +94,9 @@ class RunLoop:
                 self._execute(self.laws.add_samples, samples, self.pace.period)
             for request in self.requests.take():
                 request.answer.give(*self._execute(request.action, *request.arguments))
-            obstacle = self.gate.find(self.time) or self.pace.obstacle(self.samples_published)
-            if obstacle:
-                self._idle(obstacle)
+            reason = self.gate.held_by(self.time) or self.pace.held_by(self.samples_published)
+            if reason:
+                self._idle(reason)
             elif self._wait_for_turn():
                 self._next_sample()
         self.output.end()
@@ -118,12 +118,12 @@ class RunLoop:
             self._report.event("request", f"a request is refused: {failure}", ERROR)
         return self.time, failure
 
-    def _idle(self, obstacle: str) -> None:
-        """Wait for one tick while there is an obstacle; /clock continues."""
+    def _idle(self, reason: str) -> None:
+        """Wait for one tick while something holds the run; /clock continues."""
         self._sample_begun = None
-        if obstacle != self.standing:
-            self.standing = obstacle
-            self._report.info(obstacle)
+        if reason != self.standing:
+            self.standing = reason
+            self._report.info(reason)
         now = time.monotonic()
         self.output.clock.repeat(self._stamp, now)
         if self.samples_published == 0 and self.output.start_is_due(now) and self.gate.start_may_be_shown(now):
