@@ -129,6 +129,24 @@ def test_what_a_run_has_not_computed_is_not_shown(tmp_path):
     assert (tmp_path / "bare.rrd").stat().st_size > 1000
 
 
+def test_the_water_s_force_is_shown_unless_it_is_left_out(tmp_path):
+    from eel_viz.recording.reading import read
+
+    from eel_viz import entities
+
+    run = simulate(straight(), duration=0.2)
+    whole = simulate(straight(), duration=0.2, load=True)
+    assert run.fluid_force is None
+    run.to_rerun(tmp_path / "run.rrd")
+    whole.to_rerun(tmp_path / "whole.rrd")
+    for name in ("force_2", "tail_force", "wake_momentum_rate"):
+        shown, given = (read(tmp_path / file, entities.LOAD_NUMBERS)[name] for file in ("run.rrd", "whole.rrd"))
+        np.testing.assert_array_equal(shown, given)
+    run.to_rerun(tmp_path / "bare.rrd", load=False)
+    with pytest.raises(ValueError, match="has nothing at"):
+        read(tmp_path / "bare.rrd", entities.LOAD_NUMBERS)
+
+
 def test_simulate_writes_it_too(tmp_path, capsys):
     from eel_viz.recording.reading import read
 

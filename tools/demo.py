@@ -18,6 +18,7 @@ from typing import Any
 from eel_dynamics.runs.exchange.eel_viz_functions import messages_of_bag
 from eel_ros.testing.node_process import NodeProcess
 from eel_ros.testing.ros_domain import reserve_domain
+from plain_picture import draw_plain
 from run_summary import describe, summarise
 
 OUT = Path("out")
@@ -136,7 +137,7 @@ def library_speed() -> float:
 
 
 def draw() -> None:
-    """The picture, where the viewer can draw without a display."""
+    """The picture: by the viewer, where it can draw without a display, else a plain one."""
     command = ["eel", "render", str(RECORDING), str(PICTURE)]
     try:
         drawn = subprocess.run(command, capture_output=True, text=True, timeout=60)
@@ -146,7 +147,9 @@ def draw() -> None:
     if drawn is not None and drawn.returncode == 0 and PICTURE.exists():
         say(f"picture: {PICTURE}")
     else:
-        say(reason[0].removeprefix("eel render: ") if reason else "no picture: the viewer gave none")
+        draw_plain(RECORDING, PICTURE)
+        why = reason[0].removeprefix("eel render: ") if reason else "the viewer gave none"
+        say(f"plain picture by matplotlib: {PICTURE}; {why.replace('no picture', 'no better one')}")
 
 
 def say(text: str) -> None:

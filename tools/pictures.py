@@ -37,7 +37,7 @@ MOMENT = 8.3  # s: a strong bend
 SIZE, BAR = (1280, 720), 36  # pixels: window, and the empty bar at its top
 COLOURS = 256
 FILM, FILM_SIZE, FPS, QUALITY = "falling.webp", (800, 450), 10.0, 36
-FILMED = (0.4, 8.3)  # s: start and end
+FILMED = (4.0, 9.9)  # s: start and end
 SQUARE, BACKGROUND = 0.1, "#303030"  # m; RViz's own colour
 SIDES, PARTS, HEAD = 8, 8, 0.23  # of an arrow: sides, parts of its shaft, RViz's length of its head by its own
 

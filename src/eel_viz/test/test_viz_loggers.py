@@ -467,8 +467,8 @@ def test_the_recording_carries_its_blueprint(made):
         arrangement("best")
 
 
-@pytest.mark.parametrize(("end", "blueprints"), [(0.0, 1), (9.0, 2)])
-def test_a_recording_gets_another_blueprint_where_its_end_is_known(tmp_path, end, blueprints):
+@pytest.mark.parametrize(("end", "blueprints"), [(0.0, 1), (4.0, 1), (9.0, 2)])
+def test_a_recording_gets_another_blueprint_for_its_end_unless_it_is_short(tmp_path, end, blueprints):
     from eel_viz.recording.recording_file import FileDestination
     from eel_viz.settings import Settings
     from rerun.chunk import RrdReader

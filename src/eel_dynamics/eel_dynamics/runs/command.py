@@ -74,7 +74,7 @@ def _swim(options) -> int:
             accuracy=options.accuracy,
             sample_period=options.sample_period,
             stations=options.stations,
-            load=options.load,
+            load=options.load or Path(options.out or "").suffix == ".rrd",
             estimate=not options.bare,
             most_evaluations=options.most_evaluations,
             progress=lambda reached, left: progress(float(f"{reached:.3g}"), end),

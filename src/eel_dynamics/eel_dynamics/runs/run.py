@@ -263,14 +263,15 @@ class Run:
         """
         return frame_of(self)
 
-    def to_rerun(self, target: Any, compare: "Run | None" = None, **settings: Any) -> None:
+    def to_rerun(self, target: Any, compare: "Run | None" = None, *, load: bool = True, **settings: Any) -> None:
         """Record the run to Rerun, as the visualiser shows a swimmer.
 
-        target: a file (.rrd) or a `rerun.RecordingStream`. compare: another run, drawn over this one. settings: of the
-        visualiser, such as blueprint="torques", skin_rate=50. Loads are shown if the run was simulated with load=True.
-        `ImportError` without the package eel_viz and rerun-sdk.
+        target: a file (.rrd) or a `rerun.RecordingStream`. compare: another run, drawn over this one. load: show the
+        water's force and the wake; a run without them is simulated again for them. settings: of the visualiser, such
+        as blueprint="torques", skin_rate=50. `ImportError` without the package eel_viz and rerun-sdk.
         """
         record, runs = recorder_of_runs(), [self] if compare is None else [self, compare]
+        runs = [run.with_load() if load else run for run in runs]
         names = [f"{run.law.name} {run.accuracy.name}" for run in runs]
         record(target, [messages_of_run(run) for run in runs], names, **settings)
 
@@ -278,6 +279,21 @@ class Run:
     def refined(self) -> "Run":
         """The same run with a tenth of the error, simulated on first access. `ValueError` if it begins after t = 0."""
         return _simulated_again(self, self.law, self.accuracy.tightened(0.1))
+
+    def with_load(self) -> "Run":
+        """The run with the water's load along the body, for which it is simulated again if need be.
+
+        The run itself where that cannot be: it was recorded elsewhere, is another swim when simulated again, begins
+        after t = 0, or has no internal wrench.
+        """
+        if self.fluid_force is not None or not self.steps or not self.scene.internal_wrench:
+            return self
+        try:
+            again = _simulated_again(self, self.law, self.accuracy.as_it_is(), load=True)
+        except (SimulationStopped, ValueError):
+            return self
+        alike = again.position.shape == self.position.shape and np.allclose(again.position, self.position, atol=1e-9)
+        return replace(self, **{name: getattr(again, name) for name in LOAD}) if alike else self
 
     def finely_sampled(self) -> "Run":
         """The same run, simulated anew with `FINER` samples in each sample period, for peaks (`analysis.peaks`).
@@ -384,9 +400,14 @@ def simulate(
 
 
 def _simulated_again(
-    run: Run, law: Law | SampledLaw, accuracy: Accuracy, most_evaluations: float = MOST_EVALUATIONS, finer: int = 1
+    run: Run,
+    law: Law | SampledLaw,
+    accuracy: Accuracy,
+    most_evaluations: float = MOST_EVALUATIONS,
+    finer: int = 1,
+    load: bool = False,
 ) -> Run:
-    """The swim of `run` with another law or accuracy, or `finer` samples; its error is not estimated.
+    """The swim of `run` with another law or accuracy, `finer` samples, or its `load`; its error is not estimated.
 
     `ValueError` if it began later.
     """
@@ -404,7 +425,7 @@ def _simulated_again(
         position=run.position[0],
         orientation=run.orientation[0] / np.linalg.norm(run.orientation[0]),
         twist=run.twist[0],
-        load=run.fluid_force is not None,
+        load=load or run.fluid_force is not None,
         estimate=False,
         most_evaluations=most_evaluations,
         progress=lambda reached, left: None,

@@ -16,6 +16,7 @@ from eel_viz.views.blueprint import arrangement
 from eel_viz.views.views import Look
 
 APPLICATION = "eel"  # Rerun's application id
+SHORT = 5.0  # s: recordings that end before have not settled; a second blueprint would take 0.4 MB of the file
 CLOSE_TIMEOUT = 3.0  # s for the last flush of a stream
 
 LogFunction = Callable[[str], None]
@@ -67,8 +68,8 @@ class Destination(ABC):
         return arrangement(chosen.blueprint, live=self.live, comparison=bool(chosen.compare), look=look)
 
     def fit(self, stream: rr.RecordingStream, end: float) -> None:
-        """Fit the axes of a recording that ends at `end` [s], and what is repeated of it."""
-        if not self.live and end > 0.0:
+        """Fit the axes of a recording that ends at `end` [s], and what is repeated of it, unless it is short."""
+        if not self.live and end >= SHORT:
             stream.send_blueprint(self.blueprint(end), make_active=False, make_default=True)
 
     def close_recording(self, stream: rr.RecordingStream) -> None:

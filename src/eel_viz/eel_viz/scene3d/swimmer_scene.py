@@ -89,7 +89,7 @@ class SwimmerScene:
         """Colour the flanks by `torque` (M,) [N m] at `x` (M,) [m]; the colours are deepest at `limit`."""
         if limit != self._torque_limit:
             self._torque_limit = limit
-            legend.log_bar(self._stream, stamp, limit=limit, unit="N m", name="torque C3")
+            legend.log_bar(self._stream, stamp, limit=limit, unit="N m", name="C3")
         if self._skin is not None:
             shades = self._skin.coloured(x, torque, limit)
             self._stream.add_row(stamp, entities.SKIN, rr.Mesh3D, vertex_colors=shades)
