@@ -6,7 +6,6 @@ import pytest
 from cases import falling_law, random_law
 from draws import few, scenes, swimmers, twists
 from hypothesis import given
-from hypothesis import strategies as st
 from library_state import Reference, Scene, distance, library_body, reference_scene, rotation
 from library_state import simulate_in_paper_axes as simulate
 from scipy.interpolate import make_interp_spline
@@ -52,37 +51,48 @@ def test_residual_of_any_swimmer(measured, swimmer, twist, settings):
     measured("residual, any swimmer, accuracy fine (by all work turned over)", error, 1e-5)
 
 
-@few(5)
-@given(swimmers(), twists(), st.one_of(scenes(nose=True), scenes(drag=True, nose=True)))
-def test_works_term_by_term(measured, swimmer, twist, settings):
-    """Each work of the ledger against the reference's own power at the samples, integrated by splines of order 8.
+@few(3)
+@given(swimmers(), twists(), scenes(nose=True), scenes(drag=True, nose=True))
+def test_works_term_by_term(measured, swimmer, twist, without_drag, with_drag):
+    """Each work of the ledger is the integral of its published power, and this is the reference's own power.
 
-    The reference takes the head's motion from the run and nothing else; its torque comes from the strong form. Splines
-    through samples 5 ms apart of light bodies that roll at up to 10 rad/s: 1e-8 or better; kinks of V|V| between the
-    nodes of both, where there is drag.
+    The reference takes the head's motion from the run and nothing else; its torque comes from the strong form. Light
+    bodies roll at up to 33 rad/s: splines of order 8 integrate a power through samples 1 ms apart to 1e-9 or better,
+    and through samples 5 ms apart to 1e-5 only. Of 300 other draws the worst power is off by 2.4e-7 without drag, where
+    a wave is short; with drag by 2.3e-3, for kinks of V|V| between the reference's nodes. Kinks in time smooth a work.
     """
-    body, law = swimmer
-    scene, every = Scene(**settings), 0.005
+    for each in (without_drag, with_drag):
+        check_works(measured, swimmer, twist, each)
+
+
+def check_works(measured, swimmer, twist, settings):
+    (body, law), scene = swimmer, Scene(**settings)
     run = simulate(
-        law, 0.3, body=library_body(body), scene=scene, accuracy="reference", sample_period=every, twist=twist
+        law, 0.3, body=library_body(body), scene=scene, accuracy="reference", sample_period=0.001, twist=twist
     )
     reference, powers = Reference(body, reference_scene(**settings)), []
-    for time, q, given_twist, rate in zip(run.time, run.orientation, run.twist, run.head_acceleration, strict=True):
+    seldom = slice(None, None, 10)
+    motion = run.time, run.orientation, run.twist, run.head_acceleration
+    for time, q, given_twist, rate in zip(*(each[seldom] for each in motion), strict=True):
         relative, relative_rate = given_twist.copy(), rate.copy()
         relative[3:] -= rotation(q).T @ np.asarray(settings["current"])
         relative_rate[3:] -= np.cross(relative[:3], relative[3:])
         fields = reference.fields(*law.curvature(time, reference.space.x), relative, relative_rate)
         powers.append([getattr(fields, term) for term in TERMS])
-    wanted = make_interp_spline(run.time, np.array(powers), k=7).antiderivative()(run.time)
-    for column, (term, work) in enumerate(zip(TERMS, WORKS, strict=True)):
-        of_power = np.abs(np.array(powers)[:, column]).max()
-        error = np.max(np.abs(getattr(run.energy, work) - wanted[:, column])) / (of_power + 1e-6 * turnover(run))
+    for term, work, independent in zip(TERMS, WORKS, np.transpose(powers), strict=True):
+        power, done = getattr(run.energy, term), getattr(run.energy, work)
         if term == "drag_power" and not settings["resistive"]:
-            assert np.all(getattr(run.energy, work) == 0.0)
+            assert np.all(done == 0.0)
             continue
-        kind, bound = ("with drag", 1e-4) if settings["resistive"] else ("without drag", 1e-7)
-        name = "actuators' work" if term == "actuator_power" else work.replace("_", "'s ")
-        measured(f"{name} against the integral of an independent power, {kind}", error, bound)
+        size = np.abs(power).max() + 1e-6 * turnover(run)
+        kind = "with drag" if settings["resistive"] else "without drag"
+        name = "actuators'" if term == "actuator_power" else work.replace("_work", "'s")
+        wrong = np.max(np.abs(power[seldom] - independent)) / size
+        measured(f"{name} power against an independent one, {kind}", wrong, 5e-3 if settings["resistive"] else 1e-6)
+        wanted = make_interp_spline(run.time, power, k=7).antiderivative()(run.time)
+        wrong = np.max(np.abs(done - wanted)) / size
+        bound = 1e-5 if settings["resistive"] else 1e-7
+        measured(f"{name} work against the integral of its power, {kind}", wrong, bound)
 
 
 def test_powers_integrate_to_the_energy_term_by_term(measured):

@@ -16,7 +16,8 @@ from eel_dynamics.simulation.sampled_swimmers import Array
 class KnotAction:
     """Turns actions into the curvature of the body at the ends of control steps.
 
-    An action holds the rate at each knot, first in pitch, then in yaw, from -1 to 1 times `greatest_rate`. Where a
+    An action holds the rate at each knot, first in pitch, then in yaw, from -1 to 1 times `greatest_rate`. Signs are
+    those of section axes: yaw above 0 bends the tail to the right, pitch above 0 down. Where a
     curvature comes near `greatest_bend`, its rate is reduced so that it never exceeds that.
 
     Args:

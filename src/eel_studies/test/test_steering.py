@@ -74,7 +74,7 @@ def test_pitch_holds_roll_and_yaw_holds_the_heading(free):
         assert found.controllability().min() > 1e-3
         assert found.controllability(YAW)[0] < 1e-6 < 0.1 < found.controllability(PITCH)[0]
         assert found.controllability(PITCH)[found.neutral].max() < 1e-6
-    assert np.abs(free.kick(0)[INPUTS.index("pitch_cos")]) > 0.3 and np.abs(free.kick(0)[:3]).max() < 1e-6
+    assert np.abs(free.kick(0)[INPUTS.index("up_bend_cos")]) > 0.3 and np.abs(free.kick(0)[:3]).max() < 1e-6
 
 
 @pytest.mark.parametrize("height", [0.0, 0.01])
@@ -117,7 +117,7 @@ def test_what_does_not_fit_is_named(given, words):
 
 
 def test_unknown_inputs_are_named(free):
-    with pytest.raises(ValueError, match=r"inputs must be one of yaw, .* got 'roll'"):
+    with pytest.raises(ValueError, match=r"inputs must be one of left_bend, .* got 'roll'"):
         free.controllability(("roll",))
     with pytest.raises(ValueError, match="bend must be > 0 rad/m, got -1"):
         free.feedback(-1.0)

@@ -151,7 +151,8 @@ def _parser() -> Parser:
         "--file",
         metavar="FILE",
         help="a measured motion in place of a gait: .csv or .npz with columns time and x, y (midlines), yaw_1, "
-        "yaw_2 ... (joint angles), or arc_length, yaw (curvature): docs/howto/motions.md",
+        "yaw_2 ... (joint angles), or arc_length, yaw (curvature); yaw > 0 bends the tail to the right, and x, y are "
+        "seen from above: docs/howto/motions.md",
     )
     parser.add_argument(
         "--midlines",

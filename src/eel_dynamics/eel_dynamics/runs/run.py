@@ -52,7 +52,7 @@ MOST_UNSMOOTHED = 5_000.0  # evaluations per simulated second of a motion withou
 @documented_arrays("run")
 @dataclass(frozen=True, eq=False, repr=False)
 class Run:
-    """A run: T samples at M stations, in SI units. The body lies along +x from the head and swims towards -x.
+    """A run: T samples at M stations, in SI units. At rest the body lies along -x from the head; it swims towards +x.
 
     Two runs are equal where all their fields are, to the last bit. `energy` has one (T,) array per field; it is None
     without a ledger. `torque`, `force` and the closures are None without the internal wrench. `fluid_force` to

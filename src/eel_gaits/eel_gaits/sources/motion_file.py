@@ -7,6 +7,8 @@ The columns tell what a file holds; all have `time` [s]:
     arc_length [m], yaw, perhaps pitch      measured curvature [rad/m], likewise
     yaw_1, yaw_2 ..., pitch_1 ...           joint angles [rad], a row for each instant
 
+yaw > 0 bends the tail to the right, pitch > 0 down, as in messages. x, y, z are right-handed axes of the laboratory
+with z up; which way the swimmer heads in them does not matter.
 An .npz holds the same columns, or arrays (N, n) for N instants and n points; or `time`, `x` and `values` of a
 `SampledLaw`, as `save_law` writes them.
 """

@@ -250,6 +250,6 @@ def _is_turbulent(run: Run) -> np.ndarray:
     from scipy.interpolate import CubicSpline
 
     velocity = CubicSpline(run.time, run.backbone, axis=0)(run.time, 1) - run.scene.current
-    along = world_from_body(run.section_orientation)[..., 0]  # axis 1 of each section
+    along = world_from_body(run.section_orientation)[..., 0]  # forward, the opposite of axis 1 of each section
     speed = np.abs(np.sum(velocity * along, axis=-1))
     return np.asarray(speed * run.x > CRITICAL_REYNOLDS * run.scene.viscosity)

@@ -88,7 +88,8 @@ def _parser() -> Parser:
     parser = Parser(
         prog=NAME, description="Simulate a file of midlines, and compare the computed ones with those measured."
     )
-    parser.add_argument("file", help="a .csv or .npz file with the columns time, x, y: docs/howto/motions.md")
+    about = "a .csv or .npz file with the columns time, x, y (right-handed, z up): docs/howto/motions.md"
+    parser.add_argument("file", help=about)
     add_options(parser, "--body", "--scale")
     parser.add_argument("-o", "--out", metavar="FILE", help="a picture: .png, .svg or .pdf")
     return parser

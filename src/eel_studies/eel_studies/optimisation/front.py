@@ -147,7 +147,7 @@ def _draw_parameters(axes: Axes, front: Front) -> None:
 
 
 def _draw_gait(axes: Axes, run: Run, speed: float) -> None:
-    """Midlines over the last period, in the axes of the way: ahead to the left."""
+    """Midlines over the last period from above, in the axes of the way: ahead to the right."""
     analysis = run.analysis()
     window = analysis.window
     period = window.period
@@ -157,7 +157,7 @@ def _draw_gait(axes: Axes, run: Run, speed: float) -> None:
     for phase, time in enumerate(np.linspace(window.end - period, window.end, PHASES)):
         middle = start + (time - window.end + period) / period * (end - start)
         points = (backbone(time) - middle)[:, :2]
-        along, across = -points @ ahead, points @ np.array((-ahead[1], ahead[0]))
+        along, across = points @ ahead, points @ np.array((-ahead[1], ahead[0]))
         axes.plot(along, across, color=BLUE, linewidth=0.9, alpha=0.25 + 0.75 * phase / (PHASES - 1))
     axes.set_aspect("equal")
     strouhal = analysis.strouhal

@@ -20,6 +20,7 @@ from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.scene import Scene
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
+from eel_gaits.laws.steered_law import BENDS
 from eel_gaits.laws.term import Term
 
 from eel_studies.steering.period_map import Motion, PeriodMap, rotation, turned_by
@@ -27,7 +28,8 @@ from eel_studies.steering.period_map import Motion, PeriodMap, rotation, turned_
 STATES = ("roll", "pitch", "heading", "roll_rate", "pitch_rate", "yaw_rate", "surge", "sway", "heave")
 OUT_OF_PLANE = ("roll", "pitch", "roll_rate", "pitch_rate", "heave")
 PHASES = {"": (0.0, np.pi / 2), "_cos": (1.0, np.pi / 2), "_sin": (1.0, np.pi)}  # whether it beats, and its phase
-INPUTS = tuple(axis + beat for axis in ("yaw", "pitch") for beat in PHASES)
+BENT = {bend + beat: (axis, *wave) for bend, axis in BENDS.items() for beat, wave in PHASES.items()}
+INPUTS = tuple(BENT)
 STEP = 1e-5  # rad; of a twist times its scale, of a bend by the body's length
 STEPS, RESOLUTION = 160, 40.0  # of the march in a period, points along the body
 COARSER = 0.7  # times the steps and points of the companion, that tells the error
@@ -40,15 +42,15 @@ class PeriodicLinearisation:
     States: roll, pitch, heading [rad], a turn of the head about the axes of the course: x along the way of the
     period, z up. roll_rate ... heave: the twist (Omega, V) [rad/s, m/s] in the head's axes. Position is left out:
     nothing depends on it. Inputs [rad/m]: bends, uniform along the body, that are added to the gait. They come and go
-    within the period, by the ramp f_r of eq. (64). "yaw" is constant between; "yaw_cos" and "yaw_sin" beat with the
-    gait.
+    within the period, by the ramp f_r of eq. (64). "left_bend" is constant between, positive to the left;
+    "left_bend_cos" and "left_bend_sin" beat with the gait. "up_bend" and its like bend upwards.
     """
 
     law: Law  #: t = 0 is the start of a period after all ramps
     body: Body
     scene: Scene
     period: float  #: s
-    start: Motion  #: of the settled motion, at the start of a period; it swims towards -x
+    start: Motion  #: of the settled motion, at the start of a period; it swims towards +x
     end: Motion
     defect: float  #: rad, and relative to the twist: by how much it does not repeat
     rise: float  #: part of the period, in which a bend comes, and goes again
@@ -228,10 +230,9 @@ def states_after(start: Motion, end: Motion, moved: Motion) -> np.ndarray:
 
 def _bend(name: str, size: float, period: float, rise: float) -> Term:
     """The input `name` of `size` [rad/m], in the first period."""
-    axis, _, beat = name.partition("_")
-    beats, phase = PHASES[f"_{beat}" if beat else ""]
+    axis, beats, phase = BENT[name]
     ramps = Ramp(0.0, rise * period, 1.0), Ramp((1.0 - rise) * period, period, -1.0)
-    return Term(axis=axis, amplitude=(size,), period=beats * period, phase=phase, envelope=ramps)
+    return Term(axis=axis, amplitude=(-size,), period=beats * period, phase=phase, envelope=ramps)
 
 
 def _plus(law: Law, *terms: Term) -> Law:

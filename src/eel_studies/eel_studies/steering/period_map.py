@@ -96,7 +96,7 @@ class PeriodMap:
     def settled(self) -> tuple[Motion, Motion, float]:
         """Start and end of a period of the settled motion, and how far it is from repeating (as `CLOSE`).
 
-        It swims towards -x in the world, as the straight body does. `ValueError` where none is found.
+        It swims towards +x in the world, as the straight body does. `ValueError` where none is found.
         """
         start, slope, before = self._guess(), None, np.inf
         for _ in range(MOST_SEARCHES):
