@@ -116,6 +116,7 @@ def test_a_run_in_the_paper_s_axes_has_the_same_figures():
     paper = run.in_axes("paper")
     with pytest.warns(Unsettled):
         assert paper.mean_speed == pytest.approx(run.mean_speed)
+        assert paper.analysis().friction_power == run.analysis().friction_power
     assert paper.warnings == run.warnings and paper.refined == run.refined.in_axes("paper")
     assert paper.greatest_torque() == run.greatest_torque()
     assert paper.actuators(4).table() == run.actuators(4).table()

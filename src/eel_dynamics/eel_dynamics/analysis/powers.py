@@ -6,6 +6,7 @@ from eel_base.attitude import world_from_body
 
 import eel_core
 from eel_dynamics.curvature.law_follower import LawFollower
+from eel_dynamics.model.axes import REP103
 from eel_dynamics.simulation.simulation import Simulation
 
 
@@ -34,6 +35,7 @@ def drag_powers(run) -> np.ndarray:
     axis 1. Positive is into the body, so none is positive. They are evaluated from the law and the head's motion, at
     the nodes of a simulation with the run's settings; their sum is the ledger's `drag_power`.
     """
+    run = run.in_axes(REP103)
     simulation = Simulation(body=run.body, scene=run.scene, accuracy=run.accuracy.as_it_is(), stations=2, law=run.law)
     follower, now = LawFollower(simulation.discretisation.tabulation, law=run.law), 0.0
     instant, powers = eel_core.Instant(simulation.discretisation.swimmer), np.zeros((len(run.time), 4))
