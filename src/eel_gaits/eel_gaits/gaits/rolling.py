@@ -41,7 +41,10 @@ class RollOver(Periodic):
 
 @register(Roll)
 def rolling(numbers: Roll) -> tuple[Term, ...]:
-    """A body bent into an arc whose direction turns about the backbone."""
+    """A body bent into an arc whose direction turns about the backbone.
+
+    With amplitudes of one sign the left side goes down, with opposite signs the right side.
+    """
     return _pair(numbers, wavelength=0.0)
 
 
@@ -60,7 +63,10 @@ def roll_over(numbers: RollOver) -> tuple[Term, ...]:
 
 @register(Helix)
 def helix(numbers: Helix) -> tuple[Term, ...]:
-    """A corkscrew: equal waves in pitch and yaw, a quarter of a period apart."""
+    """A corkscrew: equal waves in pitch and yaw, a quarter of a period apart.
+
+    With amplitudes of one sign the left side goes down, with opposite signs the right side.
+    """
     return _pair(numbers, wavelength=numbers.wavelength)
 
 
