@@ -82,7 +82,8 @@ class Task(gymnasium.Env[Any, Any]):
         self.action = self.default_action() if action is None else action
         bounds = [bound for _, _, bound in (*self.observed, *self.action.names_of_state)]
         self._bounds = np.array(bounds, dtype=np.float32)
-        self.observation_space = gymnasium.spaces.Box(-self._bounds, self._bounds, dtype=np.float32)
+        self._low = -self._bounds
+        self.observation_space = gymnasium.spaces.Box(self._low, self._bounds, dtype=np.float32)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (self.action.size,), np.float32)
         self.shape = shape  #: () of one swimmer, (N,)
         self.head: Any = None  #: a HeadMotion from the first reset on
@@ -127,7 +128,7 @@ class Task(gymnasium.Env[Any, Any]):
         seen = np.empty((len(self._bounds), *self.shape), dtype=np.float32)
         for row, value in enumerate((*self.observe(), *self.action.state)):
             seen[row] = value
-        return np.minimum(np.maximum(seen.T, -self._bounds), self._bounds)
+        return np.minimum(np.maximum(seen.T, self._low), self._bounds)
 
     def checked_action(self, action: Any) -> Array:
         """The action of each swimmer, cut to the bounds. `InvalidAction` for one that does not fit."""

@@ -168,7 +168,8 @@ def test_an_environment_swims_as_a_simulation_with_the_same_samples_to_the_bit()
     env.reset(seed=3)
     (start,) = env.starts
     twist, orientation = (0.0, 0.0, 0.0, start.speed, 0.0, 0.0), level_orientation(start.heading)
-    simulation = Simulation(scene=env.scene, stations=2, orientation=orientation, twist=twist)
+    settings = {"accuracy": env.swimmers.accuracy, "stations": 2}
+    simulation = Simulation(scene=env.scene, orientation=orientation, twist=twist, **settings)
     other = LawAction(straight(), {"left_bend": (-0.5, 0.5)})
     rows, trim = other.begin(start.own_time), np.zeros((6, 21))
     trim[3] = start.left_trim

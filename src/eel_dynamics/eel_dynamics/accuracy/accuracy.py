@@ -33,6 +33,10 @@ COARSEST, FINEST = 0.1, 1e-10
 # Errors of steps that add up in a swim: of one that measures its error, and is made finer where that is too great; and
 # of motions that cannot be, such as a node's, with room for sensitive ones.
 STEPS_ERRORS, SAFE_STEPS_ERRORS = 400.0, 1000.0
+# The same at a target of 1e-4 where the third derivative of the curvature jumps at each control step. The pair takes
+# one or two steps between two jumps, and more with the fifth root of the target. Adams' method, whose steps remember
+# those before, takes 10 to 20.
+CONTROL_STEPS_ERRORS = 300.0
 POINTS_PER_DECADE = 8.0  # per body length: one block of nodes, which processors take at once
 COARSE_POINTS = 7.0, -3.0  # per decade, and at a target of one, where these are fewer: for runs that are made finer
 # The pair's output between steps is of order 4 and Adams' is a cubic: below this target its torque needs shorter steps.
@@ -160,6 +164,17 @@ class Accuracy:
         steps = STEPS_ERRORS if self.refinable else SAFE_STEPS_ERRORS
         tolerance = max(FINEST_TOLERANCE, self.target / steps)
         return replace(self, resolution=resolution, tolerance=tolerance, method=method, order=5)
+
+    def for_control_steps(self) -> "Accuracy":
+        """These settings in a scene, for a curvature that each of many short control steps has anew: without a target.
+
+        Settings that were given one by one stay the same.
+        """
+        if self.target is None or self.fixed is not None:
+            return self.as_it_is()
+        steps = CONTROL_STEPS_ERRORS * (1e-4 / self.target) ** 0.2
+        tolerance = max(FINEST_TOLERANCE, self.target / steps)
+        return replace(self.as_it_is(), tolerance=tolerance, method="dormand_prince", order=5)
 
     def as_it_is(self) -> "Accuracy":
         """The same settings without a target. No scene and no motion changes them."""

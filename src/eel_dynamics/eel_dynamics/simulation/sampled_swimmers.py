@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Many swimmers of one body in one scene, each driven by a controller's samples, marched in one call."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,7 +28,8 @@ Array = NDArray[np.float64]
 
 
 class SampledSwimmers:
-    """N swimmers. Each swims as a `Simulation` with the same samples, to the last bit, for any number of threads.
+    """N swimmers. Each swims as a `Simulation` with the same samples and with the settings `accuracy`, to the last bit,
+    for any number of threads.
 
     A sample is the curvature at the points `points` at the end of a control step: rows (6, n), pitch, its rate and its
     acceleration, then yaw. Those of `advance` are not checked, see `check`.
@@ -39,6 +42,7 @@ class SampledSwimmers:
         threads: how many march.
 
     Attributes:
+        accuracy: the settings in force, see `Accuracy.for_control_steps`.
         heads: (13, N) position [m], orientation x y z w, angular velocity [rad/s] and velocity [m/s] of each, as of
             `Simulation.head`.
     """
@@ -55,8 +59,10 @@ class SampledSwimmers:
         stations: int = 51,
         threads: int = 1,
     ):
-        setup = self._setup = Simulation(body, scene, accuracy, stations).setup
-        self.body, self.scene, self.x, self.accuracy = setup.body, setup.scene, setup.x, setup.settings
+        setup = Simulation(body, scene, accuracy, stations).setup
+        self.accuracy = setup.settings.for_control_steps()
+        setup = self._setup = replace(setup, accuracy=self.accuracy)
+        self.body, self.scene, self.x = setup.body, setup.scene, setup.x
         self._points, self._waves = points, waves
         sample = self.check(np.zeros((6, len(points))))
         settings = GridSettings.of(self.accuracy, ShapeNeeds(sample.waves))
@@ -108,7 +114,7 @@ class SampledSwimmers:
         stopped: dict[int, SimulationStopped] = {}
         while True:
             self._marches.advance(times, rows, status, self.heads)
-            if not np.any(status > MARCHED):
+            if not (status > MARCHED).any():
                 return stopped
             for index in np.flatnonzero((status > MARCHED) & (status != UNFINISHED)).tolist():
                 stopped[index] = self._stopped(index, int(status[index]))

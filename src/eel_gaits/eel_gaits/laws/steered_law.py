@@ -98,31 +98,34 @@ class SteeredLaw:
     def _curvature(self) -> np.ndarray:
         size, speed = self.values["amplitude"], self.values["tempo"]
         swimmers = np.shape(self.own_time)
-        factors = np.zeros((*swimmers, 2, 3, len(self._rows)))
+        factors = np.zeros((2, 3, len(self._rows), *swimmers))
         for k, (frequency, axis) in enumerate(self._waves):
-            s, c = (function(frequency * self.own_time) for function in (np.sin, np.cos))
+            s, c = np.sin(frequency * self.own_time), np.cos(frequency * self.own_time)
             if not swimmers:
                 s, c = float(s), float(c)
-            _put(factors[..., axis, :, :], 2 * k, _product(size, c, -frequency * s, frequency, speed))
-            _put(factors[..., axis, :, :], 2 * k + 1, _product(size, -s, -frequency * c, frequency, speed))
+            _add(factors, axis, 2 * k, _product(size, c, -frequency * s, frequency, speed))
+            _add(factors, axis, 2 * k + 1, _product(size, -s, -frequency * c, frequency, speed))
             if frequency and axis == LAW_ROW["yaw"]:
                 for name, (now, later) in ROLLING.items():
                     number = self.values[name]
                     if number is not self._rest[name]:
                         f, g = now * c + later * s, later * c - now * s
-                        parts = factors[..., LAW_ROW["pitch"], :, 2 * k : 2 * k + 2]
                         for row, (value, slope) in enumerate(((f, frequency * g), (g, -frequency * f))):
-                            _put(parts, row, _product(number, value, slope, frequency, speed), parts[..., row])
+                            of_wave = _product(number, value, slope, frequency, speed)
+                            _add(factors, LAW_ROW["pitch"], 2 * k + row, of_wave)
         for name, bent in BENDS.items():
             if self.values[name] is not self._rest[name]:
-                _put(factors[..., LAW_ROW[bent], :, :], -1, tuple(-value for value in self.values[name]))
-        return np.asarray(factors.reshape(*swimmers, 6, -1) @ self._rows)
+                value, rate, acceleration = self.values[name]
+                _add(factors, LAW_ROW[bent], -1, (-value, -rate, -acceleration))
+        by_swimmer = np.ascontiguousarray(np.moveaxis(factors, -1, 0)) if swimmers else factors
+        return np.asarray(by_swimmer.reshape(*swimmers, 6, -1) @ self._rows)
 
 
-def _put(factors: np.ndarray, row: int, jet: Jet, more: np.ndarray | None = None) -> None:
-    """Put value, rate and acceleration of a row into the `factors` (..., 3, rows), with `more` (..., 3) added."""
-    for derivative, value in enumerate(jet):
-        factors[..., derivative, row] = value if more is None else value + more[..., derivative]
+def _add(factors: np.ndarray, axis: int, row: int, jet: Jet) -> None:
+    """Add value, rate and acceleration to a row of the `factors` (2, 3, rows, ...)."""
+    factors[axis, 0, row] += jet[0]
+    factors[axis, 1, row] += jet[1]
+    factors[axis, 2, row] += jet[2]
 
 
 def _product(number: Jet, f: Any, f1: Any, frequency: float, speed: Jet) -> tuple[Any, Any, Any]:
