@@ -3,6 +3,7 @@
 
 import math
 from dataclasses import replace
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -14,6 +15,7 @@ WIDEST_PANEL = 24  # points; a longer panel is cut into equal parts
 CLOSEST = 1e-3  # lengths between a kink of the body and a knot of a law that still gets a panel
 
 
+@lru_cache(maxsize=256)
 def panels_of(body, resolution: float, knots: tuple[float, ...] = (), wrench: bool = True) -> tuple[Panel, ...]:
     """Panels between the kinks of `body` and the `knots` [m] of a law's splines.
 
