@@ -4,6 +4,9 @@
 The companion has another grid, a looser tolerance and longer longest steps, and so some ten times the error of the run.
 Their distance is thus an estimate of the run's error that lies on the safe side. It is not scaled by an order of
 convergence: observed orders are 2.3 to 4.9. It sees the growth of errors, which no error of a single step does.
+
+The two are compared in runs/companion.py, and those of a node in simulation/error_meter.py. The error of a single step
+is `error_by_tolerance` in eel_core/steppers/step_control.hpp.
 """
 
 from dataclasses import dataclass, replace

@@ -4,7 +4,7 @@
 World and head have REP-103 axes: the eel swims towards +x, y is left, z up. Section quantities (curvature, internal
 wrench, loads) have the paper's section axes: 1 along the body towards the tail, 2 to the right, 3 up. These are -x, -y
 and +z of the section turned as the head. In the paper's world the eel swims towards -x. `eel_core` turns what goes in
-and out.
+and out, by `half_turn` in eel_core/march/axes.hpp.
 """
 
 import numpy as np

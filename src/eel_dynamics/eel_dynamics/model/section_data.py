@@ -9,6 +9,8 @@ Water: J_f1 = rho_f pi/8 (a^2 - b^2)^2, M_f = rho_f pi diag(0, a^2, b^2).
 The printed eq. (37) exchanges the half-axes a and b in M_f. This is corrected here: the added mass of an ellipse that
 moves along one axis is proportional to the square of the other half-axis (Lamb; section 4.3 of the paper). The scene's
 `added_mass="printed"` keeps the printed form.
+
+The drag coefficients of the rows `drag2` to `turbulent` become loads in `resistive_load`, eel_core/drag.hpp.
 """
 
 from functools import lru_cache
