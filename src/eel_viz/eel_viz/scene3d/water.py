@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws the water around a frame of `camera`: a floor and two walls behind the swimmer, with a grid and its scales.
+"""Draws the water around a frame of `camera`: a floor with light on it, two walls behind the swimmer, and scales.
 
-The grid's lines lie at round coordinates of the world. Every second one has a label: x and y along the floor, the depth
-(-z) along an upright edge. The box follows the frame by whole meshes, and takes the mesh that fits the frame's radius.
+The floor's light is a pattern that stands still in the world. It and the walls fade into the water with the distance.
+The floor's lines lie at round coordinates of the world, those of the walls at round depths.
+Every second one has a label: x and y along the floor, the depth (-z) along an upright edge. The
+box follows the frame by whole meshes, and takes the mesh that fits the frame's radius.
 """
 
 from typing import Any
@@ -22,6 +24,11 @@ LAG = 1.5  # meshes: how far the centre moves before the box follows
 LABEL_SIZE = (0.15, 0.085)  # half of a label with the swimmer's thickness, as tangents in the picture
 APART = (0.20, 0.065)  # labels nearer than this would overlap, as tangents in the picture of a small view
 LABELLED = (1.3 * camera.EDGE, 0.93 * camera.EDGE)  # the part of the picture that has labels, as tangents
+TILES = 21  # vertices of the floor along each side
+FACE = np.stack(np.meshgrid(*2 * [np.linspace(0.0, 1.0, TILES)], indexing="ij"), axis=-1).reshape(
+    -1, 2
+)  # along, across
+EDGE = np.flatnonzero(FACE[:, 1] % 1.0 == 0.0)  # of a wall: its lower and upper edge alone
 MARK = 1.5  # pixels: the dot below a label
 GRID, LABELS, WALLS = "grid", "labels", "walls"
 
@@ -38,6 +45,8 @@ class WaterBox:
         self._box: tuple[tuple[float, ...], ...] | None = None
         self._all_labels: Labels = {}  # of the box
         self._labels: Labels = {}  # those that are drawn
+        triangles = [_tiles(TILES, TILES), *(TILES**2 + k * len(EDGE) + _tiles(TILES, 2) for k in range(2))]
+        stream.log_static(f"{root}/{WALLS}", rr.Mesh3D.from_fields(triangle_indices=np.concatenate(triangles)))
         stream.log_static(f"{root}/{GRID}", rr.LineStrips3D.from_fields(radii=rr.Radius.ui_points(0.5)))
 
     @property
@@ -71,17 +80,14 @@ class WaterBox:
         self._anchor = np.where(far, np.round(place), self._anchor)
 
     def _draw_grid(self, stamp: int, low: np.ndarray, high: np.ndarray) -> None:
-        strips, shades = [], []
-        for axis, (first, second) in enumerate(((1, 2), (0, 2), (0, 1))):
-            back = {first: high[first], second: low[second] if second == 2 else high[second]}
-            for k in range(int(low[axis]), int(high[axis]) + 1):
-                strip = np.empty((3, 3))  # across one face, round the edge, across the next
-                strip[:, axis] = k
-                strip[0, first], strip[0, second] = low[first], back[second]
-                strip[1, first], strip[1, second] = back[first], back[second]
-                strip[2, first], strip[2, second] = back[first], high[second] if second == 2 else low[second]
-                strips.append(strip)
-                shades.append(colours.WATER_LINE if k % 2 else colours.WATER_LINE_MAJOR)
+        (x0, y0, z0), (x1, y1, _) = low, high
+        numbers = [np.arange(start, end + 1) for start, end in zip(low, high, strict=True)]
+        strips = [[(k, y0, z0), (k, y1, z0)] for k in numbers[0]] + [[(x0, k, z0), (x1, k, z0)] for k in numbers[1]]
+        strips = [[a, b, b] for a, b in strips] + [[(x0, y1, k), (x1, y1, k), (x1, y0, k)] for k in numbers[2][1:]]
+        shades = [
+            colours.WATER_LINE if k % 2 else colours.WATER_LINE_MAJOR
+            for k in np.concatenate([*numbers[:2], numbers[2][1:]])
+        ]
         placed: Any = np.array(strips) * self._mesh  # rerun's types have lists of strips alone
         lines = rr.LineStrips3D.from_fields(strips=placed, colors=shades)
         self._stream.log(stamp, f"{self._root}/{GRID}", lines)
@@ -90,15 +96,19 @@ class WaterBox:
         """Floor, and the walls at the greatest x and y, a little behind the lines."""
         apart = 0.01 * self._mesh
         (x0, y0, z0), (x1, y1, z1) = low - np.array((0, 0, apart)), high + np.array((apart, apart, 0))
-        floor = [(x0, y0, z0), (x1, y0, z0), (x1, y1, z0), (x0, y1, z0)]
-        walls = [(x0, y1, z0), (x1, y1, z0), (x1, y1, z1), (x0, y1, z1)]
-        walls += [(x1, y0, z0), (x1, y1, z0), (x1, y1, z1), (x1, y0, z1)]
-        deep, high_up = colours.WATER_DEEP, colours.WATER_SHALLOW
-        triangles = np.array([(k, k + 1, k + 2, k, k + 2, k + 3) for k in (0, 4, 8)]).reshape(-1, 3)
-        mesh = rr.Mesh3D(
-            vertex_positions=[*floor, *walls],
-            triangle_indices=triangles,
-            vertex_colors=[deep] * 4 + [deep, deep, high_up, high_up] * 2,
+        u, v = np.moveaxis(FACE, -1, 0)
+        floor = np.stack([x0 + u * (x1 - x0), y0 + v * (y1 - y0), np.full_like(u, z0)], axis=1)
+        behind = np.stack([x0 + u * (x1 - x0), np.full_like(u, y1), z0 + v * (z1 - z0)], axis=1)
+        beside = np.stack([np.full_like(u, x1), y0 + u * (y1 - y0), z0 + v * (z1 - z0)], axis=1)
+        away = np.hypot(u - 0.5, v - 0.5)
+        light = np.clip(1.0 - 1.9 * away, 0.0, 1.0) * (0.45 + 0.55 * caustics(floor[:, :2] / self._mesh))
+        above, deep = v * np.sin(np.pi * u), np.array(colours.WATER_DEEP)
+        faces = [(floor, light, colours.WATER_FLOOR)]
+        faces += [(wall[EDGE], above[EDGE], colours.WATER_SHALLOW) for wall in (behind, beside)]
+        shades = [deep + lit[:, None] * (np.array(bright) - deep) for _, lit, bright in faces]
+        mesh = rr.Mesh3D.from_fields(
+            vertex_positions=np.concatenate([places for places, _, _ in faces]).astype(np.float32),
+            vertex_colors=np.concatenate(shades).astype(np.uint8),
         )
         self._stream.log(stamp, f"{self._root}/{WALLS}", mesh)
 
@@ -139,6 +149,21 @@ class WaterBox:
         shades = [colours.WATER_LABEL] * len(self._labels)
         texts = text_labels(rr.Points3D, list(self._labels), list(self._labels.values()), shades, dot=MARK)
         self._stream.log(stamp, f"{self._root}/{LABELS}", texts)
+
+
+def _tiles(along: int, across: int) -> np.ndarray:
+    """Triangles (T, 3) between `along` rows of `across` vertices."""
+    here = (np.arange(along - 1)[:, None] * across + np.arange(across - 1)).reshape(-1, 1)
+    return (here + np.array((0, across, across + 1, 0, across + 1, 1))).reshape(-1, 3)
+
+
+def caustics(places: np.ndarray) -> np.ndarray:
+    """Brightness, 0 to 1, of light that waves have bundled, at `places` (..., 2) [meshes]: bright seams, dark cells."""
+    x, y = np.moveaxis(places, -1, 0)
+    waves = [
+        np.sin(2.1 * (x * np.cos(turn) + y * np.sin(turn)) + 1.7 * turn * turn) for turn in (0.3, 1.5, 2.6, 3.9, 5.2)
+    ]
+    return np.asarray(1.0 - np.abs(np.sum(waves, axis=0)) / 2.0).clip(0.0, 1.0)
 
 
 def fitting_mesh(limit: float) -> float:
