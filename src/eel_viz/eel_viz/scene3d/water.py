@@ -163,7 +163,7 @@ def caustics(places: np.ndarray) -> np.ndarray:
     waves = [
         np.sin(2.1 * (x * np.cos(turn) + y * np.sin(turn)) + 1.7 * turn * turn) for turn in (0.3, 1.5, 2.6, 3.9, 5.2)
     ]
-    return np.asarray(1.0 - np.abs(np.sum(waves, axis=0)) / 2.0).clip(0.0, 1.0)
+    return np.asarray(np.clip(1.0 - np.abs(np.sum(waves, axis=0)) / 2.0, 0.0, 1.0))
 
 
 def fitting_mesh(limit: float) -> float:

@@ -10,6 +10,7 @@ from collections.abc import Callable
 import rerun as rr
 import rerun.blueprint as rrb
 from eel_base.wording import not_one_of
+from rerun.blueprint.components import AbsoluteTimeRange
 
 from eel_viz import entities
 from eel_viz.settings import BLUEPRINTS
@@ -142,7 +143,7 @@ def arrangement(
             timeline=entities.TIMELINE,
             play_state="following" if live else "playing",
             loop_mode="off" if live else "selection" if look.end else "all",
-            time_selection=rr.encodings.AbsoluteTimeRange(*swim) if look.end else None,
+            time_selection=AbsoluteTimeRange(*swim) if look.end else None,
         ),
         auto_layout=False,
         auto_views=False,
