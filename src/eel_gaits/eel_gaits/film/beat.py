@@ -6,10 +6,10 @@ by the segment's length, by
 
     theta(t, s) = sum over h = 0 ... H of (a_h(s) cos 2 pi h t / T + b_h(s) sin 2 pi h t / T),   K = d theta / ds
 
-where the curvatures of a_h and b_h are natural cubic splines through `knots` equally spaced knots. H and the number of
-knots are those that predict a beat best from the other beats: each whole beat is left out in turn (cross-validation by
-blocks, Burman, Chow and Nolan, Biometrika 81 (1994), doi:10.1093/biomet/81.2.351). So errors that last for several
-frames, which a smoothing spline takes for motion, do not count as motion unless they come again with each beat. Of the
+where the curvatures of a_h and b_h are natural cubic splines through `knots` equally spaced knots. H and
+the number of knots are those that predict a beat best from the other beats: each whole beat is left out in turn
+(cross-validation by blocks, Burman, Chow and Nolan, Biometrika 81 (1994), doi:10.1093/biomet/81.2.351). So errors that
+last for several frames, which a smoothing spline takes for motion, do not count unless they come with each beat. Of the
 fits whose error is within one standard error of the least, the one with fewest numbers counts (Breiman et al.,
 Classification and Regression Trees, 1984). The fits without each beat give the bands (jackknife).
 """
@@ -30,7 +30,8 @@ from eel_gaits.laws.term import Term
 FEWEST_BEATS = 3
 LEAST_FRAMES = 4.0  # in a beat
 HARMONICS = 5  # at most
-KNOTS = 12  # at most, along the body
+LEAST_KNOTS, KNOTS = 2, 12  # along the body
+CONDITION = 100.0  # singular values below a part of 1 / 100 do not count: uneven points do not tell those shapes
 TRAVELS = 1.0  # rad of phase along the body, less of which counts as standing
 LEAST_SHARE = 0.5  # of the variance that the other beats must predict
 FINE = 257  # places along the body at which splines are integrated
@@ -113,7 +114,7 @@ def beat_of(film: Film, *, harmonics: int | None = None, rigid: float = 0.0) -> 
         raise ValueError(f"rigid must be a part of the length from 0 to 0.9, got {rigid:g}")
     fit = _Fit(film, rigid)
     found = fit.best(harmonics)
-    if _phase(found) > TRAVELS:
+    if not rigid and _phase(found) > TRAVELS:  # a rigid part tells which end is the head
         seen = found.measured.excursion
         if seen[0] <= seen[-1]:
             raise ValueError(
@@ -167,7 +168,7 @@ class _Fit:
             raise ValueError(
                 f"{film.name}: there must be {FEWEST_BEATS} beats or more, got {count} of {self.period:.3g} s"
             )
-        self.bases = {knots: self._basis(knots) for knots in range(3, min(KNOTS, self.angles.shape[1]) + 1)}
+        self.bases = {knots: self._basis(knots) for knots in range(LEAST_KNOTS, min(KNOTS, self.angles.shape[1]) + 1)}
 
     def best(self, harmonics: int | None) -> Beat:
         """The fit that predicts best, with those without each beat."""
@@ -226,17 +227,14 @@ class _Fit:
 
     def _basis(self, knots: int) -> tuple[np.ndarray, np.ndarray]:
         """Angles of the segments less their mean (n - 1, P), and curvatures (P, FINE) [rad/m], of P splines."""
-        from scipy.interpolate import CubicSpline, make_interp_spline
+        from scipy.interpolate import make_interp_spline
 
         arc, length = self.film.arc, self.film.length
         fine = np.linspace(0.0, length, FINE)
-        if self.rigid:
-            start = self.rigid * length
-            places = np.linspace(start, length, knots + 1)
-            spline = CubicSpline(places, np.eye(knots + 1)[:, 1:], bc_type=((1, np.zeros(knots)), (2, np.zeros(knots))))
-            curvature = np.where(fine[:, None] > start, spline(fine), 0.0)
-        else:
-            curvature = natural_spline(np.linspace(0.0, length, knots), np.eye(knots), fine).T
+        start = self.rigid * length
+        places = np.linspace(start, length, knots + (1 if self.rigid else 0))
+        shapes = np.eye(len(places))[len(places) - knots :]  # 0 at the end of a rigid part
+        curvature = np.where(fine < start, 0.0, natural_spline(places, shapes, fine)).T
         twice = make_interp_spline(fine, curvature, k=3).antiderivative(2)
         angles = np.diff(twice(arc), axis=0) / np.diff(arc)[:, None]  # of a chord: the mean over the segment
         return self.weight[:, None] * (angles - self._mean(angles.T).T), curvature.T
@@ -288,7 +286,7 @@ def _in_time(time: np.ndarray, span: float, period: float, order: int) -> np.nda
 def _solved(design: np.ndarray, values: np.ndarray, along: np.ndarray) -> np.ndarray:
     """The coefficients C (2 H + 1, P) with which design C along^T comes nearest to the `values`."""
     rows = np.linalg.lstsq(design, values, rcond=None)[0]
-    return np.asarray(np.linalg.lstsq(along, rows.T, rcond=None)[0].T)
+    return np.asarray(np.linalg.lstsq(along, rows.T, rcond=1.0 / CONDITION)[0].T)
 
 
 def _within_one_error(errors: np.ndarray, least: np.ndarray) -> bool:
