@@ -10,6 +10,7 @@ from eel_dynamics.runs.command import main as simulate_command
 from eel_dynamics.runs.filmed import speeds_of
 from eel_gaits.film.beat import beat_of
 from eel_gaits.film.film import Film
+from eel_studies.life.command import main as life
 from filmed import TIMES, WAVE, swimming, write_long
 
 from eel_dynamics import Body, Scene, simulate
@@ -51,3 +52,15 @@ def test_options_of_films_need_a_film_and_a_body_its_length(tmp_path, capsys):
     assert "is 1 m long, the swimmer in the film 0.1999 m" in capsys.readouterr().err
     assert simulate_command(["--midlines", path, "--file", path]) == 2
     assert "--midlines takes the place of a gait" in capsys.readouterr().err
+
+
+def test_the_lamprey_is_held_against_its_measured_speed_as_a_band(tmp_path, capsys):
+    table, picture = tmp_path / "lamprey.csv", tmp_path / "lamprey.png"
+    widths = LAMPREY.with_name("widths.csv")
+    arguments = ["lamprey", str(LAMPREY), "--widths", str(widths), "--out", str(table), "--out", str(picture)]
+    assert life(arguments) == 0
+    rows = {line.partition(",")[0]: line for line in table.read_text().splitlines()}
+    low, high = map(float, rows["speed [m/s]"].split(",")[2].split(" to "))
+    assert 0.26 < low < high < 0.33  # m/s: what the page says, within the grids of other processors
+    assert "-42%" in rows["fall at 10 x viscosity"] and picture.read_bytes().startswith(b"\x89PNG")
+    assert "head's yaw" in capsys.readouterr().out

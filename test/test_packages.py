@@ -23,6 +23,7 @@ EXECUTABLES = {
         "figures",
         "identify",
         "midlines",
+        "life",
         "optimise",
         "sweep",
         "stability",

@@ -25,6 +25,7 @@ setup(
     entry_points={
         "console_scripts": [
             "midlines = eel_command:main_of.eel_studies.midlines.command",
+            "life = eel_command:main_of.eel_studies.life.command",
             "figures = eel_command:main_of.eel_studies.figures.command",
             "identify = eel_command:main_of.eel_studies.identification.command",
             "optimise = eel_command:main_of.eel_studies.optimisation.command",
@@ -42,6 +43,7 @@ setup(
             "tradeoff = eel_studies.tradeoff.command",
             "stability = eel_studies.stability.command",
             "midlines = eel_studies.midlines.command",
+            "life = eel_studies.life.command",
             "figures = eel_studies.figures.command",
         ],
     },

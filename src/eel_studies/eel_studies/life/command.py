@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`eel life`: filmed swimmers beside what was measured on them, as a table and a picture.
+
+eel life lamprey docs/data/lamprey_midlines.csv --widths docs/data/widths.csv --out lamprey.png --out lamprey.csv
+eel life robot docs/data/tendon_fish_?.??Hz.csv --body docs/data/tendon_fish_body.csv --mass 1.5 --rigid 0.5
+"""
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeAlias
+
+import numpy as np
+from eel_base.command.command_line import Parser
+from eel_base.command.run_command import checked_out, run_command
+from eel_base.files.output_file import written_as
+from eel_base.quantity import positive
+from eel_dynamics.runs.command_options import add_options, add_repeated, body_of, set_numbers
+from eel_dynamics.runs.filmed import add_film_options, beat_from
+from eel_gaits.film.beat import Beat
+
+from eel_studies.life.drawing import draw_lamprey, draw_robot
+from eel_studies.life.lamprey import HEIGHTS, MEASURED, LampreySwim, in_thick_water, lamprey, swims
+from eel_studies.life.leave_out import Choice, choices, computed
+from eel_studies.pictures import Figure, write_picture
+from eel_studies.table import Table
+
+NAME = "eel life"
+Drawn: TypeAlias = tuple[Table, Callable[[Figure], None], tuple[float, float]]  # with the picture and its size, inches
+SUFFIXES = (".csv", ".png", ".svg", ".pdf")
+FIRST = {"nose_drag": 1.0}  # one number: with two, films that are left out are predicted worse
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit status as of `run_command`."""
+    return run_command(_parser(), _compare, arguments)
+
+
+def _compare(options: argparse.Namespace) -> int:
+    outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
+    beats = [beat_from(file, options) for file in options.files]
+    table, draw, size = (_lamprey if options.swimmer == "lamprey" else _robot)(beats, options)
+    print(table.text())
+    for out in outs:
+        if out.suffix == ".csv":
+            table.write_csv(out)
+        else:
+            write_picture(draw, size, out)
+        print(f"written to {written_as(out)}")
+    return 0
+
+
+def _lamprey(beats: list[Beat], options: argparse.Namespace) -> Drawn:
+    if len(beats) != 1 or options.widths is None:
+        raise ValueError("lamprey takes one film, and the --widths of the body by its length")
+    (beat,) = beats
+    widths = Path(options.widths)
+    found = swims(beat, widths, HEIGHTS)
+    thick = [in_thick_water(beat, lamprey(beat.film.length, height, widths)) for height in HEIGHTS]
+    return table_of_lamprey(beat, found, thick), lambda figure: draw_lamprey(figure, beat, found, thick), (6.8, 6.4)
+
+
+def table_of_lamprey(beat: Beat, found: list[LampreySwim], thick: list[list[float]]) -> Table:
+    """Measured, ours as a band over the bodies, and the difference."""
+    seen, ours = beat.measured, [swim.figures for swim in found]
+    speeds = [swim.speed for swim in found]
+    low, high = (speeds[0] - found[0].band), (speeds[-1] + found[-1].band)
+    strides = [speed * beat.period / beat.film.length for speed in speeds]
+    tails = [float(each.excursion[-1]) for each in ours]
+    rows = [
+        _row("speed [m/s]", seen.speed, speeds),
+        ("speed, with the beats' 95 % band [m/s]", f"{seen.speed:.4g}", f"{low:.4g} to {high:.4g}", ""),
+        _row("stride [L]", seen.stride, strides),
+        _row("tail, side to side [L]", float(seen.excursion[-1]), tails),
+        _row("wave [L]", seen.wavelength, [each.wavelength for each in ours]),
+        _row("slip", seen.slip, [stride / each.wavelength for stride, each in zip(strides, ours, strict=True)]),
+        _row("Strouhal number", seen.strouhal, [tail / stride for tail, stride in zip(tails, strides, strict=True)]),
+        _row("head's yaw, amplitude [rad]", seen.yaw, [each.yaw for each in ours]),
+    ]
+    for index, each in enumerate(MEASURED):
+        measured = f"{each.speed:g} +- {each.spread:g}"
+        ours_here = [1e3 * row[index] for row in thick]
+        rows.append((f"speed at {each.times:g} x viscosity [mm/s]", measured, *_against(each.speed, ours_here)))
+        if index:
+            fall, falls = each.speed / MEASURED[0].speed - 1.0, [row[index] / row[0] - 1.0 for row in thick]
+            rows.append(
+                (f"fall at {each.times:g} x viscosity", f"{fall:.0%}", f"{min(falls):.0%} to {max(falls):.0%}", "")
+            )
+    return Table(("", "measured", "ours, over fins of 0.02 to 0.04 L", "difference"), rows)
+
+
+def _row(name: str, measured: float, ours: list[float]) -> tuple[str, ...]:
+    return (name, f"{measured:.4g}", *_against(measured, ours))
+
+
+def _against(measured: float, ours: list[float]) -> tuple[str, str]:
+    low, high = min(ours), max(ours)
+    return f"{low:.4g} to {high:.4g}", f"{low / measured - 1.0:+.0%} to {high / measured - 1.0:+.0%}"
+
+
+def _robot(beats: list[Beat], options: argparse.Namespace) -> Drawn:
+    if len(beats) <= options.fit or options.fit < 1:
+        raise ValueError(f"robot needs more films than the {options.fit} that --fit takes, got {len(beats)}")
+    body = body_of(options.body)
+    if options.mass is not None:
+        body = body.changed(density=positive("mass", options.mass, "kg") / body.volume)
+    first = set_numbers(options.first, "--first") or FIRST
+    guessed = computed(beats, body)
+    found = choices(beats, body, first, options.fit)
+    table = table_of_robot(beats, guessed, found)
+    return table, lambda figure: draw_robot(figure, beats, guessed, found), (6.8, 3.8)
+
+
+def table_of_robot(beats: list[Beat], guessed: np.ndarray, found: list[Choice]) -> Table:
+    """A row for each choice of the films that are fitted, with the speeds of all and the error of the others."""
+    measured = np.array([beat.measured.speed for beat in beats])
+    heads = [beat.film.name.rpartition(".")[0] for beat in beats]
+    rows = [
+        ("measured [m/s]", *(f"{each:.4f}" for each in measured), ""),
+        ("nothing fitted", *(f"{each:.4f}" for each in guessed), f"{np.mean(np.abs(guessed - measured)):.4f}"),
+    ]
+    for each in found:
+        values = ", ".join(f"{name} {value:.3g}" for name, value in each.values.items())
+        cells = [f"{speed:.4f}{'*' if film in each.fitted else ''}" for film, speed in enumerate(each.speeds)]
+        rows.append((values, *cells, f"{np.mean(np.abs(each.left_out(measured))):.4f}"))
+    left_out = np.concatenate([each.left_out(measured) for each in found])
+    rows.append(("leave-out error, mean of all", *("" for _ in beats), f"{np.mean(np.abs(left_out)):.4f}"))
+    return Table(("*: fitted", *heads, "mean error"), rows)
+
+
+def _parser() -> Parser:
+    parser = Parser(prog=NAME, description="Swim by filmed motions, and compare with what was measured.")
+    parser.add_argument(
+        "swimmer",
+        choices=("lamprey", "robot"),
+        help="lamprey: without any fitted number, as a band over the body's height, and in thicker water; robot: drag "
+        "fitted on some films, judged by the others",
+    )
+    parser.add_argument("files", nargs="+", metavar="FILE", help="films: tracked points, docs/howto/motions.md")
+    add_film_options(parser)
+    add_options(parser, "--scale", "--body")
+    parser.add_argument("--widths", metavar="FILE", help="of a lamprey: columns s_by_length, lamprey_width_by_length")
+    parser.add_argument("--mass", type=float, metavar="KG", help="of the robot (by its body's density)")
+    parser.add_argument("--fit", type=int, default=2, metavar="N", help="films that are fitted at a time (2)")
+    add_repeated(parser, "--first", "NAME=VALUE", "a number of the body to fit, with its first guess "
+                 f"({', '.join(f'{name}={value:g}' for name, value in FIRST.items())})")  # fmt: skip
+    add_options(parser, "--out")
+    return parser

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A filmed lamprey: speed without a fitted number, as a band over what was not published, and in thicker water.
+
+The width of the body is published by the length; its height is not. The trunk's section is taken as 1.2 times as high
+as wide, and the tail fin's half-height varies. Water thickened 10 and 20 times: Tytell and colleagues' means and
+standard deviations of 212 trials, which give frequency and wavelength. The curvature's amplitude is not published for
+them: it is kept as in the film.
+"""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.filmed import speeds_of
+from eel_dynamics.runs.run import Run, simulate
+from eel_gaits.film.beat import Beat, jackknife
+from eel_gaits.film.kinematics import Kinematics, kinematics
+from eel_gaits.laws.law import Law
+from eel_gaits.laws.term import Term
+from eel_gaits.sources.tables import read_table
+
+HEIGHTS = 0.02, 0.03, 0.04  # L, half-height of the tail fin
+TRUNK = 1.2  # height of the trunk by its width
+FIN = 0.75, 0.9  # L, where the fin begins to rise, and where it is as high as at the tail
+NOSE, THINNEST = 0.03, 1e-4  # L: the rounded end of the head; half-width of the fin's edge
+WATER = 1e-6  # m^2/s
+BEATS = 6  # at the end of a run, from which its figures are taken
+PLANAR = Scene(planar=True, friction="blended", internal_wrench=False)
+
+
+class Thickened(NamedTuple):
+    """Lampreys in water of so many times the viscosity."""
+
+    times: float
+    frequency: float  # Hz
+    wavelength: float  # mm
+    speed: float  # mm/s
+    spread: float  # mm/s, standard deviation
+
+
+MEASURED = Thickened(1, 2.88, 109, 221, 58), Thickened(10, 2.83, 106, 129, 45), Thickened(20, 2.13, 102, 53, 37)
+
+
+@dataclass(frozen=True)
+class LampreySwim:
+    """A swim of the film's beat on a body with a fin of this half-height."""
+
+    height: float  # L
+    run: Run
+    speed: float  # m/s
+    band: float  # m/s, half of the 95 % band by the beats
+    figures: Kinematics
+
+
+def lamprey(length: float, height: float, widths: Path) -> Body:
+    """A lamprey of `length` [m] whose tail fin has a half-height of `height` lengths.
+
+    widths: a file with the columns s_by_length and lamprey_width_by_length; the latter is taken as a radius.
+    """
+    table = read_table(widths)
+    names = ("s_by_length", "lamprey_width_by_length")
+    if missing := [name for name in names if name not in table.columns]:
+        raise table.error(f"widths must have the columns {', '.join(names)}; {', '.join(missing)} missing")
+    table.check_finite(names)
+    x = np.linspace(0.0, 1.0, 41)
+    round_end = np.sqrt(np.minimum(x / NOSE, 1.0))
+    radius = np.interp(x, table.columns[names[0]], table.columns[names[1]])
+    half_width = round_end * np.maximum(radius, THINNEST)
+    rise = np.clip((x - FIN[0]) / (FIN[1] - FIN[0]), 0.0, 1.0)
+    rise = rise**2 * (3.0 - 2.0 * rise)
+    half_height = TRUNK * half_width * (1.0 - rise) + height * rise
+    return Body(x=length * x, half_width=length * half_width, half_height=length * half_height, name="lamprey")
+
+
+def swims(beat: Beat, widths: Path, heights: tuple[float, ...] = HEIGHTS, scene: Scene = PLANAR) -> list[LampreySwim]:
+    """The beat on bodies with fins of these half-heights [L]."""
+    found = []
+    for height in heights:
+        body = lamprey(beat.film.length, height, widths)
+        run = simulate(beat.law(body.length), "settled", body=body, scene=scene, accuracy=1e-2)
+        last = run.time > run.time[-1] - BEATS * beat.period
+        figures = kinematics(run.time[last], run.backbone[last, :, :2], beat.period)
+        found.append(
+            LampreySwim(height, run, run.mean_speed, float(jackknife(speeds_of(beat.others, body, scene))), figures)
+        )
+    return found
+
+
+def in_thick_water(beat: Beat, body: Body) -> list[float]:
+    """Speed [m/s] at each of `MEASURED`'s viscosities, with its frequency, and its wavelength by that in water."""
+    found = []
+    for each in MEASURED:
+        law = wave_of(beat, body.length, 1.0 / each.frequency, MEASURED[0].wavelength / each.wavelength)
+        scene = Scene(planar=True, friction="blended", internal_wrench=False, viscosity=each.times * WATER)
+        found.append(simulate(law, "settled", body=body, scene=scene, accuracy=1e-2).mean_speed)
+    return found
+
+
+def wave_of(beat: Beat, length: float, period: float, waves: float) -> Law:
+    """The beat's first harmonic with another `period` [s], and `waves` times as many waves along the body."""
+    wave = beat.film.length / length * (beat.curvature[1] - 1j * beat.curvature[2])
+    phase = np.unwrap(np.angle(wave))
+    wave = np.abs(wave) * np.exp(1j * (phase[0] + waves * (phase - phase[0])))
+    knots = np.linspace(0.0, length, 33)
+    parts = [np.interp(knots, np.linspace(0.0, length, len(wave)), part) for part in (wave.real, -wave.imag)]
+    return Law(
+        [
+            Term(amplitude=tuple(part), knots=tuple(knots), period=period, phase=phase)
+            for part, phase in zip(parts, (0.5 * math.pi, math.pi), strict=True)
+        ],
+        name="wave",
+    )
