@@ -13,6 +13,7 @@ _core = sys.modules["eel_core._core"] = import_core()
 from eel_core._core import (  # noqa: E402
     FRICTION_LAWS,
     STATUSES,
+    Flow,
     Instant,
     LawOnGrid,
     LawTables,
@@ -29,6 +30,7 @@ from eel_core._core import (  # noqa: E402
 __all__ = [
     "FRICTION_LAWS",
     "STATUSES",
+    "Flow",
     "Instant",
     "LawOnGrid",
     "LawTables",

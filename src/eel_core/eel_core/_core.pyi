@@ -74,6 +74,8 @@ class _Sections(Protocol):
     @property
     def added_roll(self) -> Buffer: ...  # [kg m], of the water about E1
     @property
+    def displaced(self) -> Buffer: ...  # [kg/m], of the water that the section displaces
+    @property
     def drag2(self) -> Buffer: ...  # [kg/m^2], 1/2 rho_f k2
     @property
     def drag3(self) -> Buffer: ...  # [kg/m^2], 1/2 rho_f k3
@@ -104,7 +106,7 @@ class _Stations(Protocol):
     @property
     def missed(self) -> Iterable[Buffer]: ...
     # (M, p_max) each, times m: what the rows of `points` miss of the integrals of mass, added2 and 3, inertia1 to 3,
-    # drag2 and 3, drag_roll, laminar and turbulent; none where the sections are smooth
+    # displaced, drag2 and 3, drag_roll, laminar and turbulent; none where the sections are smooth
 
 class _Shared:
     """Never changes: copies are the object itself."""
@@ -138,6 +140,22 @@ class Swimmer(_Shared):
         weight and buoyancy; 0 for none. missed_drag: (K, n) [m] for V2, V3 and Omega1: of each node, what the drag's
         integral from the start of its panel misses, by the drag at the node, at K fractions (1 - cos(pi k / (K - 1))) /
         2 of the panel; none where the sections are smooth. `ValueError` names what does not fit."""
+
+class Flow(_Shared):
+    """How the water moves by itself: the sum of its sources."""
+
+    def __init__(self, sources: list[tuple[Any, ...]]) -> None:
+        """Each source is a tuple, in the world's axes and SI units:
+        ("ramped", velocity (3,), ramps as those of a law's envelope, whose sum multiplies the velocity; none: 1);
+        ("spline", knots (n,), coefficients (n - 1, 4, 3) of cubics from the constant on); ("shear", velocity (3,) far
+        to one side, unit normal (3,) of the layer, place of its middle along that, width, whether it is linear);
+        ("vortices", rows (n, 3) of x, y and circulation, radius of the cores, drift (3,)); ("wave", amplitude,
+        wavenumber, angular frequency, height of the surface, phase, horizontal unit direction (3,)); ("function",
+        function(time, rows (n, 18))), which fills in rows as those of `at`. `ValueError` for another kind."""
+
+    def at(self, time: float, rows: Buffer) -> None:
+        """Completes the rows (n, 18) at a time [s]: of the place (3,) [m], which stands first, the velocity (3,) [m/s],
+        its rate (3,) [m/s^2] at the fixed place, and the Jacobian (3, 3) [1/s], row by row."""
 
 class LawTables(_Shared):
     """The m rows of a curvature law, each a field of X for one axis, on the nodes and stations of a swimmer."""
@@ -234,10 +252,12 @@ class March:
         bounds: StepBounds,
         ledger: bool,
         current: Buffer,
+        flow: Flow | None,
         smoothly: bool,
     ) -> None:
-        """What drives the body from now on. breakpoints: ascending times [s] at which a derivative of the shape jumps.
-        ledger: the works are integrated too. current (3,) [m/s]: of the water, world. smoothly: the motion goes on as
+        """What drives the body from now on. breakpoints: ascending times [s] at which a derivative of the shape or of
+        the flow jumps. ledger: the works are integrated too. current (3,) [m/s]: of the water, world. flow: how the
+        water moves besides. smoothly: the motion goes on as
         before, so that the next step need not begin anew. `ValueError` for a law on another grid."""
 
     def start(self, position: Buffer, orientation: Buffer, twist: Buffer) -> float:
@@ -265,8 +285,8 @@ class March:
         self, times: Buffer, first: int, whole: Buffer, works: Buffer, wrench: bool, load: bool, until: float
     ) -> tuple[int, int]:
         """Marches through the times (T,) [s] from number `first` on, up to `until` [s], and observes each. whole:
-        writable, as `layout` has it; works (T, 4) [J]: writable, of actuators, wake, nose and drag since the start. How
-        many of the instants are complete, and the number of a status; as in `advance`."""
+        writable, as `layout` has it; works (T, 5) [J]: writable, of actuators, wake, nose, drag and flow since the start.
+        How many of the instants are complete, and the number of a status; as in `advance`."""
 
     def observe(self, whole: Buffer, wrench: bool, load: bool) -> bool:
         """Writes what the present shows into `whole`, as `layout` has it for one sample. False where the inertia is not
@@ -283,7 +303,7 @@ class March:
         """(13,)."""
     @property
     def works(self) -> list[float]:
-        """(4,) [J] of actuators, wake, nose and drag since the start."""
+        """(5,) [J] of actuators, wake, nose, drag and flow since the start."""
     @property
     def counts(self) -> tuple[int, int, int]:
         """Steps, rejected steps and evaluations of the head's dynamics so far."""
@@ -342,15 +362,17 @@ class PlanarInstant:
     """Single instants of a motion in the plane: three degrees of freedom (yaw, along, across)."""
 
     def __init__(self, swimmer: Swimmer) -> None: ...
-    def rate(self, law: LawOnGrid, current: Buffer, time: float, state: Buffer) -> list[float] | None:
+    def rate(
+        self, law: LawOnGrid, current: Buffer, time: float, state: Buffer, flow: Flow | None = None
+    ) -> list[float] | None:
         """Rate (13,) of a state (13,) at a time [s], in a current (3,) [m/s], world. None where the inertia is not
         positive definite."""
 
-    def repeat_rate(self, law: LawOnGrid, time: float, state: Buffer, count: int) -> None:
-        """Finds the rate of a state (13,) `count` times, in still water, without Python's lock: for benchmarks."""
+    def repeat_rate(self, law: LawOnGrid, time: float, state: Buffer, count: int, flow: Flow | None = None) -> None:
+        """Finds the rate of a state (13,) `count` times, without a current and without Python's lock: for benchmarks."""
 
     def powers(self, law: LawOnGrid) -> list[float]:
-        """Powers (4,) [W] of actuators, wake, nose and drag in the motion whose rate was found last."""
+        """Powers (5,) [W] of actuators, wake, nose, drag and flow in the motion whose rate was found last."""
 
     def inertia(self, law: LawOnGrid, time: float) -> list[list[float]]:
         """Inertia (3, 3) of body, water and nose about the head, in the paper's axes, rotation first, as the law bends
@@ -360,10 +382,12 @@ class Instant:
     """Single instants of a motion in space."""
 
     def __init__(self, swimmer: Swimmer) -> None: ...
-    def rate(self, law: LawOnGrid, current: Buffer, time: float, state: Buffer) -> list[float] | None:
+    def rate(
+        self, law: LawOnGrid, current: Buffer, time: float, state: Buffer, flow: Flow | None = None
+    ) -> list[float] | None:
         """As in `PlanarInstant`."""
 
-    def repeat_rate(self, law: LawOnGrid, time: float, state: Buffer, count: int) -> None:
+    def repeat_rate(self, law: LawOnGrid, time: float, state: Buffer, count: int, flow: Flow | None = None) -> None:
         """As in `PlanarInstant`."""
 
     def powers(self, law: LawOnGrid) -> list[float]:
@@ -375,10 +399,20 @@ class Instant:
     def loads(self, law: LawOnGrid, time: float, twist: Buffer) -> tuple[list[float], list[float]]:
         """Wrenches (6,) of the wake and of the drag along the body, for a twist (6,) of the head at a time [s]."""
 
-    def drag_powers(self, law: LawOnGrid, times: Buffer, twists: np.ndarray, powers: Buffer) -> None:
+    def drag_powers(
+        self,
+        law: LawOnGrid,
+        times: Buffer,
+        twists: np.ndarray,
+        powers: Buffer,
+        current: Buffer,
+        flow: Flow | None,
+        poses: Buffer,
+    ) -> None:
         """Writes powers (T, 4) [W] on the body: of the axial friction, the lateral, the vertical and the roll drag.
 
-        times (T,) [s]; twists (T, 6) of the head.
+        times (T,) [s]; twists (T, 6) of the head; current and flow as in `March.follow`; poses (T, 7) of the head:
+        position [m] and orientation.
         """
 
     def momentum_rate(self, law: LawOnGrid, time: float, twist: Buffer, acceleration: Buffer) -> list[float]:

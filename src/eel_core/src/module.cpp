@@ -4,6 +4,7 @@
 
 #include <atomic>
 
+#include "bind_flow.hpp"
 #include "bind_sampled.hpp"
 #include "eel_core/build_info.hpp"
 #include "eel_core/march/instant.hpp"
@@ -154,13 +155,13 @@ class PyMarch {
         march_.change(std::move(swimmer), Method::of(method, order), planar);
     }
     void follow(const std::shared_ptr<const LawOnGrid>& law, std::vector<double> breakpoints, const StepBounds& bounds,
-                bool ledger, const py::object& current, bool smoothly)
+                bool ledger, const py::object& current, std::shared_ptr<Flow> flow, bool smoothly)
     {
         check_fits(*law, march_.swimmer());
         const InUse in_use(*this);
         smoothly &= has_law_;
         has_law_ = true;
-        march_.follow({*law, std::move(breakpoints), bounds, ledger, vector_from(current, "current")}, smoothly);
+        march_.follow({*law, std::move(breakpoints), bounds, ledger, water_from(current, std::move(flow))}, smoothly);
     }
     double start(const py::object& position, const py::object& orientation, const py::object& twist)
     {
@@ -196,7 +197,7 @@ class PyMarch {
         const Numbers instants(times, "times"), into(whole, "whole", true), works_into(works, "works", true);
         const Profiles profiles(instants.size(), march_.swimmer().stations, wrench, load);
         into.check_size(profiles.begin[Profiles::quantities], "whole");
-        works_into.check_size(4 * instants.size(), "works");
+        works_into.check_size(std::tuple_size_v<Works> * instants.size(), "works");
         const Driven in_use(*this);
         std::size_t done = 0;
         Status status = Status::marched;
@@ -272,11 +273,12 @@ void share_in_copies(Class& bound)
 }
 
 template <class M>
-py::object rate_of(Instant<M>& instant, const LawOnGrid& law, const py::object& current, double time,
-                   const py::object& state)
+py::object rate_of(Instant<M>& instant, const LawOnGrid& law, const py::object& current, double time, const py::object& state,
+                   std::shared_ptr<Flow> flow)
 {
     State rate{};
-    if (!instant.rate(law, vector_from(current, "current"), time, state_from(state), rate)) return py::none();
+    const Water water = water_from(current, std::move(flow));
+    if (!instant.rate(law, water, time, state_from(state), rate)) return py::none();
     return list_of_state(rate);
 }
 
@@ -296,12 +298,14 @@ py::list inertia_of(Instant<M>& instant, const LawOnGrid& law, double time)
 
 // Evaluates the rate again and again, for benchmarks.
 template <class M>
-void repeat_rate(Instant<M>& instant, const LawOnGrid& law, double time, const py::object& state, std::size_t count)
+void repeat_rate(Instant<M>& instant, const LawOnGrid& law, double time, const py::object& state, std::size_t count,
+                 std::shared_ptr<Flow> flow)
 {
+    const Water water{{0.0, 0.0, 0.0}, std::move(flow)};
     const State y = state_from(state);
     State rate{};
     const py::gil_scoped_release unlocked;
-    for (std::size_t k = 0; k < count; ++k) instant.rate(law, {0.0, 0.0, 0.0}, time, y, rate);
+    for (std::size_t k = 0; k < count; ++k) instant.rate(law, water, time, y, rate);
 }
 
 template <class M>
@@ -309,8 +313,10 @@ py::class_<Instant<M>> bind_instant(py::module_& module, const char* name, const
 {
     return py::class_<Instant<M>>(module, name, doc)
         .def(py::init<std::shared_ptr<const Swimmer>>(), py::arg("swimmer"))
-        .def("rate", &rate_of<M>, py::arg("law"), py::arg("current"), py::arg("time"), py::arg("state"))
-        .def("repeat_rate", &repeat_rate<M>, py::arg("law"), py::arg("time"), py::arg("state"), py::arg("count"))
+        .def("rate", &rate_of<M>, py::arg("law"), py::arg("current"), py::arg("time"), py::arg("state"),
+             py::arg("flow") = py::none())
+        .def("repeat_rate", &repeat_rate<M>, py::arg("law"), py::arg("time"), py::arg("state"), py::arg("count"),
+             py::arg("flow") = py::none())
         .def(
             "powers", [](Instant<M>& instant, const LawOnGrid& law) { return list_of(instant.powers(law)); },
             py::arg("law"))
@@ -343,6 +349,10 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
         py::arg("grid"), py::arg("sections"), py::arg("stations"), py::kw_only(), py::arg("friction"),
         py::arg("resistive"), py::arg("first_watched"), py::arg("wake"), py::arg("nose_mass"), py::arg("nose_drag"),
         py::arg("distributed_pressure"), py::arg("righting"), py::arg("missed_drag") = py::tuple());
+
+    auto flow_class = py::class_<Flow, std::shared_ptr<Flow>>(module, "Flow");
+    share_in_copies(flow_class);
+    flow_class.def(py::init(&flow_from), py::arg("sources")).def("at", &put_flow, py::arg("time"), py::arg("rows"));
 
     auto law_tables = py::class_<LawTables, std::shared_ptr<LawTables>>(module, "LawTables");
     share_in_copies(law_tables);
@@ -389,7 +399,7 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
             "__deepcopy__", [](PyMarch& march, const py::dict&) { return march.copy(); }, py::arg("memo"))
         .def("change", &PyMarch::change, py::arg("swimmer"), py::arg("method"), py::arg("order"), py::arg("planar"))
         .def("follow", &PyMarch::follow, py::arg("law"), py::arg("breakpoints"), py::arg("bounds"), py::arg("ledger"),
-             py::arg("current"), py::arg("smoothly"))
+             py::arg("current"), py::arg("flow"), py::arg("smoothly"))
         .def("start", &PyMarch::start, py::arg("position"), py::arg("orientation"), py::arg("twist"))
         .def("set_state", &PyMarch::set_state, py::arg("position"), py::arg("orientation"), py::arg("twist"))
         .def("set_twist", &PyMarch::set_twist, py::arg("twist"))
@@ -419,14 +429,22 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
         .def(
             "drag_powers",
             [](Instant<Space>& instant, const LawOnGrid& law, const py::object& times, const py::object& twists,
-               const py::object& powers) {
-                const Numbers at(times, "times"), into(powers, "powers", true);
+               const py::object& powers, const py::object& current, std::shared_ptr<Flow> flow,
+               const py::object& poses) {
+                const Numbers at(times, "times"), into(powers, "powers", true), heads(poses, "poses");
                 into.check_size(4 * at.size(), "powers");
-                for (std::size_t k = 0; k < at.size(); ++k)
-                    std::ranges::copy(instant.drag_powers(law, at.data()[k], twist_from(twists[py::int_(k)], "twists")),
+                heads.check_size(7 * at.size(), "poses");
+                const Water water = water_from(current, std::move(flow));
+                for (std::size_t k = 0; k < at.size(); ++k) {
+                    State y{};
+                    std::copy_n(heads.data() + 7 * k, 7, y.begin());
+                    std::ranges::copy(instant.drag_powers(law, at.data()[k], twist_from(twists[py::int_(k)], "twists"),
+                                                          water, half_turn(y)),
                                       into.data() + 4 * k);
+                }
             },
-            py::arg("law"), py::arg("times"), py::arg("twists"), py::arg("powers"))
+            py::arg("law"), py::arg("times"), py::arg("twists"), py::arg("powers"), py::arg("current"),
+            py::arg("flow"), py::arg("poses"))
         .def(
             "momentum_rate",
             [](Instant<Space>& instant, const LawOnGrid& law, double time, const py::object& twist,

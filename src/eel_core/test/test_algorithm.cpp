@@ -98,7 +98,7 @@ TEST(Algorithm, SinkingBodyOfEqualSectionsIsBrakedAlikeEverywhereAndBearsNoWrenc
     const LawOnGrid law = arc(0.0);
     Workspace<Space> work(*swimmer);
     const State y = state_with<Space>(*swimmer, law, 0.0, {{}, {0.0, 0.0, v3}}, work);
-    ASSERT_TRUE(find_motion(*swimmer, law, 0.0, y, work));
+    ASSERT_TRUE(find_motion(*swimmer, law, {}, 0.0, y, work));
     swimmer->wake = 0.0;
     const Powers powers = find_powers(*swimmer, law, work);
     const double drag = -drag3 * v3 * std::abs(v3);
@@ -131,7 +131,7 @@ TEST(Algorithm, AccelerationsAreTheSlopesOfTheMarchedTwist)
         const double moved = side == 0 ? -step : step;
         State there = y;
         for (std::size_t k = 0; k < state_size; ++k) there[k] += moved * rate[k];
-        ASSERT_TRUE(find_motion(*swimmer, law, time + moved, there, work));
+        ASSERT_TRUE(find_motion(*swimmer, law, {}, time + moved, there, work));
         twist[side] = components_of(work.twist);
     }
     // The true acceleration is V' + Omega x V.
@@ -147,7 +147,7 @@ TEST(Algorithm, WrenchAtTheNoseIsTheNosesLoad)
     const LawOnGrid law = arc(1.5);
     Workspace<Space> work(*swimmer);
     const State y = state_with<Space>(*swimmer, law, 0.4, {{0.1, -0.3, 0.2}, {v1, v2, v3}}, work);
-    ASSERT_TRUE(find_motion(*swimmer, law, 0.4, y, work));
+    ASSERT_TRUE(find_motion(*swimmer, law, {}, 0.4, y, work));
     find_powers(*swimmer, law, work);
     const auto left = components_of(plus_axial<Space>(work.tail - work.balance, work.nose_force));
     for (const double part : left) EXPECT_NEAR(part, 0.0, 1e-13);

@@ -10,6 +10,9 @@ import eel_command  # noqa: F401  first: Ctrl-C ends a command during the other 
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.settling import Unsettled
+from eel_dynamics.flow.flow import Flow, FlowSample
+from eel_dynamics.flow.functions import FlowField
+from eel_dynamics.flow.sources import Gust, Shear, Uniform, Vortex, VortexStreet, Wave
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import Batch, simulate_batch
@@ -25,13 +28,22 @@ __all__ = [
     "Batch",
     "Body",
     "EnergyLedger",
+    "Flow",
+    "FlowField",
+    "FlowSample",
+    "Gust",
     "HydrodynamicWrench",
     "Run",
     "Scene",
+    "Shear",
     "Simulation",
     "SimulationStopped",
     "Snapshot",
+    "Uniform",
     "Unsettled",
+    "Vortex",
+    "VortexStreet",
+    "Wave",
     "hydrodynamic_wrench",
     "simulate",
     "simulate_batch",

@@ -10,6 +10,10 @@ polarisation (exact, as T is quadratic in mu); time derivatives are complex step
 (K + i h dK/dt, ...). The head's acceleration is eq. (60); the internal wrench is eq. (50) integrated in the strong
 form from the nose to the tail, so that the tail's boundary condition (51) is left over as a check.
 
+Water that moves by itself is a function u(x, t), `flow`. The energy of the fluid is that of the motion through it, so
+momentum and the force - grad u . p follow from T, by complex steps of place and time; only the force of the undisturbed
+pressure, rho_f A Du/Dt, is added.
+
 Frames: the axes of the head at the instant, about the head, unless a name says `section` or `world`. Velocities are
 relative to the water. Arrays over X have shape (N, 3). Semi-axes as in the paper: `a` along E3, `b` along E2.
 """
@@ -87,6 +91,9 @@ class Reference:
         self.tail_added = self._added(body.half_height(at_tail), body.half_width(at_tail))[0]
         nose = np.prod(body.nose), body.nose[0] * body.nose[1]
         self.nose_mass = self.water * np.pi * NOSE_ADDED_MASS * nose[0] * (settings.reactive and settings.nose)
+        self.displaced = self.water * area  # kg/m
+        self.flow = None  # u (N, 3) [m/s] of places (N, 3) [m] and a time [s], world; both may be complex
+        self.pose = SimpleNamespace(position=np.zeros(3), axes=np.eye(3), time=0.0)  # of the head in the world
         self.nose_drag = np.pi * NOSE_PRESSURE * nose[1] * (settings.resistive and settings.nose)
 
     def _added(self, a, b):
@@ -121,13 +128,61 @@ class Reference:
         fields = omega + turn, velocity + push + np.cross(turn, r)
         return np.concatenate([np.einsum("xji,...xj->...xi", R, field) for field in fields], axis=-1)
 
+    # -- water that moves by itself ---------------------------------------------------------------------------------
+    def flow_at(self, r):
+        """u (N, 3) at places r (N, 3), about the head; in its axes."""
+        pose = self.pose
+        return self.flow(pose.position + r @ pose.axes.T, pose.time) @ pose.axes
+
+    def flow_jacobian(self, r):
+        """du_i/dx_j (N, 3, 3), likewise."""
+        return np.stack([self.flow_at(r + 1j * STEP * axis).imag / STEP for axis in np.eye(3)], axis=-1)
+
+    def flow_acceleration(self, r):
+        """Du/Dt (N, 3), likewise: along the water's own way."""
+        pose, step = self.pose, 1j * STEP
+        x = pose.position + r @ pose.axes.T
+        return self.flow(x + step * self.flow(x, pose.time), pose.time + step).imag / STEP @ pose.axes
+
+    def moved(self, twist, time=0.0):
+        """Has the head's pose moved by a `twist` (6,) in its axes and a `time`, to first order; the former pose."""
+        pose = self.pose
+        axes = pose.axes @ (np.eye(3) + _hat(np.asarray(twist)[None, :3])[0])
+        position = pose.position + pose.axes @ np.asarray(twist)[3:]
+        self.pose = SimpleNamespace(position=position, axes=axes, time=pose.time + time)
+        return pose
+
+    def through_water(self, eta, R, r, turning=False):
+        """Section twists (..., N, 6) through the water; `turning`: Omega1 less half the water's curl, as drag sees it."""
+        if self.flow is None:
+            return eta
+        U = np.zeros((len(r), 6), dtype=complex if np.iscomplexobj(self.flow_at(r) + R[:, 0]) else float)
+        U[:, 3:] = np.einsum("xji,xj->xi", R, self.flow_at(r))
+        if turning:
+            g = self.flow_jacobian(r)
+            curl = np.stack([g[:, 2, 1] - g[:, 1, 2], g[:, 0, 2] - g[:, 2, 0], g[:, 1, 0] - g[:, 0, 1]], axis=1)
+            U[:, 0] = 0.5 * np.sum(R[:, :, 0] * curl, axis=1)
+        return eta - U
+
+    def flow_force(self, K, K_rate, mu):
+        """What the flow adds to the balance of the head, (6,): dT/d(pose), and the undisturbed pressure."""
+        R, r = self.configuration(K)
+        force = self.displaced[:, None] * self.flow_acceleration(r)
+        wrench = self.space.weights @ np.concatenate([np.cross(r, force), force], axis=1)
+        for component, unit in enumerate(np.eye(6)):
+            pose = self.moved(1j * STEP * unit)
+            wrench[component] += sum(self.energies(K, K_rate, mu)).imag / STEP
+            self.pose = pose
+        return wrench
+
     # -- energy, momentum, balance ----------------------------------------------------------------------------------
     def energies(self, K, K_rate, mu):
         """Kinetic energy of body and of fluid, eqs (16), (36), for each head twist of mu (..., 6)."""
-        eta = self.twists(K, K_rate, mu)
+        eta, (R, r) = self.twists(K, K_rate, mu), self.configuration(K)
+        twists = eta, self.through_water(eta, R, r)
         return tuple(
-            np.einsum("x,xk,...xk->...", self.space.weights / 2, inertia, eta**2)
-            for inertia in (self.inertia_body, self.inertia_fluid)
+            np.einsum("x,xk,...xk->...", self.space.weights / 2, inertia, each**2)
+            for inertia, each in zip((self.inertia_body, self.inertia_fluid), twists, strict=True)
         )
 
     def momentum(self, K, K_rate, mu, part=slice(None)):
@@ -140,14 +195,18 @@ class Reference:
         """Time derivative of the momentum in axes that rest, about a point that rests and coincides with the head."""
         step = 1j * STEP
         L, P = np.split(self.momentum(K, K_rate, mu, part), 2)
+        pose = self.moved(step * mu, step)
         moved = self.momentum(K + step * K_rate, K_rate + step * K_acceleration, mu + step * mu_rate, part)
+        self.pose = pose
         return moved.imag / STEP + np.concatenate([np.cross(mu[:3], L) + np.cross(mu[3:], P), np.cross(mu[:3], P)])
 
     def mass_matrix(self, K):
         """d2T/dmu2 (6, 6) by polarisation, without the nose's added mass."""
         rest, basis = np.zeros_like(K), np.eye(6)
+        flow, self.flow = self.flow, None  # it adds terms that are linear
         pairs = sum(self.energies(K, rest, (basis[:, None] + basis[None, :]).reshape(36, 6))).reshape(6, 6)
         single = sum(self.energies(K, rest, basis))
+        self.flow = flow
         return pairs - single[:, None] - single[None, :]
 
     def tail_wrench(self, R, r, eta):
@@ -182,16 +241,21 @@ class Reference:
 
     def nose_force(self, mu, mu_rate):
         """Axial force (N) on the nose: added mass times the true acceleration, and pressure drag."""
-        acceleration = mu_rate[3] + np.cross(mu[:3], mu[3:])[0]
-        return -self.nose_mass * acceleration - 0.5 * self.water * self.nose_drag * mu[3] * abs(mu[3])
+        acceleration, speed = mu_rate[3] + np.cross(mu[:3], mu[3:])[0], mu[3]
+        if self.flow is not None:
+            nose = np.zeros((1, 3))
+            acceleration -= self.flow_acceleration(nose)[0, 0]
+            speed -= self.flow_at(nose)[0, 0]
+        return -self.nose_mass * acceleration - 0.5 * self.water * self.nose_drag * speed * abs(speed)
 
     def loads(self, K, K_rate, mu):
         """Everything on the right of eq. (60) but the nose: wrench (6,) about the head."""
         R, r = self.configuration(K)
         eta = self.twists(K, K_rate, mu)
-        torque, force = (np.einsum("xij,xj->xi", R, load) for load in self.resistive(eta))
+        drag = self.resistive(self.through_water(eta, R, r, turning=True))
+        torque, force = (np.einsum("xij,xj->xi", R, load) for load in drag)
         resistive = self.space.weights @ np.concatenate([torque + np.cross(r, force), force], axis=1)
-        ends = (self.at_tail(field) for field in (R.reshape(-1, 9), r, eta))
+        ends = (self.at_tail(field) for field in (R.reshape(-1, 9), r, self.through_water(eta, R, r)))
         tail_R, tail_r, tail_eta = ends
         return resistive + self.tail_wrench(tail_R.reshape(3, 3), tail_r, tail_eta)[0]
 
@@ -205,6 +269,8 @@ class Reference:
         matrix[3, 3] += self.nose_mass
         load[3] += self.nose_force(mu, still)
         load[:3] += self.space.weights @ self.righting(self.configuration(K)[0])
+        if self.flow is not None:
+            load += self.flow_force(K, K_rate, mu)
         return np.linalg.solve(matrix, load - self.momentum_rate(K, K_rate, K_acceleration, mu, still))
 
     def fluid_wrench(self, K, K_rate, K_acceleration, mu, mu_rate):
@@ -218,12 +284,14 @@ class Reference:
         """Internal torque and force, loads, energies, at the nodes; and what is left of the tail's condition (51)."""
 
         def density(K, K_rate, mu, turn):  # of sigma_b, p_b, sigma_f, p_f in resting axes, (4, N, 3)
-            R, eta = turn @ self.configuration(K)[0], self.twists(K, K_rate, mu)
-            kinetic = np.concatenate([self.inertia_body * eta, self.inertia_fluid * eta], axis=1).reshape(-1, 4, 3)
-            return np.einsum("xij,xpj->pxi", R, kinetic)
+            (R, r), eta = self.configuration(K), self.twists(K, K_rate, mu)
+            of_fluid = self.inertia_fluid * self.through_water(eta, R, r)
+            kinetic = np.concatenate([self.inertia_body * eta, of_fluid], axis=1).reshape(-1, 4, 3)
+            return np.einsum("xij,xpj->pxi", turn @ R, kinetic)
 
         step, integrate = 1j * STEP, self.space.cumulate
         _sigma_b, _p_b, sigma_f, p_f = density(K, K_rate, mu, np.eye(3))
+        pose = self.moved(step * mu, step)
         rates = (
             density(
                 K + step * K_rate,
@@ -233,13 +301,18 @@ class Reference:
             ).imag
             / STEP
         )
-        (R, _), eta = self.configuration(K), self.twists(K, K_rate, mu)
+        self.pose = pose
+        (R, r), true = self.configuration(K), self.twists(K, K_rate, mu)
+        eta, water_force = self.through_water(true, R, r), np.zeros_like(r)
+        if self.flow is not None:
+            water_force = self.displaced[:, None] * self.flow_acceleration(r)
+            water_force -= np.einsum("xji,xj->xi", self.flow_jacobian(r), p_f)
         to_axes, to_section = (lambda f: np.einsum("xij,xj->xi", R, f)), (lambda f: np.einsum("xji,xj->xi", R, f))
-        resistive_torque, resistive_force = self.resistive(eta)
+        resistive_torque, resistive_force = self.resistive(self.through_water(true, R, r, turning=True))
         wake = float(self.scene.wake)  # 0: no water is swept past the sections
         t1, V1, energy = R[:, :, 0], wake * eta[:, 3:4], wake * np.sum(self.inertia_fluid * eta**2, axis=1) / 2
         nose = self.nose_force(mu, mu_rate)
-        n_sum = -nose * E1 + integrate(rates[1] + rates[3] - to_axes(resistive_force))  # n + V1 p_f
+        n_sum = -nose * E1 + integrate(rates[1] + rates[3] - to_axes(resistive_force) - water_force)  # n + V1 p_f
         c_slope = rates[0] + rates[2] + np.cross(to_axes(eta[:, 3:]), p_f) - np.cross(t1, n_sum)
         c_sum = integrate(c_slope - to_axes(resistive_torque) - self.righting(R))  # c + V1 sigma_f
         force, torque = to_section(n_sum - V1 * p_f), to_section(c_sum - V1 * sigma_f)
@@ -253,18 +326,37 @@ class Reference:
             force=force,
             tail_residual=tail_residual,
             resistive_force=resistive_force,
-            fluid_force=to_section(self.space.evaluate(flux, self.space.x, derivative=True) - rates[3])
+            fluid_force=to_section(self.space.evaluate(flux, self.space.x, derivative=True) - rates[3] + water_force)
             + resistive_force,
             tail_force=-tail_energy * E1,
             nose_force=nose * E1,
             fluid_energy_density=energy,
             actuator_power=-self.space.weights @ np.sum(torque * K_rate, axis=1),
             potential=self.space.weights @ self.potential_density(R),
-            wake_power=wake * self.at_tail(eta)[3] * (self.tail_added @ self.at_tail(eta) ** 2) / 2,
+            wake_power=self.wake_power(eta, true),
+            flow_power=self.flow_power(true, R, r, p_f) if self.flow is not None else 0.0,
+            kinetic_fluid=self.energies(K, K_rate, mu)[1]
+            + self.space.weights @ np.sum(to_axes((true - eta)[:, 3:]) * p_f, axis=1),
             nose_power=nose * mu[3],
             drag_power=self.space.weights
-            @ np.sum(resistive_torque * eta[:, :3] + resistive_force * eta[:, 3:], axis=1),
+            @ np.sum(resistive_torque * true[:, :3] + resistive_force * true[:, 3:], axis=1),
         )
+
+    def wake_power(self, eta, true):
+        """Power (W) of what the tail gives to the wake; section twists through the water, and over ground."""
+        eta, moved = self.at_tail(eta), self.at_tail(true)
+        shed = self.scene.wake * self.tail_added
+        energy = shed @ eta**2 / 2
+        return eta[3] * energy + (eta[3] * shed * eta)[3:] @ (moved - eta)[3:] - energy * (moved - eta)[3]
+
+    def flow_power(self, true, R, r, p_f):
+        """Power (W) of the water's own motion: p . du/dt at a fixed place, and the undisturbed pressure."""
+        pose = self.moved(np.zeros(6), 1j * STEP)
+        rate = self.flow_at(r).imag / STEP
+        self.pose = pose
+        force = self.displaced[:, None] * self.flow_acceleration(r)
+        velocity = np.einsum("xij,xj->xi", R, true[:, 3:])
+        return self.space.weights @ np.sum(p_f * rate + force * velocity, axis=1)
 
     # -- motion in time ---------------------------------------------------------------------------------------------
     def march(self, law, times, position=(0, 0, 0), orientation=(0, 0, 0, 1), twist=(0,) * 6, rtol=1e-10, breaks=()):
@@ -277,6 +369,8 @@ class Reference:
             drift = world.T @ current
             mu[3:] -= drift  # relative to the water
             self.up = world[2]
+            if self.flow is not None:
+                self.pose = SimpleNamespace(position=state[:3], axes=world, time=time)
             mu_rate = self.acceleration(*law.curvature(time, self.space.x), mu)
             mu_rate[3:] -= np.cross(mu[:3], drift)
             vector, scalar = q[3] * mu[:3] + np.cross(q[:3], mu[:3]), -q[:3] @ mu[:3]

@@ -102,9 +102,12 @@ template <class M>
 void find_accelerations(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
 {
     find_shape_accelerations(swimmer, law, work);
-    const double drag_of_nose = nose_drag(swimmer, work.twist.linear.x);
+    double water_on_nose = nose_drag(swimmer, work.nose_through_water().x);
+    if (work.flowing) water_on_nose += swimmer.nose_mass * work.flow.nose().acceleration().x;
     auto left = work.tail + work.drag - set_inertial_density(swimmer, work);
-    left.linear.x += drag_of_nose;
+    left.linear.x += water_on_nose;
+    Wrench<M, double> of_flow{};
+    if (work.flowing) of_flow = total_wrench_of_flow(swimmer, work), left = left - of_flow;
     if (swimmer.righting != 0.0) left.angular += work.righting;
     auto head = components_of(left);
     work.inertia.solve(head);
@@ -114,8 +117,9 @@ void find_accelerations(const Swimmer& swimmer, const LawOnGrid& law, Workspace<
                     work.acceleration);
     work.balance = set_inertial_density(swimmer, work) - work.drag;
     if (swimmer.resistive) add_resistance(swimmer, work);
+    if (work.flowing) add_wrench_of_flow(swimmer, of_flow, work);
     if (swimmer.righting != 0.0) take_righting_torque(swimmer, work);
-    work.nose_force = drag_of_nose - swimmer.nose_mass * work.head_acceleration.linear.x;
+    work.nose_force = water_on_nose - swimmer.nose_mass * work.head_acceleration.linear.x;
 }
 
 }  // namespace eel_core

@@ -21,34 +21,38 @@ void find_loads(const Swimmer& swimmer, Workspace<M>& work)
     integrate_resistive_load(swimmer, work);
 }
 
-// Shape and twist of the head in state y at `time` [s]. False where the inertia is not positive definite.
+// Shape and twist of the head in state y at `time` [s], in such `water`. False where the inertia is not positive definite.
 template <class M>
-bool find_head_motion(const Swimmer& swimmer, const LawOnGrid& law, double time, const State& y, Workspace<M>& work)
+bool find_head_motion(const Swimmer& swimmer, const LawOnGrid& law, const Water& water, double time, const State& y,
+                      Workspace<M>& work)
 {
     configure(swimmer, law, time, work);  // eq. (25)
     work.head = head_frame(y, M());
     work.momentum = momentum_in_head(y, work.head);
+    set_flow(swimmer, water, time, Vector3{y[0], y[1], y[2]}, work);
     return find_twist(swimmer, work);  // section 6
 }
 
 // The same, and the velocities and loads along the body.
 template <class M>
-bool find_motion(const Swimmer& swimmer, const LawOnGrid& law, double time, const State& y, Workspace<M>& work)
+bool find_motion(const Swimmer& swimmer, const LawOnGrid& law, const Water& water, double time, const State& y,
+                 Workspace<M>& work)
 {
-    if (!find_head_motion(swimmer, law, time, y, work)) return false;
+    if (!find_head_motion(swimmer, law, water, time, y, work)) return false;
     set_velocities(swimmer, work.twist, work);
+    if (work.flowing) set_flow_load(swimmer, work);
     find_loads(swimmer, work);
     if (swimmer.righting != 0.0) set_righting_torque(swimmer, work);
     return true;
 }
 
-// Rate of state y at `time` [s]: eq. (27). `current` [m/s]: of the water.
+// Rate of state y at `time` [s]: eq. (27).
 template <class M>
-bool rate_of_state(const Swimmer& swimmer, const LawOnGrid& law, const Vector3<double>& current, double time,
-                   const State& y, Workspace<M>& work, State& rate)
+bool rate_of_state(const Swimmer& swimmer, const LawOnGrid& law, const Water& water, double time, const State& y,
+                   Workspace<M>& work, State& rate)
 {
-    if (!find_motion(swimmer, law, time, y, work)) return false;
-    put_velocity(work.twist, work.head, current, y, rate);
+    if (!find_motion(swimmer, law, water, time, y, work)) return false;
+    put_velocity(work.twist, work.head, water.current, y, rate);
     put_momentum(momentum_rate_from_loads(swimmer, work), work.head, rate);
     return true;
 }
@@ -62,13 +66,19 @@ void find_internal_wrench(const Swimmer& swimmer, const LawOnGrid& law, Workspac
     integrate_balance(swimmer, work);
 }
 
-// Powers [W] of actuators, wake, nose and drag, in the motion that `work` holds.
+// Powers [W] of actuators, wake, nose, drag and flow, in the motion that `work` holds.
 template <class M>
 Powers find_powers(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
 {
     find_internal_wrench(swimmer, law, work);
-    return {actuator_power(swimmer, work), work.tail_speed * work.tail_energy, work.nose_force * work.twist.linear.x,
-            work.drag_power};
+    Powers powers{actuator_power(swimmer, work), work.tail_speed * work.tail_energy,
+                  work.nose_force * work.twist.linear.x, work.drag_power, 0.0};
+    if (work.flowing) {
+        powers[1] += dot(work.tail.linear, work.flow.node(swimmer.grid.nodes - 1).u);
+        powers[3] += drag_power_of_flow(swimmer, work);
+        powers[4] = flow_power(swimmer, work);
+    }
+    return powers;
 }
 
 }  // namespace eel_core

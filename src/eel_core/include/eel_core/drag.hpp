@@ -57,18 +57,21 @@ Wrench<M, Lanes> local_resistive_load(const DragSection<Lanes>& section, Lanes l
     return resistive_load(section, laminar, excess, sign, v, roll);
 }
 
-// V and Omega1 of the sections from their true velocities.
+// V and Omega1 of the sections through the water, from their true velocities.
 template <class M>
 void set_speeds(const Swimmer& swimmer, Workspace<M>& work)
 {
+    const auto& through_water = work.velocity_through_water();
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
         const auto frame = work.frame[k];
-        const auto v = frame.local(work.velocity[k]);
+        const auto v = frame.local(through_water[k]);
         work.speed[axial].store(k, v.x);
         work.speed[lateral].store(k, v.y);
         if constexpr (!M::planar) {
             work.speed[vertical].store(k, v.z);
-            work.speed[roll].store(k, dot(frame.axis1, work.omega[k]));
+            Lanes turning = dot(frame.axis1, work.omega[k]);
+            if (work.flowing) turning -= 0.5 * work.flow[k].g.curl_along(frame.axis1);
+            work.speed[roll].store(k, turning);
         }
     }
 }

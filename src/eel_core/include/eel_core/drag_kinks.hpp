@@ -189,16 +189,19 @@ void find_kinks(const Swimmer& swimmer, Workspace<M>& work)
 {
     work.kink_count = 0;
     const std::size_t tail = swimmer.grid.nodes - 1;
+    const Vector<M, double> nose = work.nose_through_water();
     double at_tail = std::abs(work.speed[axial].node(tail)) + std::abs(work.speed[lateral].node(tail));
     if constexpr (M::planar) {
-        find_kinks_of(swimmer, lateral, work.twist.linear.y, noise_of_speeds * at_tail, work);
+        find_kinks_of(swimmer, lateral, nose.y, noise_of_speeds * at_tail, work);
     } else {
         at_tail += std::abs(work.speed[vertical].node(tail));
         const auto omega = work.omega.node(tail);
         const double spin = std::abs(omega.x) + std::abs(omega.y) + std::abs(omega.z);
-        find_kinks_of(swimmer, lateral, work.twist.linear.y, noise_of_speeds * at_tail, work);
-        find_kinks_of(swimmer, vertical, work.twist.linear.z, noise_of_speeds * at_tail, work);
-        find_kinks_of(swimmer, roll, work.twist.angular.x, noise_of_speeds * spin, work);
+        double turning = work.twist.angular.x;
+        if (work.flowing) turning -= 0.5 * work.flow.nose().g.curl_along(Vector3{1.0, 0.0, 0.0});
+        find_kinks_of(swimmer, lateral, nose.y, noise_of_speeds * at_tail, work);
+        find_kinks_of(swimmer, vertical, nose.z, noise_of_speeds * at_tail, work);
+        find_kinks_of(swimmer, roll, turning, noise_of_speeds * spin, work);
     }
     if (jumps(swimmer.friction)) find_kinks_of(swimmer, above_critical, -1.0, 0.0, work);
 }

@@ -7,7 +7,7 @@
 
 namespace eel_core {
 
-using Powers = std::array<double, 4>;  // [W], of actuators, wake, nose and drag
+using Powers = std::array<double, 5>;  // [W], of actuators, wake, nose, drag and flow
 
 // Integral of the density from the nose to the nodes.
 template <class M>
@@ -28,7 +28,8 @@ Wrench<M, Lanes> wrench_behind(const Workspace<M>& work, const Wrench<M, Lanes>&
 }
 
 // THE INTERNAL WRENCH, eq. (50), (51), at a block of sections: the wrench behind each, less the momentum of the water
-// that is swept past it. v, omega: V and Omega of the sections, in their axes.
+// that is swept past it. v, omega: velocity of the sections through the water and
+// Omega, in their axes.
 template <class M>
 Wrench<M, Lanes> internal_wrench(const Swimmer& swimmer, const Workspace<M>& work, const Wrench<M, Lanes>& integral,
                                  const Frame<M, Lanes>& frame, const Vector<M, Lanes>& position,

@@ -13,15 +13,8 @@ Wrench<M, T> momentum_flux(const Section<T>& section, const Vector<M, T>& v, con
     return {v.x * section.water_roll(omega), v.x * section.water_momentum(v)};
 }
 
-// `wrench` with a force along axis 1 added.
-template <class M, Number T>
-Wrench<M, T> plus_axial(Wrench<M, T> wrench, T force)
-{
-    wrench.linear.x += force;
-    return wrench;
-}
-
-// `tail`: the wake's wrench on the body about the head, from the true velocities; with V1 and T_f at the tail.
+// `tail`: the wake's wrench on the body about the head, from the true velocities; with V1 and T_f at the tail. In
+// water that moves, all of them by the velocity through it.
 template <class M>
 void set_tail_load(const Swimmer& swimmer, Workspace<M>& work)
 {
@@ -29,7 +22,7 @@ void set_tail_load(const Swimmer& swimmer, Workspace<M>& work)
     const auto frame = work.frame.node(tail);
     const auto position = work.position.node(tail);
     const Section<double> section = swimmer.sections.node(tail).weighed(swimmer.wake);
-    const Vector<M, double> v = frame.local(work.velocity.node(tail));
+    const Vector<M, double> v = frame.local(work.velocity_through_water().node(tail));
     const Angular<M, double> omega = frame.local(work.omega.node(tail));
     work.tail_speed = swimmer.wake * v.x;
     work.tail_energy = section.water_energy(v, omega);

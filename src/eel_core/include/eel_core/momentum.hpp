@@ -5,6 +5,7 @@
 #pragma once
 
 #include "eel_core/kinematics.hpp"
+#include "eel_core/moving_water.hpp"
 
 namespace eel_core {
 
@@ -96,7 +97,8 @@ Momentum<M, double> inertia_and_momentum(const Swimmer& swimmer, Workspace<M>& w
 template <class M>
 bool find_twist(const Swimmer& swimmer, Workspace<M>& work)
 {
-    const Momentum<M, double> shape = inertia_and_momentum(swimmer, work);
+    Momentum<M, double> shape = inertia_and_momentum(swimmer, work);
+    if (work.flowing) shape = shape - momentum_of_flow(swimmer, work);
     const bool definite = work.inertia.factor();
     auto solution = components_of(work.momentum - shape);
     work.inertia.solve(solution);
@@ -108,7 +110,8 @@ bool find_twist(const Swimmer& swimmer, Workspace<M>& work)
 template <class M>
 Momentum<M, double> momentum_of(const Swimmer& swimmer, const Twist<M, double>& twist, Workspace<M>& work)
 {
-    const Momentum<M, double> shape = inertia_and_momentum(swimmer, work);
+    Momentum<M, double> shape = inertia_and_momentum(swimmer, work);
+    if (work.flowing) shape = shape - momentum_of_flow(swimmer, work);
     const auto moved = work.inertia.times(components_of(twist));
     return shape + Components<Momentum<M, double>>::make([&](std::size_t k) { return moved[k]; });
 }

@@ -84,7 +84,8 @@ Momentum<M, double> momentum_rate_from_loads(const Swimmer& swimmer, const Works
     const Twist<M, double>& twist = work.twist;
     Wrench<M, double> rate = work.tail + work.drag;
     rate.linear += nose_turning_force(swimmer, twist);
-    rate.linear.x += nose_drag(swimmer, twist.linear.x);
+    rate.linear.x += nose_drag(swimmer, work.nose_through_water().x);
+    if (work.flowing) rate += work.flow_load;
     Vector<M, double> impulse = work.momentum.linear;
     impulse.x -= swimmer.nose_mass * twist.linear.x;
     rate.angular = rate.angular - cross(twist.linear, impulse);

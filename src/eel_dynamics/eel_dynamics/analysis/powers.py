@@ -36,17 +36,21 @@ def drag_powers(run) -> np.ndarray:
     the nodes of a simulation with the run's settings; their sum is the ledger's `drag_power`.
     """
     run = run.in_axes(REP103)
-    simulation = Simulation(body=run.body, scene=run.scene, accuracy=run.accuracy.as_it_is(), stations=2, law=run.law)
+    simulation = Simulation(
+        body=run.body, scene=run.scene, accuracy=run.accuracy.as_it_is(), stations=2, law=run.law, flow=run.flow
+    )
     follower, now = LawFollower(simulation.discretisation.tabulation, law=run.law), 0.0
     instant, powers = eel_core.Instant(simulation.discretisation.swimmer), np.zeros((len(run.time), 4))
     time, relative = np.ascontiguousarray(run.time), run.twist.copy()
     relative[:, 3:] -= np.asarray(run.scene.current) @ world_from_body(run.orientation)
+    water = simulation.setup.current, simulation.setup.core_flow
+    poses = np.concatenate([run.position, run.orientation], axis=1)
     begin = 0
     while begin < len(time):  # once for a law in closed form, and for each row of a `SampledLaw`
         follower.pass_events(now, now := float(time[begin]))
         end = max(begin + 1, int(np.searchsorted(time, follower.next_event(now), side="right")))
         part = slice(begin, end)
-        instant.drag_powers(follower.law_on_grid, time[part], relative[part], powers[part])
+        instant.drag_powers(follower.law_on_grid, time[part], relative[part], powers[part], *water, poses[part])
         begin = end
     return powers
 

@@ -52,6 +52,7 @@ class SectionData(NamedTuple):
     inertia2: np.ndarray  # kg m, about E2
     inertia3: np.ndarray  # kg m, about E3
     added_roll: np.ndarray  # kg m, of the water about E1
+    displaced: np.ndarray  # kg/m, of the water that the section displaces
     drag2: np.ndarray  # kg/m^2, 1/2 rho_f k2
     drag3: np.ndarray  # kg/m^2, 1/2 rho_f k3
     drag_roll: np.ndarray  # kg, 1/2 rho_f k4
@@ -65,7 +66,7 @@ class SectionData(NamedTuple):
         return self._replace(mass=none, inertia1=self.added_roll, inertia2=none, inertia3=none)
 
 
-# In which a section's inertial wrench and its drag are linear; the order is that of the core's `SectionPart`.
+# In which a section's inertial wrench, a flow's pressure and its drag are linear; the order is that of the core's `SectionPart`.
 PARTS = tuple(name for name in SectionData._fields if name not in ("added_roll", "by_critical_speed"))
 
 
@@ -78,7 +79,7 @@ class StationData(NamedTuple):
     added2_slope: np.ndarray  # (M,) kg/m^2, derivative of `added2` by X
     added3_slope: np.ndarray  # (M,) kg/m^2
     added_roll_slope: np.ndarray  # (M,) kg
-    missed: np.ndarray | tuple  # (11, M, p_max) for each of `PARTS`: what the rows of `points` miss, times m; or none
+    missed: np.ndarray | tuple  # (12, M, p_max) for each of `PARTS`: what the rows of `points` miss, times m; or none
 
 
 def nose_of(body: Body, scene: Scene) -> tuple[float, float]:
@@ -197,6 +198,7 @@ def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionData:
         inertia2=inertia2,
         inertia3=inertia3,
         added_roll=added_roll,
+        displaced=scene.fluid_density * area,
         drag2=half_rho * 2.0 * body.lateral_drag * a,
         drag3=half_rho * 2.0 * body.vertical_drag * b,
         drag_roll=half_rho * body.roll_drag * np.pi * (a**2 - b**2) ** 2,

@@ -27,6 +27,8 @@ from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import MEASURES, measures_of
 from eel_dynamics.analysis.settling import tell_unsettled
+from eel_dynamics.flow.flow import Flow
+from eel_dynamics.flow.plain import flow_of
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
@@ -41,7 +43,7 @@ from eel_dynamics.runs.storage.netcdf import loaded, write
 from eel_dynamics.runs.storage.run_contents import contents_of_batch, observed_of_batch, with_warnings
 from eel_dynamics.runs.storage.tables import dataset_of, frame_of_all, needed
 from eel_dynamics.runs.variables import COUNTS, Contents, documented_arrays
-from eel_dynamics.simulation.energy import EnergyLedger
+from eel_dynamics.simulation.energy import WORKS, EnergyLedger
 from eel_dynamics.simulation.observations import LOAD, Observations
 from eel_dynamics.simulation.stopping import SimulationStopped
 
@@ -84,6 +86,7 @@ class Batch:
     force: np.ndarray | None
     fluid_force: np.ndarray | None
     energy: EnergyLedger | None
+    flows: tuple[Flow | None, ...] = ()
     _out: tuple[Any, ...] = ()  # observations, works, energy at the start, of all, for `__getitem__`
 
     def __len__(self) -> int:
@@ -96,7 +99,7 @@ class Batch:
         return hash((self.laws, self.bodies, self.scenes))
 
     def __reduce__(self) -> tuple[Any, ...]:  # each array once
-        return _batch_from, (contents_of_batch(self, *self._out), self.laws, self.bodies, self.scenes)
+        return _batch_from, (contents_of_batch(self, *self._out), self.laws, self.bodies, self.scenes, self.flows)
 
     def __repr__(self) -> str:
         return (
@@ -126,7 +129,7 @@ class Batch:
         out, works, start = self._out
         scene, done = self.scenes[index], int(self.samples[index])
         return run_of(
-            Swimmer(self.laws[index], self.bodies[index], scene, self.x[index]),
+            Swimmer(self.laws[index], self.bodies[index], scene, self.x[index], self.flows[index]),
             out[index],
             works=works[index, :done],
             start=start[index],
@@ -189,6 +192,7 @@ def simulate_batch(
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
     most_evaluations: float = MOST_EVALUATIONS,
+    flows: Any = None,
 ) -> Batch:
     """Simulate B swimmers for `duration` [s] each, with samples every `sample_period` [s] from t = 0 on.
 
@@ -209,10 +213,11 @@ def simulate_batch(
         threads: None for one per available core.
         progress: progress(done, B) is called after each swimmer.
         most_evaluations: of each, as in `simulate`.
+        flows: one for all, or a sequence of B, each a flow or None. A `FlowField` runs in Python: one swimmer at a time.
     """
     accuracy = accuracy.tolist() if isinstance(accuracy, np.ndarray) else accuracy
     along = [0.0] if stations is None else stations
-    swimmers = swimmers_of(laws, bodies, scenes, accuracy, along, positions, orientations, twists, most_evaluations)
+    swimmers = swimmers_of(laws, bodies, scenes, accuracy, along, positions, orientations, twists, most_evaluations, flows)
     seconds = duration_of(duration, swimmers)
     if sample_period is None:
         sample_period = default_sample_period({law for law, _ in swimmers}, seconds)
@@ -223,7 +228,7 @@ def simulate_batch(
     count, load, points = len(swimmers), bool(load) and stations is not None, len(swimmers[0][1].x)
     check_memory(count, len(times), points, any(wrench), load)
     out = Observations.empty(len(times), points, any(wrench), load, (count,))
-    works, start = np.zeros((count, len(times), 4)), np.zeros(count)
+    works, start = np.zeros((count, len(times), len(WORKS))), np.zeros(count)
     samples, *_ = counts = np.zeros((4, count), dtype=int)
     settings = [setup.accuracy for _, setup in swimmers]
     errors: list[SimulationStopped | None] = [None] * count
@@ -251,18 +256,19 @@ def simulate_batch(
     for index in np.flatnonzero(samples < len(times)).tolist():
         for array in (*out[index].arrays().values(), works[index]):
             array[samples[index] :] = 0.0
-    swum = [Swimmer(law, setup.body, setup.scene, setup.x) for law, setup in swimmers]
+    swum = [Swimmer(law, setup.body, setup.scene, setup.x, setup.flow) for law, setup in swimmers]
     found = settings, errors, estimates, counts
     return _batch_of(swum, found, times, out, works, start, wrench, load, stations)
 
 
 class Swimmer(NamedTuple):
-    """A swimmer of a batch: its law, its body in a scene, its stations (M,) [m]."""
+    """A swimmer of a batch: its law, its body in a scene, its stations (M,) [m], and the flow of its water."""
 
     law: Law | SampledLaw
     body: Body
     scene: Scene
     x: np.ndarray
+    flow: Flow | None
 
 
 def _batch_of(
@@ -295,13 +301,16 @@ def _batch_of(
         error_estimates=tuple(estimates),
         x=np.array([each.x for each in swimmers]),
         energy=EnergyLedger.of(out.energies, out.powers, works, start[:, None]) if ledger else None,
+        flows=tuple(each.flow for each in swimmers),
         _out=(out, works, start),
         **{"fluid_force": None} | observed | dict.fromkeys(none),
     )
 
 
-def _batch_from(contents: Contents, laws: Any = None, bodies: Any = None, scenes: Any = None) -> Batch:
-    """The batch of these contents; laws, bodies and scenes too, where they are at hand."""
+def _batch_from(
+    contents: Contents, laws: Any = None, bodies: Any = None, scenes: Any = None, flows: Any = None
+) -> Batch:
+    """The batch of these contents; laws, bodies, scenes and flows too, where they are at hand."""
     values, arrays = contents.values, contents.arrays
     laws = laws or plain.row_of(values["laws"], plain.law_of)
     bodies = bodies or plain.row_of(values["bodies"], plain.body_of)
@@ -316,7 +325,8 @@ def _batch_from(contents: Contents, laws: Any = None, bodies: Any = None, scenes
     out, works = observed_of_batch(contents)
     stations, start = values["stations"] or None, arrays["energy_at_start"]
     wrench = [scene.internal_wrench and stations is not None for scene in scenes]
-    swum = list(map(Swimmer, laws, bodies, scenes, arrays["x"]))
+    flows = flows or [flow_of(each) for each in values.get("flows", count * [None])]
+    swum = list(map(Swimmer, laws, bodies, scenes, arrays["x"], flows))
     found = settings, errors, estimates, counts
     return _batch_of(swum, found, arrays["time"], out, works, start, wrench, "fluid_force" in arrays, stations)
 

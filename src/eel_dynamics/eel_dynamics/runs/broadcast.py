@@ -9,26 +9,37 @@ from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
+from eel_dynamics.flow.flow import Flow
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.initial_state import InitialState, check_planar, checked_quaternion
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.motions import LAWS
-from eel_dynamics.simulation.simulation_setup import SimulationSetup, check_planar_law, checked_stations
+from eel_dynamics.simulation.simulation_setup import SimulationSetup, check_flow, check_planar_law, checked_stations
 
 
 def swimmers_of(
-    laws, bodies, scenes, accuracy, stations, positions, orientations, twists, most_evaluations=MOST_EVALUATIONS
+    laws,
+    bodies,
+    scenes,
+    accuracy,
+    stations,
+    positions,
+    orientations,
+    twists,
+    most_evaluations=MOST_EVALUATIONS,
+    flows=None,
 ) -> list[tuple[Law | SampledLaw, SimulationSetup]]:
     """Laws and set-ups of B swimmers, with `stations` on each body, and `most_evaluations` per simulated second.
 
-    Each other argument is one for all, or a sequence of B (for the last three the rows of an array (B, .)); a sequence
+    flows: None for none. Each other argument is one for all, or a sequence of B (for the last three the rows of an array (B, .)); a sequence
     of length 1 counts as one for all. `ValueError` names what does not fit, and the swimmer's number.
     """
-    laws, bodies, scenes, settings, *states = _broadcast(
+    laws, bodies, scenes, settings, flows, *states = _broadcast(
         laws=_several("laws", laws, LAWS),
         bodies=_several("bodies", Body.boyer2010() if bodies is None else bodies, Body),
         scenes=_several("scenes", Scene() if scenes is None else scenes, Scene),
         accuracy=[Accuracy.of(each) for each in (accuracy if isinstance(accuracy, (list, tuple)) else [accuracy])],
+        flows=[None] if flows is None else _several("flows", flows, (Flow, type(None))),
         positions=_rows("positions", positions, lambda name, row: checked_row(name, row, 3)),
         orientations=_rows("orientations", orientations, checked_quaternion),
         twists=_rows("twists", twists, lambda name, row: checked_row(name, row, 6)),
@@ -36,13 +47,13 @@ def swimmers_of(
     most = positive("most_evaluations", most_evaluations, "per simulated second")
     x = {length: checked_stations(stations, length) for length in dict.fromkeys(body.length for body in bodies)}
     swimmers = []
-    for index, (law, body, scene, accuracy, *state) in enumerate(
-        zip(laws, bodies, scenes, settings, *states, strict=True)
+    for index, (law, body, scene, accuracy, flow, *state) in enumerate(
+        zip(laws, bodies, scenes, settings, flows, *states, strict=True)
     ):
         initial = InitialState(*state)
-        if scene.planar:
-            _check_planar(index, law, initial)
-        swimmers.append((law, SimulationSetup(body, scene, accuracy, x[body.length], initial, most_evaluations=most)))
+        _check_swimmer(index, law, scene, flow, initial)
+        setup = SimulationSetup(body, scene, accuracy, x[body.length], initial, most_evaluations=most, flow=flow)
+        swimmers.append((law, setup))
     return swimmers
 
 
@@ -74,9 +85,11 @@ def _rows(name: str, values, check) -> list[np.ndarray]:
     return [check(f"{name}[{index}]", row) for index, row in enumerate(np.atleast_1d(array))]
 
 
-def _check_planar(index: int, law: Law | SampledLaw, initial: InitialState):
+def _check_swimmer(index: int, law: Law | SampledLaw, scene: Scene, flow: Flow | None, initial: InitialState):
     try:
-        check_planar(*initial)
-        check_planar_law(law)
+        if scene.planar:
+            check_planar(*initial)
+            check_planar_law(law)
+        check_flow(flow, scene, initial)
     except ValueError as error:
         raise ValueError(f"swimmer {index}: {error}") from None

@@ -24,6 +24,7 @@ from eel_dynamics.analysis.model_limits import warnings_of
 from eel_dynamics.analysis.peaks import FINER, MOST_SAMPLES, greatest_torque_of
 from eel_dynamics.analysis.run_summary import describe
 from eel_dynamics.analysis.settling import Unsettled
+from eel_dynamics.flow.flow import Flow
 from eel_dynamics.model.axes import CONVENTIONS, REP103, SIGNS, turn_vector, turned
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
@@ -88,6 +89,7 @@ class Run:
     evaluations: int
     nodes: int
     error_estimate: ErrorEstimate | None = None  #: None where none was wanted, or for fewer than two samples
+    flow: Flow | None = None  #: of the water; its own numbers are in REP-103 axes always
     axes: str = REP103  #: of world and head: "rep103" (x forward, y left, z up), or "paper"
 
     def __eq__(self, other: object) -> bool:
@@ -342,6 +344,7 @@ def simulate(
     estimate: bool = True,
     most_evaluations: float = MOST_EVALUATIONS,
     progress: Callable[[float, float], None] | None = None,
+    flow: Flow | None = None,
 ) -> Run:
     """Simulate `law` for `duration` [s], with samples every `sample_period` [s] from t = 0 on.
 
@@ -365,6 +368,7 @@ def simulate(
         most_evaluations: of the head's dynamics per simulated second. A law that needs more is refused, or stopped.
         progress: progress(time, left) is called once a second with the simulation time reached [s] and the remaining
             wall time [s]. Without it, a run longer than a minute gives a warning.
+        flow: how the water moves by itself, beside the scene's current (`Gust`, `Wave` ...); None: not at all.
     """
     setup = SimulationSetup.of(
         body=body,
@@ -373,6 +377,7 @@ def simulate(
         stations=stations,
         initial_state=(position, orientation, twist),
         most_evaluations=most_evaluations,
+        flow=flow,
     )
     length, wrench = setup.body.length, setup.scene.internal_wrench
     if until_settled(duration):
@@ -429,6 +434,7 @@ def _simulated_again(
         estimate=False,
         most_evaluations=most_evaluations,
         progress=lambda reached, left: None,
+        flow=run.flow,
     )
     return again.in_axes(axes)
 
@@ -438,7 +444,7 @@ class Swim(NamedTuple):
 
     run: Run
     out: Observations
-    works: np.ndarray  # (T, 4) J
+    works: np.ndarray  # (T, 5) J
     energy_at_start: float  # J
     stopped: SimulationStopped | None
 
@@ -500,7 +506,7 @@ def run_of(
 ) -> Run:
     """The run of the samples in `out` that were reached.
 
-    setup: has the body, the scene and the stations x. works (T, 4) [J], and time (T,) [s]: of those samples. start [J]:
+    setup: has the body, the scene, the flow and the stations x. works (T, 5) [J], and time (T,) [s]: of those samples. start [J]:
     the energy at the start. wrench, load: whether the internal wrench and the water's load were observed. others: the
     other fields of the run.
     """
@@ -512,6 +518,7 @@ def run_of(
     return Run(
         body=setup.body,
         scene=setup.scene,
+        flow=setup.flow,
         x=setup.x,
         time=time,
         energy=EnergyLedger.of(energies, powers, works, start) if setup.scene.ledger else None,

@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """The energy ledger: where the work of the actuators goes (eq. 60 times the head's twist).
 
-    d/dt (kinetic_body + kinetic_fluid + potential) = actuator_power + wake_power + nose_power + drag_power
+    d/dt (kinetic_body + kinetic_fluid + potential) = actuator_power + wake_power + nose_power + drag_power + flow_power
 
 A positive power feeds energy into body and water. The power of the wake is V1(l) T_f(l). It is positive where the tail
 leads, which is a limit of the theory. The power of the nose includes that of its added mass, so kinetic_fluid does not
 include 1/2 m_o V1^2. The power of the drag does not include the nose. The potential energy is that of
 the righting moment (`Scene.metacentric_height`), 0 where every section stands upright.
+
+Where the water moves by itself (`flow`), U is its velocity at a section and p the momentum of the section's water that
+moves through it: kinetic_fluid is the integral of T_f + p . U, and flow_power that of p . u_t + rho_f A a_u . V, the
+powers of the rate of u at the fixed place and of the undisturbed pressure. It is 0 without a flow.
 """
 
 from dataclasses import dataclass, fields
@@ -16,10 +20,12 @@ import numpy as np
 
 from eel_dynamics.model.equality import same_fields
 
+WORKS = "actuator", "wake", "nose", "drag", "flow"  # whose powers and works a ledger has, in the order of eel_core
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class EnergyLedger:
-    """The energy ledger of one instant (floats) or of a run ((T,) arrays). Velocities are relative to the water.
+    """The energy ledger of one instant (floats) or of a run ((T,) arrays). Velocities are relative to the current.
 
     Energies, works and the residual are in J, powers in W. A power > 0 brings energy into body and water.
     """
@@ -31,11 +37,13 @@ class EnergyLedger:
     wake_power: Annotated[np.ndarray, "W", "power of the wake"]
     nose_power: Annotated[np.ndarray, "W", "power of the load on the nose"]
     drag_power: Annotated[np.ndarray, "W", "power of the drag along the body"]
+    flow_power: Annotated[np.ndarray, "W", "power of the water's own motion, 0 without a flow"]
     residual: Annotated[np.ndarray, "J", "change of all energy since the start less the works"]
     actuator_work: Annotated[np.ndarray, "J", "work of the actuators since the start"]
     wake_work: Annotated[np.ndarray, "J", "work of the wake since the start"]
     nose_work: Annotated[np.ndarray, "J", "work of the load on the nose since the start"]
     drag_work: Annotated[np.ndarray, "J", "work of the drag along the body since the start"]
+    flow_work: Annotated[np.ndarray, "J", "work of the water's own motion since the start"]
 
     def __eq__(self, other: object) -> bool:
         return same_fields(self, other)
@@ -60,8 +68,8 @@ class EnergyLedger:
     def of(energies: Any, powers: Any, works: Any, start: Any) -> "EnergyLedger":
         """A ledger from its numbers.
 
-        energies (..., 3) [J]: kinetic of body and of water, potential. powers (..., 4) [W] and works (..., 4) [J]: of
-        actuators, wake, nose and drag. start [J]: the sum of the energies at the start.
+        energies (..., 3) [J]: kinetic of body and of water, potential. powers (..., 5) [W] and works (..., 5) [J]: of
+        actuators, wake, nose, drag and flow. start [J]: the sum of the energies at the start.
         """
         if energies.ndim == 1:  # an instant, for a node at real time
             energies, powers, works = energies.tolist(), powers.tolist(), works.tolist()

@@ -68,7 +68,7 @@ class March:
         `ValueError` where the law cannot be begun.
         """
         needs = setup.shape_needs(law)
-        wanted = GridSettings.of(setup.settings, needs)
+        wanted = setup.grid_for(needs)
         try:
             with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is reported
                 return March(setup, wanted if settings is None else settings.at_least(wanted), needs, law, origin)
@@ -90,14 +90,14 @@ class March:
         origin [s]: the time of the law's own t = 0. The grid fits the `needs` of the law and of the last one.
         """
         both = ShapeNeeds(max(self._needs.waves, needs.waves), needs.knots)
-        self._use(self.settings.at_least(GridSettings.of(self.setup.settings, both)))
+        self._use(self.settings.at_least(self.setup.grid_for(both)))
         self.follower.blend_into(law, origin=origin, time=self.time, transition=transition)
         self._hand_over_law()
         self._needs = needs
 
     def _fit(self, needs: ShapeNeeds):
         """Make the grid fine enough for the `needs` and, once no finer motion is left, not much finer."""
-        wanted = GridSettings.of(self.setup.settings, needs)
+        wanted = self.setup.grid_for(needs)
         self._use(self.settings.at_least(wanted) if self.follower.blending else self.settings.fitted(wanted))
 
     def _fit_samples(self, samples: list[CurvatureSample]):
@@ -120,8 +120,11 @@ class March:
     def _hand_over_law(self, smoothly: bool = False):
         """Continue under the follower's law. The next step begins anew, unless the motion goes on `smoothly`."""
         self.law_on_grid, self._bounds = self.follower.law_on_grid, self._step_bounds()
-        breakpoints, ledger = self.follower.breakpoints, bool(self.setup.scene.ledger)
-        self.core.follow(self.law_on_grid, breakpoints, self._bounds, ledger, self.setup.current, smoothly)
+        setup, breakpoints = self.setup, self.follower.breakpoints
+        if setup.flow is not None:
+            breakpoints = sorted({*breakpoints, *setup.flow.breakpoints})
+        ledger, flow = bool(setup.scene.ledger), setup.core_flow
+        self.core.follow(self.law_on_grid, breakpoints, self._bounds, ledger, setup.current, flow, smoothly)
 
     def _step_bounds(self) -> eel_core.StepBounds:
         setup, follower, here = self.setup, self.follower, self.discretisation
@@ -133,7 +136,7 @@ class March:
             mass=here.mass,
             length=setup.body.length,
             speed=follower.speed(setup.body.length),
-            scale=min(follower.time_scale, self._time_scale, here.righting_time),
+            scale=min(follower.time_scale, self._time_scale, here.righting_time, setup.flow_time_scale),
             most_evaluations=setup.most_evaluations,
         )
 
@@ -172,7 +175,7 @@ class March:
         return self.follower.next_event(self.time)
 
     def record(self, times: np.ndarray, out: Observations, works: np.ndarray, wrench: bool, load: bool, look) -> tuple:
-        """As `Simulation.record`, into `out` and `works` (T, 4) [J]."""
+        """As `Simulation.record`, into `out` and `works` (T, 5) [J]."""
         done, status = 0, MARCHED
         while status == MARCHED and done < len(times):
             event, status = self._pass_event(), UNFINISHED

@@ -60,7 +60,7 @@ class Observations:
     )
     center_of_mass = Observed("time world", "m", "centre of mass, world")
     energies = Observed("time energy", "J", "kinetic of body and of water, potential")
-    powers = Observed("time power", "W", "of actuators, wake, nose and drag")
+    powers = Observed("time power", "W", "of actuators, wake, nose, drag and flow")
     closure = Observed("time closure", "N m, N", "what is left at the nose of the internal torque and force")
     backbone = Observed("time station world", "m", "backbone, world")
     section_orientation = Observed("time station quaternion", "1", "world from section, x y z w")
@@ -135,7 +135,7 @@ class Snapshot(Observations):
         self._energy: EnergyLedger | None = None
 
     def keep_ledger(self, works: np.ndarray, energy_at_start: float) -> None:
-        """Have a ledger, from the `works` (4,) [J] since the start and the energy [J] there."""
+        """Have a ledger, from the `works` (5,) [J] since the start and the energy [J] there."""
         self._works, self._energy_at_start = works, energy_at_start
 
     @property

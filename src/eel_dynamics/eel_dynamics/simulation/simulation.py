@@ -23,11 +23,13 @@ from eel_dynamics.accuracy.error_estimate import ErrorEstimate, HeadErrors
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
+from eel_dynamics.flow.flow import Flow
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.grid import Grid
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.discretisation import Discretisation
+from eel_dynamics.simulation.energy import WORKS
 from eel_dynamics.simulation.error_meter import ErrorMeter
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Observations, Snapshot
@@ -53,6 +55,7 @@ class Simulation:
         most_evaluations: of the head's dynamics per simulated second. A law that needs more is refused, or the run
             stops.
         measure_error: whether a companion with coarser settings follows, for `error_estimate` and `head_errors`.
+        flow: how the water moves by itself, beside the scene's current; None: not at all.
     """
 
     def __init__(
@@ -68,6 +71,7 @@ class Simulation:
         law: Law | SampledLaw | None = None,
         most_evaluations: float = MOST_EVALUATIONS,
         measure_error: bool = False,
+        flow: Flow | None = None,
     ) -> None:
         setup = SimulationSetup.of(
             body=body,
@@ -77,6 +81,7 @@ class Simulation:
             initial_state=(position, orientation, twist),
             default_transition=default_transition,
             most_evaluations=most_evaluations,
+            flow=flow,
         )
         if isinstance(setup.accuracy, Budget):
             at_hand = partial(swim_time, setup.body, setup.scene, setup.x.tobytes())
@@ -283,12 +288,12 @@ class Simulation:
     ) -> tuple[Observations, np.ndarray, int, SimulationStopped | None]:
         """March through `times` (T,) [s] under the law in force, and observe each.
 
-        Returns the observations, the works (T, 4) [J] of actuators, wake, nose and drag, the number of good instants,
-        and what stopped the march, or None. look(time [s]) is called every few milliseconds. out: space for the
+        Returns the observations, the works (T, 5) [J] of actuators, wake, nose, drag and flow, the number of good
+        instants, and what stopped the march, or None. look(time [s]) is called every few milliseconds. out: space for the
         observations (`Observations.empty`). After a bad instant the simulation must be reset.
         """
         out = Observations.empty(len(times), len(self.x), wrench, load) if out is None else out
-        works = np.zeros((len(times), 4))
+        works = np.zeros((len(times), len(WORKS)))
         self._started = True
         recorded = self._march.record(np.array(times, dtype=float), out, works, wrench, load, look)
         if self._meter is not None:
@@ -302,7 +307,7 @@ class Simulation:
 
     @property
     def works(self) -> np.ndarray:
-        """(4,) J of actuators, wake, nose and drag since the start."""
+        """(5,) J of actuators, wake, nose, drag and flow since the start."""
         return np.array(self._march.core.works)
 
     @property

@@ -10,13 +10,15 @@ from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 
+import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.budget import Budget
-from eel_dynamics.accuracy.grid_settings import ShapeNeeds
+from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
 from eel_dynamics.accuracy.law_waves import check_law, knots_of_law, waves_of_rows
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS, check_cost
 from eel_dynamics.curvature.curvature_samples import check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
+from eel_dynamics.flow.flow import Flow, checked_flow, core_flow
 from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.initial_state import InitialState, check_planar, checked_quaternion, time_scale
 from eel_dynamics.model.scene import Scene
@@ -36,6 +38,12 @@ def checked_state(scene: Scene, position, orientation, twist) -> InitialState:
     return state
 
 
+def check_flow(flow: Flow | None, scene: Scene, start: InitialState) -> None:
+    """`ValueError` for a flow that `scene` does not allow, or whose surface is below the head at the `start`."""
+    if checked_flow(flow, scene.planar) is not None and start.position[2] > flow.surface_height:
+        raise ValueError(f"flow surface must be above the head, at z = {start.position[2]:g} m, got {flow!r}")
+
+
 @dataclass(frozen=True)
 class SimulationSetup:
     """The part of a simulation that neither a march nor a reset changes. `of` checks the arguments."""
@@ -47,6 +55,7 @@ class SimulationSetup:
     initial_state: InitialState
     default_transition: float = DEFAULT_TRANSITION  # s
     most_evaluations: float = MOST_EVALUATIONS  # by simulated second
+    flow: Flow | None = None
 
     @staticmethod
     def of(
@@ -58,6 +67,7 @@ class SimulationSetup:
         initial_state: tuple,
         default_transition: float = DEFAULT_TRANSITION,
         most_evaluations: float = MOST_EVALUATIONS,
+        flow: Flow | None = None,
     ) -> "SimulationSetup":
         """The set-up from the arguments of `Simulation`. `ValueError` names the one that does not fit.
 
@@ -67,14 +77,15 @@ class SimulationSetup:
         scene = Scene() if scene is None else checked_instance("scene", scene, Scene)
         accuracy, x = Accuracy.of(accuracy), checked_stations(stations, body.length)
         start = checked_state(scene, *initial_state)
+        check_flow(flow, scene, start)
         most_evaluations = positive("most_evaluations", most_evaluations, "per simulated second")
         transition = positive("default_transition", default_transition, "s")
-        return SimulationSetup(body, scene, accuracy, x, start, transition, most_evaluations)
+        return SimulationSetup(body, scene, accuracy, x, start, transition, most_evaluations, flow)
 
     @property
     def arguments(self) -> dict:
         """The arguments of `Simulation` that give such a set-up, without a law."""
-        own = ("body", "scene", "accuracy", "default_transition", "most_evaluations")
+        own = ("body", "scene", "accuracy", "default_transition", "most_evaluations", "flow")
         return {name: getattr(self, name) for name in own} | {"stations": self.x} | self.initial_state._asdict()
 
     def __deepcopy__(self, memo: dict) -> "SimulationSetup":
@@ -86,8 +97,24 @@ class SimulationSetup:
         return np.array(self.scene.current)
 
     @cached_property
+    def core_flow(self) -> eel_core.Flow | None:
+        """The flow for the compiled mechanics."""
+        return None if self.flow is None else core_flow(self.flow, bool(self.scene.planar))
+
+    @property
+    def flow_time_scale(self) -> float:
+        """Shortest period [s] of the flow at a fixed place; infinite without one."""
+        return np.inf if self.flow is None else self.flow.time_scale
+
+    def grid_for(self, needs: ShapeNeeds) -> GridSettings:
+        """The settings of the grid for the `needs` of a law, and those of the flow."""
+        if self.flow is not None:
+            needs = needs._replace(waves=max(needs.waves, self.body.length / self.flow.shortest_wave))
+        return GridSettings.of(self.settings, needs)
+
+    @cached_property
     def initial_twist(self) -> np.ndarray:
-        """Initial twist (6,) [rad/s, m/s] of the head relative to the water, in the head's axes."""
+        """Initial twist (6,) [rad/s, m/s] of the head relative to the current, in the head's axes."""
         return self.initial_state.in_water(self.current)
 
     @cached_property

@@ -256,6 +256,14 @@ auto about_head(const auto& frame, const auto& position, const auto& in_section)
     return Wrench<M, decltype(force.x)>{frame.parent(in_section.angular) + cross(position, force), force};
 }
 
+// `wrench` with a force along axis 1 added.
+template <class M, Number T>
+Wrench<M, T> plus_axial(Wrench<M, T> wrench, T force)
+{
+    wrench.linear.x += force;
+    return wrench;
+}
+
 template <class S, Number B>
 using With = typename Components<S>::template With<B>;
 

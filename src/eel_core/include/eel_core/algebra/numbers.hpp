@@ -164,6 +164,8 @@ inline Lanes select(Mask mask, Lanes yes, Lanes no)
     return Lanes(mask.native_ ? yes.native() : no.native());
 #endif
 }
+inline bool any(bool condition) { return condition; }
+inline bool any(Mask mask) { return mask.any(); }
 inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
 
 // The size of `value` with the sign of `sign`.
@@ -263,6 +265,29 @@ std::array<T, 2> sine_and_cosine(T angle)
     const T odd = quarters - 2.0 * round_down(0.5 * quarters);  // 1: a quarter turn to go
     const T sign = 1.0 - 2.0 * (round_down(0.5 * quarters) - 2.0 * round_down(0.25 * quarters));  // -1: half a turn
     return {sign * (s + odd * (c - s)), sign * (c - odd * (c + s))};
+}
+
+// exp(x): 2^n exp(rest), by Taylor's series of the rest, which is at most ln(2)/2. Below -700 it counts as exp(-700).
+template <Number T>
+T exponential(T x)
+{
+    constexpr double ln2 = 0.69314718036912381649, its_rest = 1.90821492927058770002e-10;  // in two parts
+    constexpr double shift = 6755399441055744.0;  // 1.5 * 2^52: added to a whole number, its last bits are that number
+    const T bounded = select(x < T(-700.0), T(-700.0), x);
+    const T n = round_down(bounded * 1.4426950408889634 + 0.5);
+    const T r = (bounded - n * ln2) - n * its_rest;
+    T sum(1.0 / 6227020800.0);
+    for (const double coefficient :
+         {1.0 / 479001600.0, 1.0 / 39916800.0, 1.0 / 3628800.0, 1.0 / 362880.0, 1.0 / 40320.0, 1.0 / 5040.0,
+          1.0 / 720.0, 1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0, 0.5, 1.0, 1.0})
+        sum = sum * r + coefficient;
+    if constexpr (std::same_as<T, double>) {
+        const auto bits = std::bit_cast<std::uint64_t>(n + shift) << 52u;
+        return sum * std::bit_cast<double>(bits + std::bit_cast<std::uint64_t>(1.0));
+    } else {
+        const auto bits = std::bit_cast<Lanes::Bits>((n + shift).native()) << 52;
+        return sum * Lanes(std::bit_cast<Lanes::Native>(bits + std::bit_cast<Lanes::Bits>(Lanes(1.0).native())));
+    }
 }
 
 // x^(-1/5) of positive numbers: a fifth of the exponent, within 4 per cent, then two steps of order 4 by the binomial

@@ -14,12 +14,12 @@ class Instant {
     explicit Instant(std::shared_ptr<const Swimmer> swimmer) : swimmer_(std::move(swimmer)), work_(*swimmer_) {}
 
     // Rate of the state; false where the inertia is not positive definite.
-    bool rate(const LawOnGrid& law, const Vector3<double>& current, double time, const State& y, State& rate)
+    bool rate(const LawOnGrid& law, const Water& water, double time, const State& y, State& rate)
     {
-        return rate_of_state(*swimmer_, law, current, time, y, work_, rate);
+        return rate_of_state(*swimmer_, law, water, time, y, work_, rate);
     }
 
-    // Powers of actuators, wake, nose and drag in the motion that `rate` has found last.
+    // Powers of actuators, wake, nose, drag and flow in the motion that `rate` has found last.
     Powers powers(const LawOnGrid& law) { return find_powers(*swimmer_, law, work_); }
 
     // Inertia of the body about the head, nose included, as the law bends it.
@@ -30,24 +30,31 @@ class Instant {
         return work_.inertia;
     }
 
-    // Wrenches of wake and drag on the body for a given twist of the head.
+    // Wrenches of wake and drag on the body for a given twist of the head, in still water.
     std::array<Wrench<M, double>, 2> loads(const LawOnGrid& law, double time, const Twist<M, double>& twist)
     {
-        move(law, time, twist);
+        move(law, time, twist, {}, {});
         return {work_.tail, work_.drag};
     }
 
-    // Powers of the axial friction, the lateral and vertical drag, and the roll drag, for a given twist.
-    std::array<double, 4> drag_powers(const LawOnGrid& law, double time, const Twist<M, double>& twist)
+    // Powers of the axial friction, the lateral and vertical drag, and the roll drag, for a given twist of the head in
+    // the state y, whose momentum is not read.
+    std::array<double, 4> drag_powers(const LawOnGrid& law, double time, const Twist<M, double>& twist, const Water& water,
+                                      const State& y)
     {
-        move(law, time, twist);
+        move(law, time, twist, water, y);
         std::array<Lanes, 4> sum;
         sum.fill(Lanes(0.0));
         for (std::size_t k = 0; swimmer_->resistive && k < swimmer_->grid.blocks; ++k) {
-            const auto v = speeds_from(work_, width * k);
-            const Lanes turning = roll_from(work_, width * k);
+            auto v = speeds_from(work_, width * k);
+            Lanes turning = roll_from(work_, width * k);
             const auto load = resistive_load(swimmer_->sections.drag(k), work_.friction_laminar[k],
                                              work_.friction_excess[k], load_weights(*swimmer_, work_, k), v, turning);
+            if (work_.flowing) {  // the power is that of the true velocities
+                const auto frame = work_.frame[k];
+                v += frame.local(work_.flow[k].u);
+                turning += 0.5 * work_.flow[k].g.curl_along(frame.t1());
+            }
             sum[0] += load.linear.x * v.x;
             sum[1] += load.linear.y * v.y;
             if constexpr (!M::planar) sum[2] += load.linear.z * v.z;
@@ -60,7 +67,7 @@ class Instant {
     Wrench<M, double> momentum_rate(const LawOnGrid& law, double time, const Twist<M, double>& twist,
                                     const Twist<M, double>& acceleration)
     {
-        move(law, time, twist);
+        move(law, time, twist, {}, {});
         find_shape_accelerations(*swimmer_, law, work_);
         add_head_motion(*swimmer_, acceleration, work_.position, work_.alpha, work_.acceleration, work_.alpha,
                         work_.acceleration);
@@ -68,10 +75,16 @@ class Instant {
     }
 
   private:
-    void move(const LawOnGrid& law, double time, const Twist<M, double>& twist)
+    void move(const LawOnGrid& law, double time, const Twist<M, double>& twist, const Water& water, const State& y)
     {
         configure(*swimmer_, law, time, work_);
+        work_.flowing = false;
+        if (water.flow) {
+            work_.head = head_frame(y, M());
+            set_flow(*swimmer_, water, time, Vector3{y[0], y[1], y[2]}, work_);
+        }
         set_velocities(*swimmer_, twist, work_);
+        if (work_.flowing) set_flow_load(*swimmer_, work_);
         find_loads(*swimmer_, work_);
     }
 

@@ -75,7 +75,7 @@ class March {
     Twist<Space, double> twist()
     {
         Workspace<Space>& work = workspace();
-        if (!find_head_motion(*swimmer_, settings_.law, time_, state_, work))
+        if (!find_head_motion(*swimmer_, settings_.law, settings_.water, time_, state_, work))
             throw std::domain_error("inertia is not positive definite");
         return work.twist;
     }
@@ -85,11 +85,11 @@ class March {
     std::optional<HeadMotion> head()
     {
         Workspace<Space>& work = workspace();
-        if (!find_head_motion(*swimmer_, settings_.law, time_, state_, work)) return {};
+        if (!find_head_motion(*swimmer_, settings_.law, settings_.water, time_, state_, work)) return {};
         HeadMotion head;
         std::copy_n(state_.begin(), 7, head.begin());
         put(work.twist.angular, head.data() + 7);
-        put(work.twist.linear + work.head.local(settings_.current), head.data() + 10);
+        put(work.twist.linear + work.head.local(settings_.water.current), head.data() + 10);
         return head;
     }
 
@@ -109,8 +109,10 @@ class March {
         Workspace<Space>& work = workspace();
         configure(*swimmer_, settings_.law, time_, work);
         work.head = head_frame(state_, Space());
+        set_flow(*swimmer_, settings_.water, time_, Vector3{state_[0], state_[1], state_[2]}, work);
         put_momentum(momentum_of(*swimmer_, twist, work), work.head, state_);
         set_velocities(*swimmer_, twist, work);
+        if (work.flowing) set_flow_load(*swimmer_, work);
         if (swimmer_->righting != 0.0) set_righting_torque(*swimmer_, work);
         begin();
         const auto [body, water, potential] = energies_of(*swimmer_, work);
@@ -138,7 +140,7 @@ class March {
             const Status status = slice.used_up() ? Status::unfinished : advance(times[done], slice);
             if (status != Status::marched) return status;
             if (!observe(observer, done)) return Status::singular;
-            std::copy(works_.begin(), works_.end(), works + 4 * done);
+            std::copy(works_.begin(), works_.end(), works + works_.size() * done);
             slice.spend(4 * (swimmer_->grid.nodes + swimmer_->stations));
         }
         return Status::marched;
@@ -147,7 +149,7 @@ class March {
     // Fills the `sample` with what the present shows. False where the inertia is not positive definite.
     bool observe(const Observer& observer, std::size_t sample)
     {
-        return observer.observe(settings_.law, settings_.current, time_, state_, sample, workspace(), here_);
+        return observer.observe(settings_.law, settings_.water, time_, state_, sample, workspace(), here_);
     }
 
   private:
@@ -166,6 +168,16 @@ class March {
     }
 
     Status advance(double time, Slice& slice)
+    {
+        try {
+            return march_to(time, slice);
+        } catch (...) {  // of a flow that is a function
+            begin();
+            throw;
+        }
+    }
+
+    Status march_to(double time, Slice& slice)
     {
         return std::visit(
             [&](auto& stepper) {

@@ -22,17 +22,20 @@ class MissedWrench {
     }
 
     // Adds it to `integral`. The drag has the signs of the speeds at each station, as if none changed within its panel.
-    // omega, velocity: true ones of the stations.
+    // omega, velocity: of the stations, the latter through the water; flow: there, where the water moves by itself.
     void add(const Swimmer& swimmer, const Workspace<Space>& work, const Field<Frame3<double>>& frame,
              const Field<Vector3<double>>& omega, const Field<Vector3<double>>& velocity,
-             Field<Wrench<Space, double>>& integral)
+             const FlowValues<Space>& flow, Field<Wrench<Space, double>>& integral)
     {
         set_inertial_units(swimmer, work);
         if (swimmer.resistive) set_drag_units(swimmer, work);
         set_factors(swimmer, frame, omega, velocity);
+        if (work.flowing) add_flow(swimmer, work, frame, omega, flow);
         const std::size_t used = swimmer.resistive ? Part::count : Part::drag2;
         for (std::size_t part = 0; part < used; ++part)
-            if ((Part::inertia1 <= part && part < Part::drag2) || part == Part::drag_roll)  // without a force
+            if (part == Part::displaced && !work.flowing)
+                continue;
+            else if ((Part::inertia1 <= part && part < Part::displaced) || part == Part::drag_roll)  // without a force
                 swimmer.missed[part].add<Vector3<double>>(unit_[part], factor_[part], integral);
             else
                 swimmer.missed[part].add<Wrench<Space, double>>(unit_[part], factor_[part], integral);
@@ -43,11 +46,11 @@ class MissedWrench {
     {
         for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
             const auto of = [&](const Section<Lanes>& one) { return inertial_wrench<Space>(one, work, k); };
-            const std::array<Wrench<Space, Lanes>, Part::drag2> unit{
+            const std::array<Wrench<Space, Lanes>, Part::displaced> unit{
                 of({1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}), of({0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0}),
                 of({0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0}), of({0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0}),
                 of({0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0}), of({0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0})};
-            for (std::size_t part = 0; part < Part::drag2; ++part) unit_[part].store(k, unit[part]);
+            for (std::size_t part = 0; part < Part::displaced; ++part) unit_[part].store(k, unit[part]);
             if (swimmer.righting == 0.0) continue;
             Wrench<Space, Lanes> upright = unit[Part::mass];
             upright.angular = upright.angular - righting_torque(Lanes(swimmer.righting), work.frame[k].axis3, work.up);
@@ -73,6 +76,26 @@ class MissedWrench {
             store(Part::drag_roll, {0.0, 0.0, 1.0, 0.0, 0.0, 0.0}, 0.0);
             store(Part::laminar, {}, kept * friction.laminar);
             store(Part::turbulent, {}, turned * (friction.excess + friction.laminar));
+        }
+    }
+
+    EEL_CORE_APART void add_flow(const Swimmer& swimmer, const Workspace<Space>& work,
+                                 const Field<Frame3<double>>& frame, const Field<Vector3<double>>& omega,
+                                 const FlowValues<Space>& flow)
+    {
+        for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+            const auto of_flow = [&](const Section<Lanes>& one, Lanes displaced) {
+                return wrench_of_flow<Space>(one, displaced, work, k);
+            };
+            const auto added2 = unit_[Part::added2][k], added3 = unit_[Part::added3][k];
+            unit_[Part::added2].store(k, added2 + of_flow({0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0}, 0.0));
+            unit_[Part::added3].store(k, added3 + of_flow({0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0}, 0.0));
+            unit_[Part::displaced].store(k, of_flow({0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, 1.0));
+        }
+        for (std::size_t k = 0; k < blocks_of(swimmer.stations); ++k) {
+            const Vector3<Lanes> axis = frame[k].axis1;
+            const Lanes turning = dot(axis, omega[k]) - 0.5 * flow[k].g.curl_along(axis);
+            factor_[Part::drag_roll].store(k, with_sign_of(1.0, turning));
         }
     }
 

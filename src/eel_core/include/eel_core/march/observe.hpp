@@ -18,7 +18,7 @@ struct StationWork {
     {
         const std::size_t n = blocks_of(swimmer.stations);
         frame = Field<Frame3<double>>(n), curvature = Field<Vector2<double>>(n), base = Field<Quaternion<double>>(n);
-        position = omega = velocity = alpha = acceleration = Field<Vector3<double>>(n);
+        position = omega = velocity = relative = alpha = acceleration = Field<Vector3<double>>(n);
         integral = Field<Wrench<Space, double>>(n);
         for (std::size_t i = 0; i < swimmer.stations; ++i) base.row(3)[i] = 1.0;
     }
@@ -27,6 +27,8 @@ struct StationWork {
     Field<Quaternion<double>> base;  // of the node before
     Field<Vector2<double>> curvature;
     Field<Vector3<double>> position, omega, velocity, alpha, acceleration;
+    FlowValues<Space> flow;           // where the water moves by itself
+    Field<Vector3<double>> relative;  // velocity through that water
     Field<Wrench<Space, double>> integral;  // integral of the balance's density from the nose
     MissedWrench missed;                    // of it, where the sections are from data
 };
@@ -46,14 +48,17 @@ void put(const Block& value, std::size_t block, std::size_t stations, double* ro
 inline std::array<double, 3> energies_of(const Swimmer& swimmer, const Workspace<Space>& work)
 {
     Lanes body(0.0), water(0.0);
+    const auto& through_water = work.velocity_through_water();
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
         const Section<Lanes> section = swimmer.sections[k];
         const Frame3<Lanes> frame = work.frame[k];
         const Vector3<Lanes> v = frame.local(work.velocity[k]), omega = frame.local(work.omega[k]);
         body += swimmer.grid.weight[k] * section.body_energy(v, omega);
-        water += swimmer.grid.weight[k] * section.water_energy(v, omega);
+        const Vector3<Lanes> w = frame.local(through_water[k]);
+        water += swimmer.grid.weight[k] * section.water_energy(w, omega);
     }
-    return {total(body), total(water), potential_energy(swimmer, work)};
+    const double of_flow = work.flowing ? energy_of_flow(swimmer, work) : 0.0;
+    return {total(body), total(water) + of_flow, potential_energy(swimmer, work)};
 }
 
 inline void put(const Vector3<double>& v, double* to) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
@@ -67,20 +72,26 @@ class Observer {
     }
 
     // Fills the `sample` with what state y at `time` [s] shows. False where the inertia is not positive definite.
-    bool observe(const LawOnGrid& law, const Vector3<double>& current, double time, const State& y, std::size_t sample,
+    bool observe(const LawOnGrid& law, const Water& water, double time, const State& y, std::size_t sample,
                  Workspace<Space>& work, StationWork& here) const
     {
-        if (!find_motion(swimmer_, law, time, y, work)) return false;
+        if (!find_motion(swimmer_, law, water, time, y, work)) return false;
         const Powers powers = find_powers(swimmer_, law, work);
         std::copy(powers.begin(), powers.end(), at(Profiles::powers, sample));
-        show_head(y, current, sample, work);
+        show_head(y, water.current, sample, work);
         show_energies_and_closure(sample, work);
         place_stations(law, y, sample, work, here);
-        if (profiles_.wrench || profiles_.load) find_velocities(work, here);
+        if (profiles_.wrench || profiles_.load) {
+            find_velocities(work, here);
+            if (work.flowing) find_flow(water, time, y, work, here);
+        }
         if (profiles_.wrench) show_internal_wrench(sample, work, here);
         if (profiles_.load) {
             find_accelerations_there(law, work, here);
-            show_loads(sample, work, here);
+            if (work.flowing)
+                show_loads<true>(sample, work, here);
+            else
+                show_loads<false>(sample, work, here);
         }
         return true;
     }
@@ -157,6 +168,19 @@ class Observer {
         swimmer_.to_station.integrate(work.integrand, 3, work.twist.linear, work.velocity, here.velocity);
     }
 
+    EEL_CORE_APART void find_flow(const Water& water, double time, const State& y, const Workspace<Space>& work,
+                   StationWork& here) const
+    {
+        const Vector3<double> nose{y[0], y[1], y[2]};
+        here.flow.set(water, time, nose, work.head, here.position, swimmer_.stations);
+        for (std::size_t k = 0; k < blocks(); ++k) here.relative.store(k, here.velocity[k] - here.flow[k].u);
+    }
+
+    static const Field<Vector3<double>>& through_water(const Workspace<Space>& work, const StationWork& here)
+    {
+        return work.flowing ? here.relative : here.velocity;
+    }
+
     void find_accelerations_there(const LawOnGrid& law, Workspace<Space>& work, StationWork& here) const
     {
         for (std::size_t k = 0; k < swimmer_.grid.blocks; ++k)
@@ -171,35 +195,63 @@ class Observer {
         swimmer_.to_station.integrate(work.density, 0, Wrench<Space, double>{}, work.integral, here.integral);
         add_kinks(swimmer_, swimmer_.to_station, true, work, here.integral);
         if (!swimmer_.missed.empty())
-            here.missed.add(swimmer_, work, here.frame, here.omega, here.velocity, here.integral);
+            here.missed.add(swimmer_, work, here.frame, here.omega, through_water(work, here), here.flow,
+                            here.integral);
         for (std::size_t k = 0; k < blocks(); ++k) {
             const Frame3<Lanes> frame = here.frame[k];
             const auto wrench = internal_wrench<Space>(swimmer_, work, here.integral[k], frame, here.position[k],
-                                                       swimmer_.at_station[k], frame.local(here.velocity[k]),
+                                                       swimmer_.at_station[k], frame.local(through_water(work, here)[k]),
                                                        frame.local(here.omega[k]));
             show(Profiles::torque, sample, k, wrench.angular);
             show(Profiles::force, sample, k, wrench.linear);
         }
     }
 
+    // Makes the velocity, its rate and slope, and Omega1 of a block of stations those through the water.
+    static void move_with_flow(std::size_t k, const StationWork& here, const Vector3<Lanes>& omega,
+                                              const Vector3<Lanes>& curvature, Vector3<Lanes>& v,
+                                              Vector3<Lanes>& v_rate, Vector3<Lanes>& v_slope, Lanes& turning)
+    {
+        const FlowSample<Space, Lanes> water = here.flow[k];
+        const Frame3<Lanes> frame = here.frame[k];
+        const Vector3<Lanes> u = frame.local(water.u);
+        v_rate = v_rate + cross(omega, u) - frame.local(water.u_t + water.g.times(here.velocity[k]));
+        v = v - u;
+        v_slope = v_slope + cross(curvature, u) - frame.local(water.g.times(frame.axis1));
+        turning -= 0.5 * water.g.curl_along(frame.axis1);
+    }
+
+    // rho_f A a_u - g^T p of a block of stations.
+    Vector3<Lanes> force_of_flow(std::size_t k, const StationWork& here, const Vector3<Lanes>& p) const
+    {
+        const FlowSample<Space, Lanes> water = here.flow[k];
+        const Frame3<Lanes> frame = here.frame[k];
+        return frame.local(swimmer_.at_station.displaced[k] * water.acceleration() -
+                           water.g.transposed_times(frame.parent(p)));
+    }
+
     // The water's force per length: the rate at which a strip's water gives up momentum p = M_f V, of which V1 p is
     // swept past the section, - (d/dt + Omega x) p + (d/dX + K x) V1 p; and the drag.
+    template <bool Flowing>
     void show_loads(std::size_t sample, const Workspace<Space>& work, const StationWork& here) const
     {
         for (std::size_t k = 0; k < blocks(); ++k) {
             const Section<Lanes> section = swimmer_.at_station[k];
             const Frame3<Lanes> frame = here.frame[k];
-            const Vector3<Lanes> v = frame.local(here.velocity[k]), omega = frame.local(here.omega[k]),
-                                 e1{1.0, 0.0, 0.0};
-            const Vector3<Lanes> v_rate = frame.local(here.acceleration[k]) - cross(omega, v);
+            Vector3<Lanes> v = frame.local(here.velocity[k]);
+            const Vector3<Lanes> omega = frame.local(here.omega[k]), e1{1.0, 0.0, 0.0};
+            Vector3<Lanes> v_rate = frame.local(here.acceleration[k]) - cross(omega, v);
             const Vector2<Lanes> bending = here.curvature[k];
             const Vector3<Lanes> curvature{0.0, bending.x, bending.y};
-            const Vector3<Lanes> v_slope = cross(omega, e1) - cross(curvature, v);  // V'
+            Vector3<Lanes> v_slope = cross(omega, e1) - cross(curvature, v);  // V'
+            Lanes turning = omega.x;
+            if constexpr (Flowing) move_with_flow(k, here, omega, curvature, v, v_rate, v_slope, turning);
             const Section<Lanes> slope{0.0, swimmer_.added2_slope[k],    swimmer_.added3_slope[k], 0.0, 0.0,
                                        0.0, swimmer_.added_roll_slope[k]};
             const Vector3<Lanes> p = section.water_momentum(v);
             const Vector3<Lanes> p_slope = slope.water_momentum(v) + section.water_momentum(v_slope);
             Vector3<Lanes> force = -(section.water_momentum(v_rate) + cross(omega, p));
+            if constexpr (Flowing) force += force_of_flow(k, here, p);
             if (swimmer_.wake > 0.0)
                 force += Lanes(swimmer_.wake) * (v_slope.x * p + v.x * (p_slope + cross(curvature, p)));
             if (swimmer_.distributed_pressure && swimmer_.wake > 0.0) {  // - d/dX (T_f t1)
@@ -213,7 +265,7 @@ class Observer {
                 const DragSection<Lanes> drag = swimmer_.at_station.drag(k);
                 const AxialFriction friction = axial_friction(drag, swimmer_.friction, v.x);
                 resistive = local_resistive_load<Space>(drag, friction.laminar, friction.excess,
-                                                        friction.turbulent_share, v, omega.x)
+                                                        friction.turbulent_share, v, turning)
                                 .linear;
             }
             show(Profiles::resistive_force, sample, k, resistive);

@@ -17,7 +17,7 @@ struct Profiles {
         head_acceleration,    // (T, 6) rad/s^2, m/s^2, true acceleration of the head, its axes
         center_of_mass,       // (T, 3) m, world
         energies,             // (T, 3) J, kinetic of body and of water, potential
-        powers,               // (T, 4) W, actuators, wake, nose, drag
+        powers,               // (T, 5) W, actuators, wake, nose, drag, flow
         closure,              // (T, 2) N m, N: what is left of the internal wrench at the nose
         backbone,             // (T, M, 3) m, world
         section_orientation,  // (T, M, 4) x y z w, world from section
@@ -32,7 +32,7 @@ struct Profiles {
         wake_momentum_rate,  // (T, 3) N, axes of the tail's section: momentum given to the wake per time
         quantities
     };
-    static constexpr std::size_t width_of[quantities] = {3, 4, 6, 6, 3, 3, 4, 2, 3, 4, 3, 3, 3, 3, 3, 3, 3, 3, 3};
+    static constexpr std::size_t width_of[quantities] = {3, 4, 6, 6, 3, 3, 5, 2, 3, 4, 3, 3, 3, 3, 3, 3, 3, 3, 3};
 
     std::size_t samples, stations;
     bool wrench, load;

@@ -153,7 +153,7 @@ class SampledMarch {
 
     void follow(std::vector<double> breakpoints, bool smoothly)
     {
-        march_.follow({law_, std::move(breakpoints), bounds_, kind_->ledger, kind_->current}, smoothly);
+        march_.follow({law_, std::move(breakpoints), bounds_, kind_->ledger, {kind_->current}}, smoothly);
     }
 
     std::shared_ptr<const SampledKind> kind_;

@@ -99,6 +99,7 @@ struct DragSection {
 // The sections at the nodes, or at the stations.
 struct Sections {
     Row mass, added2, added3, inertia1, inertia2, inertia3, added_roll;
+    Row displaced;  // [kg/m], of the water that the section displaces
     Row drag2, drag3, drag_roll, laminar, turbulent, by_critical_speed;
 
     Section<Lanes> operator[](std::size_t k) const

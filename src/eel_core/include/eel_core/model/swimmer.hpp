@@ -11,7 +11,8 @@ namespace eel_core {
 // `lateral` on, the drag has a kink or a jump where the speed changes its sign.
 enum Speed : std::size_t { axial = 0, lateral = 1, vertical = 2, roll = 3, above_critical = 4, speeds = 5 };
 
-// Numbers of a section in which its inertial wrench and, from `drag2` on, its drag are linear.
+// Numbers of a section in which its inertial wrench, the undisturbed pressure of a flow and, from `drag2` on, its drag
+// are linear.
 struct SectionPart {
     enum : std::size_t {
         mass,
@@ -20,13 +21,14 @@ struct SectionPart {
         inertia1,
         inertia2,
         inertia3,
+        displaced,
         drag2,
         drag3,
         drag_roll,
         laminar,
         turbulent
     };
-    static constexpr std::size_t count = 11;
+    static constexpr std::size_t count = 12;
 };
 
 struct Swimmer {

@@ -6,6 +6,7 @@
 
 #include "eel_core/algebra/rotation.hpp"
 #include "eel_core/algebra/solve.hpp"
+#include "eel_core/flow/values.hpp"
 #include "eel_core/law.hpp"
 #include "eel_core/model/swimmer.hpp"
 
@@ -57,6 +58,15 @@ struct Workspace {
         density;  // of the balance: what the motion takes, less the loads, per length, about the head
     Field<Wrench<M, double>> integral;  // its integral from the nose
 
+    // Where the water moves by itself (`flowing`); no memory elsewhere:
+    bool flowing = false;
+    FlowValues<M> flow;                // in the axes of the head
+    Field<Vector<M, double>> relative; // [m/s], velocity through the water
+    Wrench<M, double> flow_load{};     // what the flow adds to the rate of the momentum
+
+    const Field<Vector<M, double>>& velocity_through_water() const { return flowing ? relative : velocity; }
+    Vector<M, double> nose_through_water() const { return flowing ? twist.linear - flow.nose().u : twist.linear; }
+
     // Drag, in section axes:
     std::array<Row, speeds> speed;          // see `Speed`
     Row friction_laminar, friction_excess;  // [kg/m/s], friction per V1 by the laminar law, and what turbulence adds
@@ -89,7 +99,7 @@ struct Workspace {
                           shape_velocity.bytes() + velocity.bytes() + curvature_rate.bytes() + integrand.bytes() +
                           alpha.bytes() + acceleration.bytes() + density.bytes() + integral.bytes() +
                           friction_laminar.bytes() + friction_excess.bytes() + turbulent_share.bytes() +
-                          turbulent_weight.bytes() + kink_density.bytes();
+                          turbulent_weight.bytes() + kink_density.bytes() + flow.bytes() + relative.bytes();
         for (const Row& row : speed) sum += row.bytes();
         for (const Row& row : load_weight) sum += row.bytes();
         return sum + sizeof(*this);

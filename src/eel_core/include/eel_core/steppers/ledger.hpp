@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Works of actuators, wake, nose and drag along the way: integrals of their powers, by the Lobatto points of each step.
+// Works of actuators, wake, nose, drag and flow along the way: integrals of their powers, by the Lobatto points of each step.
 #pragma once
 
 #include "eel_core/internal_wrench.hpp"
 
 namespace eel_core {
 
-using Works = std::array<double, 4>;  // [J], of actuators, wake, nose and drag since the start
+using Works = Powers;  // [J], of actuators, wake, nose, drag and flow since the start
 
 // Lobatto's points, as fractions of the step.
 inline constexpr std::array<double, 4> lobatto{0.0, 0.276393202250021030, 0.723606797749978970, 1.0};
@@ -41,7 +41,7 @@ struct StepPowers {
             double power = theta, weight = 0.0;
             for (std::size_t j = 0; j < 4; ++j, power *= theta)
                 weight += cubic[i][j] * power / static_cast<double>(j + 1);
-            for (std::size_t k = 0; k < 4; ++k) result[k] += length * weight * at[i][k];
+            for (std::size_t k = 0; k < result.size(); ++k) result[k] += length * weight * at[i][k];
         }
         return result;
     }

@@ -29,7 +29,7 @@ struct MarchSettings {
     std::vector<double> breakpoints;  // [s], ascending
     StepBounds bounds;
     bool ledger = true;                      // integrate the works
-    Vector3<double> current{0.0, 0.0, 0.0};  // [m/s], of the water, in the world's axes
+    Water water{};
 };
 
 struct Counts {
@@ -128,7 +128,7 @@ class Stepper {
     bool evaluate(const MarchSettings& settings, double time, const State& y, State& rate)
     {
         ++counts_.evaluations;
-        return rate_of_state(*swimmer_, settings.law, settings.current, time, y, work_, rate);
+        return rate_of_state(*swimmer_, settings.law, settings.water, time, y, work_, rate);
     }
 
     // Tries a step of `length` [s] into `trial_`; `error`: over the tolerance.
@@ -225,7 +225,7 @@ class Stepper {
         for (std::size_t j = 4; j-- > (at_start_too ? 0u : 1u);) {
             if (j < 3) {  // the step's end was evaluated last
                 const double time = start_ + lobatto[j] * length_;
-                if (!find_motion(*swimmer_, settings.law, time, interpolated(lobatto[j]), work_))
+                if (!find_motion(*swimmer_, settings.law, settings.water, time, interpolated(lobatto[j]), work_))
                     return Status::singular;
             }
             powers_.at[j] = find_powers(*swimmer_, settings.law, work_);

@@ -5,11 +5,12 @@ import numpy as np
 from eel_base.wording import shown
 
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
+from eel_dynamics.flow.plain import flow_of, plain_of_flow
 from eel_dynamics.model.axes import REP103, turn_vector, turned
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.variables import COUNTS, ENERGY, LEDGER, OWN, Contents
-from eel_dynamics.simulation.energy import EnergyLedger
+from eel_dynamics.simulation.energy import WORKS, EnergyLedger
 from eel_dynamics.simulation.observations import OBSERVED, Observations
 
 
@@ -19,6 +20,7 @@ def contents_of_run(run) -> Contents:
         raise ValueError("a run without samples holds no data")
     values = {
         **{name: plain.plain_of(getattr(run, name)) for name in ("law", "body", "scene", "accuracy", "error_estimate")},
+        "flow": plain_of_flow(run.flow),
         "warnings": list(run.warnings),
         **{name: int(getattr(run, name)) for name in COUNTS},
     }
@@ -31,7 +33,7 @@ def fields_of_run(contents: Contents) -> dict:
     values, arrays = contents.values, contents.arrays
     energy = None
     if ENERGY + "residual" in arrays:
-        energy = EnergyLedger(**{name: arrays[ENERGY + name] for name in LEDGER})
+        energy = EnergyLedger(**_ledger_of(arrays))
     return {
         "law": plain.law_of(values["law"]),
         "body": plain.body_of(values["body"]),
@@ -39,6 +41,7 @@ def fields_of_run(contents: Contents) -> dict:
         "accuracy": plain.accuracy_of(values["accuracy"]),
         "error_estimate": values["error_estimate"] and ErrorEstimate(**values["error_estimate"]),
         "energy": energy,
+        "flow": flow_of(values.get("flow")),
         "axes": contents.axes,
         **{name: arrays.get(name) for name in OWN},
         **{name: _count(name, values[name]) for name in COUNTS},
@@ -61,6 +64,7 @@ def contents_of_batch(batch, out: Observations, works: np.ndarray, energy_at_sta
         **{name: plain.each_once(getattr(batch, name)) for name in ("laws", "bodies", "scenes", "accuracies")},
         "error_estimates": [plain.plain_of(each) for each in batch.error_estimates],
         "errors": [plain.plain_of(each) for each in batch.error],
+        "flows": [plain_of_flow(each) for each in batch.flows],
         "stations": batch.backbone is not None,
     }
     arrays = {"time": batch.time, "x": batch.x, "samples": batch.samples, "energy_at_start": energy_at_start}
@@ -78,7 +82,7 @@ def with_warnings(batch, contents: Contents) -> Contents:
 
 
 def observed_of_batch(contents: Contents) -> tuple[Observations, np.ndarray]:
-    """The observations of a batch, and its works (B, T, 4) [J]."""
+    """The observations of a batch, and its works (B, T, 5) [J]."""
     arrays = contents.arrays
     count, samples, stations = arrays["backbone"].shape[:3]
     out = Observations.empty(samples, stations, "torque" in arrays, "fluid_force" in arrays, (count,))
@@ -86,12 +90,18 @@ def observed_of_batch(contents: Contents) -> tuple[Observations, np.ndarray]:
         getattr(out, name)[...] = arrays[name]
     if out.closure.size:
         out.closure[..., 0], out.closure[..., 1] = arrays["closure_torque"], arrays["closure_force"]
-    ledger = {name: arrays[ENERGY + name] for name in LEDGER}
+    ledger = _ledger_of(arrays)
     energies = ("kinetic_body", "kinetic_fluid", "potential")
     out.energies[...] = np.stack([ledger[name] for name in energies], axis=-1)
-    parts = ("actuator", "wake", "nose", "drag")
-    out.powers[...] = np.stack([ledger[f"{part}_power"] for part in parts], axis=-1)
-    return out, np.stack([ledger[f"{part}_work"] for part in parts], axis=-1)
+    out.powers[...] = np.stack([ledger[f"{part}_power"] for part in WORKS], axis=-1)
+    return out, np.stack([ledger[f"{part}_work"] for part in WORKS], axis=-1)
+
+
+def _ledger_of(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The arrays of the ledger; files of still water need not have those of the flow."""
+    none = np.zeros_like(arrays[ENERGY + "residual"])
+    absent = {name: none for name in ("flow_power", "flow_work") if ENERGY + name not in arrays}
+    return absent | {name: arrays[ENERGY + name] for name in LEDGER if name not in absent}
 
 
 def _count(name: str, value) -> int:

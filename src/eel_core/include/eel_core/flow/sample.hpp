@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// The undisturbed water at a point: its velocity u, the rate u_t of u at the fixed point, and the Jacobian of u.
+#pragma once
+
+#include "eel_core/algebra/motion.hpp"
+
+namespace eel_core {
+
+// g_ij = du_i/dx_j [1/s]: each row is the gradient of a component of u.
+template <class M, Number T>
+struct Jacobian;
+
+template <Number T>
+struct Jacobian<Space, T> {
+    Vector3<T> x, y, z;
+
+    template <Number B>
+    auto times(const Vector3<B>& v) const  // g v
+    {
+        return Vector3{dot(x, v), dot(y, v), dot(z, v)};
+    }
+    template <Number B>
+    auto transposed_times(const Vector3<B>& v) const  // g^T v
+    {
+        return v.x * x + v.y * y + v.z * z;
+    }
+    // Of the curl of u, along `axis`.
+    template <Number B>
+    auto curl_along(const Vector3<B>& axis) const
+    {
+        return axis.x * (z.y - y.z) + axis.y * (x.z - z.x) + axis.z * (y.x - x.y);
+    }
+    Jacobian& operator+=(const Jacobian& o) { return x += o.x, y += o.y, z += o.z, *this; }
+    // R^T g R: the same tensor in the axes of `frame`.
+    Jacobian in(const Frame3<double>& frame) const
+    {
+        const Vector3<T> a = frame.local(x), b = frame.local(y), c = frame.local(z);
+        const auto row = [&](const Vector3<double>& axis) { return axis.x * a + axis.y * b + axis.z * c; };
+        return {row(frame.axis1), row(frame.axis2), row(frame.axis3)};
+    }
+};
+
+template <Number T>
+struct Jacobian<Plane, T> {
+    Vector2<T> x, y;
+
+    template <Number B>
+    auto times(const Vector2<B>& v) const
+    {
+        return Vector2{dot(x, v), dot(y, v)};
+    }
+    template <Number B>
+    auto transposed_times(const Vector2<B>& v) const
+    {
+        return v.x * x + v.y * y;
+    }
+    template <Number B>
+    T curl_along(const Vector2<B>&) const  // the curl is along axis 3
+    {
+        return T(0.0);
+    }
+    Jacobian in(const Frame2<double>& frame) const
+    {
+        const Vector2<T> a = frame.local(x), b = frame.local(y);
+        return {frame.cosine * a + frame.sine * b, frame.cosine * b - frame.sine * a};
+    }
+};
+
+template <class M, Number T>
+struct FlowSample {
+    Vector<M, T> u;       // [m/s]
+    Vector<M, T> u_t;     // [m/s^2]
+    Jacobian<M, T> g;     // [1/s]
+
+    FlowSample& operator+=(const FlowSample& o) { return u += o.u, u_t += o.u_t, g += o.g, *this; }
+
+    // Acceleration [m/s^2] of the water, a_u = u_t + g u.
+    Vector<M, T> acceleration() const { return u_t + g.times(u); }
+};
+
+// The part of a sample in the plane of axes 1 and 2, or all of it.
+template <Number T>
+FlowSample<Plane, T> part_in(Plane, const FlowSample<Space, T>& s)
+{
+    return {{s.u.x, s.u.y}, {s.u_t.x, s.u_t.y}, {{s.g.x.x, s.g.x.y}, {s.g.y.x, s.g.y.y}}};
+}
+template <Number T>
+const FlowSample<Space, T>& part_in(Space, const FlowSample<Space, T>& s)
+{
+    return s;
+}
+
+template <Number T>
+struct Components<Jacobian<Space, T>> {
+    static constexpr std::size_t count = 9;
+    template <Number B>
+    using With = Jacobian<Space, B>;
+    using V = Components<Vector3<T>>;
+    template <class Make>
+    static Jacobian<Space, T> make(Make component, std::size_t first = 0)
+    {
+        return {V::make(component, first), V::make(component, first + 3), V::make(component, first + 6)};
+    }
+    template <class Take>
+    static void each(const Jacobian<Space, T>& g, Take take, std::size_t first = 0)
+    {
+        V::each(g.x, take, first), V::each(g.y, take, first + 3), V::each(g.z, take, first + 6);
+    }
+};
+template <Number T>
+struct Components<Jacobian<Plane, T>> {
+    static constexpr std::size_t count = 4;
+    template <Number B>
+    using With = Jacobian<Plane, B>;
+    using V = Components<Vector2<T>>;
+    template <class Make>
+    static Jacobian<Plane, T> make(Make component, std::size_t first = 0)
+    {
+        return {V::make(component, first), V::make(component, first + 2)};
+    }
+    template <class Take>
+    static void each(const Jacobian<Plane, T>& g, Take take, std::size_t first = 0)
+    {
+        V::each(g.x, take, first), V::each(g.y, take, first + 2);
+    }
+};
+template <class M, Number T>
+struct Components<FlowSample<M, T>> {
+    using V = Components<Vector<M, T>>;
+    using G = Components<Jacobian<M, T>>;
+    static constexpr std::size_t count = 2 * V::count + G::count;
+    template <Number B>
+    using With = FlowSample<M, B>;
+    template <class Make>
+    static FlowSample<M, T> make(Make component, std::size_t first = 0)
+    {
+        return {V::make(component, first), V::make(component, first + V::count),
+                G::make(component, first + 2 * V::count)};
+    }
+    template <class Take>
+    static void each(const FlowSample<M, T>& s, Take take, std::size_t first = 0)
+    {
+        V::each(s.u, take, first), V::each(s.u_t, take, first + V::count), G::each(s.g, take, first + 2 * V::count);
+    }
+};
+
+}  // namespace eel_core

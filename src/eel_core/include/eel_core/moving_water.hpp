@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// Water that moves by itself: what a flow u(x, t) adds to momentum, loads, balance and energy. Ours, not the paper's.
+//
+//     W = V - U,  p = M_f W,  T_f = 1/2 (J_f1 Omega1^2 + W . p)      U: u in section axes
+//
+// Drag, wake and nose see W for V, and the roll drag Omega1 - 1/2 t1 . curl u. Two forces per length are new: - g^T p,
+// and rho_f A a_u of the undisturbed pressure (Froude and Krylov); a_u = u_t + g u is the acceleration of the water.
+// The theory is that of irrotational u which varies little across a section.
+#pragma once
+
+#include "eel_core/drag.hpp"
+
+namespace eel_core {
+
+// Not inlined: still water runs the code that it would run without this file, to the last bit.
+#define EEL_CORE_APART [[gnu::noinline]]
+
+// The flow along the body, in the shape and place that `work` and state y hold at `time` [s].
+template <class M>
+EEL_CORE_APART void set_flow(const Swimmer& swimmer, const Water& water, double time, const Vector3<double>& nose, Workspace<M>& work)
+{
+    work.flowing = water.flow != nullptr;
+    if (work.flowing) work.flow.set(water, time, nose, work.head, work.position, swimmer.grid.nodes);
+}
+
+// integral (r x q, q), q = M_f U: what the momentum of body and water lacks, as it is that of the motion through the
+// water.
+template <class M>
+EEL_CORE_APART Momentum<M, double> momentum_of_flow(const Swimmer& swimmer, const Workspace<M>& work)
+{
+    Momentum<M, Lanes> sum{};
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const auto section = swimmer.sections[k].weighed(swimmer.grid.weight[k]);
+        const auto frame = work.frame[k];
+        const Vector<M, Lanes> linear = frame.parent(section.water_momentum(frame.local(work.flow[k].u)));
+        sum += {cross(work.position[k], linear), linear};
+    }
+    return total_of(sum);
+}
+
+// Velocities through the water, and the flow's part of the load on the momentum: per length rho_f A a_u - g^T p, with
+// the torque U x p besides; m_o a_u at the nose.
+template <class M>
+EEL_CORE_APART void set_flow_load(const Swimmer& swimmer, Workspace<M>& work)
+{
+    if (work.relative.stride() == 0) work.relative = Field<Vector<M, double>>(swimmer.grid.blocks);
+    Wrench<M, Lanes> sum{};
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const auto section = swimmer.sections[k].weighed(swimmer.grid.weight[k]);
+        const Lanes displaced = swimmer.grid.weight[k] * swimmer.sections.displaced[k];
+        const auto frame = work.frame[k];
+        const FlowSample<M, Lanes> water = work.flow[k];
+        const Vector<M, Lanes> w = work.velocity[k] - water.u;
+        work.relative.store(k, w);
+        const Vector<M, Lanes> p = frame.parent(section.water_momentum(frame.local(w)));
+        const Vector<M, Lanes> force = displaced * water.acceleration() - water.g.transposed_times(p);
+        sum += {cross(work.position[k], force) + cross(water.u, p), force};
+    }
+    work.flow_load = plus_axial<M>(total_of(sum), swimmer.nose_mass * work.flow.nose().acceleration().x);
+}
+
+// The wrench about the head that the flow adds to the balance, beside that of a motion through water at rest, of a
+// block. In section axes:
+//
+//     f_N += M_f (Omega x U - R^T u_b) - Omega x M_f U + R^T (g^T p - rho_f A a_u)      f_C += W x p - V x M_f V
+//
+// u_b = u_t + g v: rate of u as the section meets it.
+template <class M>
+Wrench<M, Lanes> wrench_of_flow(const Section<Lanes>& section, Lanes displaced, const Workspace<M>& work,
+                                std::size_t k)
+{
+    const auto frame = work.frame[k];
+    const FlowSample<M, Lanes> water = work.flow[k];
+    const Angular<M, Lanes> omega = frame.local(work.omega[k]);
+    const Vector<M, Lanes> velocity = work.velocity[k];
+    const Vector<M, Lanes> u = frame.local(water.u), v = frame.local(velocity), w = frame.local(velocity - water.u);
+    const Vector<M, Lanes> p = section.water_momentum(w);
+    const Vector<M, Lanes> met = frame.local(water.u_t + water.g.times(velocity));
+    const Vector<M, Lanes> shared =
+        water.g.transposed_times(Vector<M, Lanes>(frame.parent(p))) - displaced * water.acceleration();
+    const Vector<M, Lanes> rate = cross(omega, u) - met;
+    return about_head<M>(frame, work.position[k],
+                         Wrench<M, Lanes>{cross(w, p) - cross(v, section.water_momentum(v)),
+                                          section.water_momentum(rate) - cross(omega, section.water_momentum(u)) +
+                                              frame.local(shared)});
+}
+
+// Its integral over the body.
+template <class M>
+EEL_CORE_APART Wrench<M, double> total_wrench_of_flow(const Swimmer& swimmer, const Workspace<M>& work)
+{
+    Wrench<M, Lanes> sum{};
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
+        sum += swimmer.grid.weight[k] * wrench_of_flow<M>(swimmer.sections[k], swimmer.sections.displaced[k], work, k);
+    return total_of(sum);
+}
+
+// Adds it to the `density` of the balance and to its integral.
+template <class M>
+EEL_CORE_APART void add_wrench_of_flow(const Swimmer& swimmer, const Wrench<M, double>& whole, Workspace<M>& work)
+{
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
+        work.density.store(k, work.density[k] + wrench_of_flow<M>(swimmer.sections[k], swimmer.sections.displaced[k],
+                                                                  work, k));
+    work.balance += whole;
+}
+
+// integral (p . u_t + rho_f A a_u . v) [W].
+template <class M>
+EEL_CORE_APART double flow_power(const Swimmer& swimmer, const Workspace<M>& work)
+{
+    Lanes sum(0.0);
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const auto frame = work.frame[k];
+        const FlowSample<M, Lanes> water = work.flow[k];
+        const Vector<M, Lanes> w = work.relative[k], velocity = work.velocity[k];
+        const Lanes part = dot(swimmer.sections[k].water_momentum(Vector<M, Lanes>(frame.local(w))),
+                               Vector<M, Lanes>(frame.local(water.u_t)));
+        sum += swimmer.grid.weight[k] *
+               (part + swimmer.sections.displaced[k] * dot(water.acceleration(), velocity));
+    }
+    return total(sum);
+}
+
+// What the drag's power lacks where it is that of the motion through the water [W]: integral n . U + c1 t1 . curl u / 2.
+template <class M>
+EEL_CORE_APART double drag_power_of_flow(const Swimmer& swimmer, const Workspace<M>& work)
+{
+    Lanes sum(0.0);
+    for (std::size_t k = 0; swimmer.resistive && k < swimmer.grid.blocks; ++k) {
+        const auto frame = work.frame[k];
+        const FlowSample<M, Lanes> water = work.flow[k];
+        const auto load = resistive_load(swimmer.sections.drag(k), work.friction_laminar[k], work.friction_excess[k],
+                                         load_weights(swimmer, work, k), speeds_from(work, width * k),
+                                         roll_from(work, width * k));
+        sum += dot(load.linear, Vector<M, Lanes>(frame.local(water.u))) +
+               roll_torque(load) * (0.5 * water.g.curl_along(frame.t1()));
+    }
+    return total(sum);
+}
+
+// integral p . U [J]: what the energy of the water has besides T_f.
+EEL_CORE_APART inline double energy_of_flow(const Swimmer& swimmer, const Workspace<Space>& work)
+{
+    Lanes sum(0.0);
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const auto frame = work.frame[k];
+        const Vector3<Lanes> u = frame.local(work.flow[k].u), w = frame.local(work.relative[k]);
+        sum += swimmer.grid.weight[k] * dot(swimmer.sections[k].water_momentum(w), u);
+    }
+    return total(sum);
+}
+
+}  // namespace eel_core

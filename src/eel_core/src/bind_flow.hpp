@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// The Python class of flows. Its sources come as tuples, in the axes of the outside.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "from_python.hpp"
+
+namespace eel_core {
+
+// Turns `rows` (n, 18) of places and flow, as those of `FunctionFlow`, into the other axes.
+inline void turn_rows(double* rows, std::size_t count)
+{
+    static constexpr std::array<std::size_t, 10> turned{0, 1, 3, 4, 6, 7, 11, 14, 15, 16};
+    for (std::size_t i = 0; i < count; ++i)
+        for (const std::size_t column : turned) {
+            double& value = rows[FunctionFlow::columns * i + column];
+            value = 0.0 - value;
+        }
+}
+
+// A function of Python: function(time [s], rows (n, 18)) fills in the rows. It is called with Python's lock.
+inline FunctionFlow function_from(const py::object& function)
+{
+    return {[function](double time, std::vector<double>& rows) {
+        const py::gil_scoped_acquire locked;
+        const std::size_t count = rows.size() / FunctionFlow::columns;
+        constexpr auto number = static_cast<py::ssize_t>(sizeof(double));
+        constexpr auto columns = static_cast<py::ssize_t>(FunctionFlow::columns);
+        turn_rows(rows.data(), count);
+        function(time, py::memoryview::from_buffer(rows.data(), {static_cast<py::ssize_t>(count), columns},
+                                                   {columns * number, number}));
+        turn_rows(rows.data(), count);
+    }};
+}
+
+inline SplineFlow spline_from(const py::object& knots, const py::object& coefficients)
+{
+    const Numbers times(knots, "knots"), numbers(coefficients, "coefficients");
+    if (times.size() < 2) throw py::value_error("knots must be two or more, got " + std::to_string(times.size()));
+    numbers.check_size(12 * (times.size() - 1), "coefficients");
+    SplineFlow flow{{times.data(), times.data() + times.size()}, {}};
+    for (std::size_t piece = 0; piece + 1 < times.size(); ++piece) {
+        auto& cubic = flow.pieces.emplace_back();
+        for (std::size_t power = 0; power < 4; ++power) {
+            const double* const v = numbers.data() + 12 * piece + 3 * power;
+            cubic[power] = half_turn(Vector3{v[0], v[1], v[2]});
+        }
+    }
+    return flow;
+}
+
+inline VortexFlow vortices_from(const py::object& rows, double core, const py::object& drift)
+{
+    const Numbers numbers(rows, "vortices");
+    numbers.check_size(numbers.size() / 3 * 3, "vortices");
+    VortexFlow flow{{}, core, vector_from(drift, "drift")};
+    for (std::size_t i = 0; i < numbers.size(); i += 3) {
+        const double* const v = numbers.data() + i;
+        flow.vortices.push_back({0.0 - v[0], 0.0 - v[1], v[2] / (2.0 * std::numbers::pi)});
+    }
+    return flow;
+}
+
+inline std::shared_ptr<Flow> flow_from(const py::list& sources)
+{
+    auto flow = std::make_shared<Flow>();
+    for (const py::handle each : sources) {
+        const auto source = each.cast<py::tuple>();
+        const auto kind = source[0].cast<std::string>();
+        const auto number = [&](std::size_t i) { return source[i].cast<double>(); };
+        const auto vector = [&](std::size_t i, const char* name) { return vector_from(source[i], name); };
+        if (kind == "ramped") {
+            RampedFlow ramped{vector(1, "velocity"), {}};
+            for (const auto& [start, end, delta] :
+                 source[2].cast<std::vector<std::tuple<double, double, double>>>())
+                ramped.ramps.push_back({start, end, delta});
+            flow->sources.emplace_back(std::move(ramped));
+        } else if (kind == "spline") {
+            flow->sources.emplace_back(spline_from(source[1], source[2]));
+        } else if (kind == "shear") {
+            flow->sources.emplace_back(
+                ShearFlow{vector(1, "velocity"), vector(2, "across"), number(3), number(4), source[5].cast<bool>()});
+        } else if (kind == "vortices") {
+            flow->sources.emplace_back(vortices_from(source[1], number(2), source[3]));
+        } else if (kind == "wave") {
+            flow->sources.emplace_back(
+                WaveFlow{number(1), number(2), number(3), number(4), number(5), vector(6, "direction")});
+        } else if (kind == "function") {
+            flow->sources.emplace_back(function_from(source[1]));
+        } else {
+            throw py::value_error("flow must be of a known kind, got '" + kind + "'");
+        }
+    }
+    return flow;
+}
+
+inline Water water_from(const py::object& current, std::shared_ptr<const Flow> flow)
+{
+    return {vector_from(current, "current"), std::move(flow)};
+}
+
+// Writes the flow at the places of `rows` (n, 18) into them.
+inline void put_flow(const Flow& flow, double time, const py::object& rows)
+{
+    const Numbers into(rows, "rows", true);
+    constexpr std::size_t columns = FunctionFlow::columns;
+    const std::size_t count = into.size() / columns;
+    into.check_size(columns * count, "rows");
+    turn_rows(into.data(), count);
+    flow_at(flow, time, into.data(), count);
+    turn_rows(into.data(), count);
+}
+
+}  // namespace eel_core

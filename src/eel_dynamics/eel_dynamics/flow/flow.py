@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What all flows share: the velocity u(x, t) of the water without the swimmer, its Jacobian and its rate.
+
+Places and velocities are in the axes of the world (REP-103), with the scene's current not included: the water moves with
+`current + u(x, t)`. Flows add by `+`.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from eel_base.quantity import checked_instance, is_finite, numbers
+from eel_base.wording import shown
+from numpy.typing import ArrayLike
+
+import eel_core
+
+ROWS = 18  # numbers of a place in eel_core: x, u, u_t, and the Jacobian row by row
+
+
+class FlowSample(NamedTuple):
+    """The water at n places."""
+
+    velocity: np.ndarray  # (n, 3) m/s, u
+    rate: np.ndarray  # (n, 3) m/s^2, du/dt at the fixed place
+    jacobian: np.ndarray  # (n, 3, 3) 1/s, du_i/dx_j
+
+
+class Flow:
+    """A flow of the water. It never changes; two are equal where their fields are."""
+
+    def sources(self, planar: bool) -> list[tuple]:
+        """Its sources as `eel_core.Flow` takes them; planar: of a planar scene."""
+        raise NotImplementedError
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Times [s] at which a derivative of u by time jumps."""
+        return ()
+
+    @property
+    def time_scale(self) -> float:
+        """Shortest period [s] of what goes on at a fixed place; infinite where it is steady."""
+        return np.inf
+
+    @property
+    def shortest_wave(self) -> float:
+        """Shortest wavelength [m] of u; infinite where it is the same everywhere."""
+        return np.inf
+
+    @property
+    def in_plane(self) -> bool:
+        """Whether u has no part along z and does not depend on it: a planar scene needs that."""
+        return True
+
+    @property
+    def surface_height(self) -> float:
+        """Height z [m] of the water's surface; infinite without one."""
+        return np.inf
+
+    def sample(self, places: ArrayLike, time: float = 0.0) -> FlowSample:
+        """The water at `places` (n, 3) [m], or at one (3,), at `time` [s]."""
+        x = numbers("places", places)
+        if x.shape[-1:] != (3,) or not np.isfinite(x).all():
+            raise ValueError(f"places must be finite, of shape (n, 3), got {shown(x.shape)}")
+        if not is_finite(time):
+            raise ValueError(f"time must be finite, got {shown(time)} s")
+        rows = np.zeros((*x.shape[:-1], ROWS))
+        rows[..., :3] = x
+        core_flow(self, False).at(float(time), rows)
+        return FlowSample(rows[..., 3:6], rows[..., 6:9], rows[..., 9:].reshape(*x.shape, 3))
+
+    def __add__(self, other: "Flow") -> "Flow":
+        if not isinstance(other, Flow):
+            return NotImplemented
+        return FlowSum((*parts_of(self), *parts_of(other)))
+
+
+@dataclass(frozen=True)
+class FlowSum(Flow):
+    """The sum of several flows."""
+
+    parts: tuple[Flow, ...]
+
+    def sources(self, planar: bool) -> list[tuple]:
+        return [source for part in self.parts for source in part.sources(planar)]
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        return tuple(sorted({time for part in self.parts for time in part.breakpoints}))
+
+    @property
+    def time_scale(self) -> float:
+        return min(part.time_scale for part in self.parts)
+
+    @property
+    def shortest_wave(self) -> float:
+        return min(part.shortest_wave for part in self.parts)
+
+    @property
+    def in_plane(self) -> bool:
+        return all(part.in_plane for part in self.parts)
+
+    @property
+    def surface_height(self) -> float:
+        return min(part.surface_height for part in self.parts)
+
+
+def parts_of(flow: Flow) -> tuple[Flow, ...]:
+    """The flows that add up to `flow`."""
+    return flow.parts if isinstance(flow, FlowSum) else (flow,)
+
+
+@lru_cache(maxsize=64)
+def core_flow(flow: Flow, planar: bool) -> eel_core.Flow:
+    """`flow` for the compiled mechanics. planar: of a planar scene."""
+    return eel_core.Flow(flow.sources(planar))
+
+
+def checked_flow(flow: Any, planar: bool) -> Flow | None:
+    """`flow`, if it is one, or None. `ValueError` for one that a planar scene does not allow."""
+    if flow is None:
+        return None
+    checked_instance("flow", flow, Flow)
+    for part in parts_of(flow):
+        if planar and not part.in_plane:
+            raise ValueError(f"flow must stay in the plane z = 0 of a planar scene, and be alike along z, got {part!r}")
+    return flow
