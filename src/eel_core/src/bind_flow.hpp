@@ -73,8 +73,7 @@ inline std::shared_ptr<Flow> flow_from(const py::list& sources)
         const auto vector = [&](std::size_t i, const char* name) { return vector_from(source[i], name); };
         if (kind == "ramped") {
             RampedFlow ramped{vector(1, "velocity"), {}};
-            for (const auto& [start, end, delta] :
-                 source[2].cast<std::vector<std::tuple<double, double, double>>>())
+            for (const auto& [start, end, delta] : source[2].cast<std::vector<std::tuple<double, double, double>>>())
                 ramped.ramps.push_back({start, end, delta});
             flow->sources.emplace_back(std::move(ramped));
         } else if (kind == "spline") {

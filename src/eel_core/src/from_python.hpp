@@ -105,10 +105,11 @@ inline Row points(const py::handle& object, const char* name, std::size_t n)
 
 inline Sections sections_from(const py::handle& s, std::size_t n)
 {
-    return {points(s, "mass", n),     points(s, "added2", n),    points(s, "added3", n),     points(s, "inertia1", n),
-            points(s, "inertia2", n), points(s, "inertia3", n),  points(s, "added_roll", n), points(s, "displaced", n),
-            points(s, "drag2", n),    points(s, "drag3", n),     points(s, "drag_roll", n),  points(s, "laminar", n),
-            points(s, "turbulent", n), points(s, "by_critical_speed", n)};
+    return {points(s, "mass", n),       points(s, "added2", n),           points(s, "added3", n),
+            points(s, "inertia1", n),   points(s, "inertia2", n),         points(s, "inertia3", n),
+            points(s, "added_roll", n), points(s, "displaced", n),        points(s, "drag2", n),
+            points(s, "drag3", n),      points(s, "drag_roll", n),        points(s, "laminar", n),
+            points(s, "turbulent", n),  points(s, "by_critical_speed", n)};
 }
 
 // `matrix`: rows for the `points`, as those of `PanelRows`.

@@ -273,8 +273,8 @@ void share_in_copies(Class& bound)
 }
 
 template <class M>
-py::object rate_of(Instant<M>& instant, const LawOnGrid& law, const py::object& current, double time, const py::object& state,
-                   std::shared_ptr<Flow> flow)
+py::object rate_of(Instant<M>& instant, const LawOnGrid& law, const py::object& current, double time,
+                   const py::object& state, std::shared_ptr<Flow> flow)
 {
     State rate{};
     const Water water = water_from(current, std::move(flow));
@@ -443,8 +443,8 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
                                       into.data() + 4 * k);
                 }
             },
-            py::arg("law"), py::arg("times"), py::arg("twists"), py::arg("powers"), py::arg("current"),
-            py::arg("flow"), py::arg("poses"))
+            py::arg("law"), py::arg("times"), py::arg("twists"), py::arg("powers"), py::arg("current"), py::arg("flow"),
+            py::arg("poses"))
         .def(
             "momentum_rate",
             [](Instant<Space>& instant, const LawOnGrid& law, double time, const py::object& twist,

@@ -89,7 +89,10 @@ FLOWS = {  # name: flow, its formula
     "shear": (shear, Shear(velocity=(0.3, 0.1, 0.2), across=(-1.0, 1.0, 1.0), centre=(0.1, 0.2, 0.0), width=0.7)),
     "linear shear": (shear, Shear(velocity=(0.2, 0.0, 0.0), across=(0.0, 1.0, 2.0), profile="linear")),
     "vortex": (vortex, Vortex(circulation=0.4, core=0.3, centre=(-0.3, 0.2, 0.0), drift=(0.1, 0.2, 0.0))),
-    "street": (street, VortexStreet(circulation=0.3, core=0.25, count=4, start=(-2.0, 0.1, 0.0), drift=(0.2, 0.1, 0.0))),
+    "street": (
+        street,
+        VortexStreet(circulation=0.3, core=0.25, count=4, start=(-2.0, 0.1, 0.0), drift=(0.2, 0.1, 0.0)),
+    ),
     "wave": (wave, Wave(amplitude=0.1, wavelength=3.0, direction=(1.0, 2.0), surface=1.5, phase=0.4)),
 }
 

@@ -153,7 +153,7 @@ class Reference:
         return pose
 
     def through_water(self, eta, R, r, turning=False):
-        """Section twists (..., N, 6) through the water; `turning`: Omega1 less half the water's curl, as drag sees it."""
+        """Section twists (..., N, 6) through the water; `turning`: Omega1 less half its curl, as drag sees it."""
         if self.flow is None:
             return eta
         U = np.zeros((len(r), 6), dtype=complex if np.iscomplexobj(self.flow_at(r) + R[:, 0]) else float)
@@ -166,7 +166,7 @@ class Reference:
 
     def flow_force(self, K, K_rate, mu):
         """What the flow adds to the balance of the head, (6,): dT/d(pose), and the undisturbed pressure."""
-        R, r = self.configuration(K)
+        _, r = self.configuration(K)
         force = self.displaced[:, None] * self.flow_acceleration(r)
         wrench = self.space.weights @ np.concatenate([np.cross(r, force), force], axis=1)
         for component, unit in enumerate(np.eye(6)):

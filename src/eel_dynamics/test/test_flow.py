@@ -101,7 +101,9 @@ def test_a_spheroid_in_a_plane_strain_feels_the_derivative_of_the_water_s_energy
     s, q = 0.7, 0.4
     strain = np.array([[s, q, 0.0], [q, -s, 0.0], [0.0, 0.0, 0.0]])
     flow = FlowField(
-        lambda x, t: x @ strain.T, jacobian=lambda x, t: np.broadcast_to(strain, (len(x), 3, 3)), rate=lambda x, t: 0 * x
+        lambda x, t: x @ strain.T,
+        jacobian=lambda x, t: np.broadcast_to(strain, (len(x), 3, 3)),
+        rate=lambda x, t: 0 * x,
     )
     body, scene = pointed(0.05, 0.05), Scene(resistive=False, nose=False)
     simulation = Simulation(body, scene, 1e-9, law=STILL, position=(0.5, 0.0, 0.0), flow=flow)
@@ -127,6 +129,7 @@ def test_a_body_across_a_wave_moves_like_a_particle_of_water():
     assert apart(run.position, particle.y.T) < 1e-7
 
 
+DEAR = [pytest.param(name, marks=pytest.mark.soak) for name in ("vortex", "wave", "street")]
 LEDGER = [*(name for name in FLOWS if name != "gust"), "street of 34 and a wave"]
 
 
@@ -141,7 +144,7 @@ def test_the_ledger_closes_in_water_that_moves(name, scene):
     assert max(run.closure_torque.max(), run.closure_force.max()) < 1e-12
 
 
-@pytest.mark.parametrize("name", [*(pytest.param(name, marks=pytest.mark.soak) for name in ("vortex", "wave", "street")), "linear shear"])
+@pytest.mark.parametrize("name", ["linear shear", *DEAR])
 def test_a_march_by_accelerations_and_energies_alone_is_the_same(name):
     """The reference marches the twist; the library the momentum, which the water changes all along the body."""
     law = falling(start_periods=0.1)
@@ -247,9 +250,7 @@ def anywhere(count, seed):
     return [flow(index) for index in range(count)]
 
 
-@pytest.mark.parametrize(
-    "count", [pytest.param(300, id="300"), pytest.param(3_000, id="3000", marks=pytest.mark.soak)]
-)
+@pytest.mark.parametrize("count", [pytest.param(300, id="300"), pytest.param(3_000, id="3000", marks=pytest.mark.soak)])
 def test_robots_in_any_water_finish_or_say_why_not(count):
     cases = robots_anywhere(count, seed=count + 1)
     laws = [falling(period=1.0 + (index % 7) / 4.0) for index in range(count)]

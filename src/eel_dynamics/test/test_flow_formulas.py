@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 from cases import kern_body, random_law, random_twist
+from eel_dynamics.model.axes import turn_quaternion, turn_vector
 from flows import FLOWS, formula, in_paper_axes
 from library_state import (
     DENSE,
@@ -20,7 +21,6 @@ from library_state import in_paper_axes as snapshot_in_paper_axes
 from reference import boyer_body
 
 from eel_dynamics import Simulation, Vortex, Wave
-from eel_dynamics.model.axes import turn_quaternion, turn_vector
 
 STATIONS = np.sort(np.concatenate([np.linspace(0, 1, 15), [0.01, 0.05, 0.2, 0.75, 0.96]]))
 EXACT, KINKS = 1e-9, 1e-5  # as in test_against_reference.py

@@ -63,10 +63,16 @@ def test_what_does_not_fit_is_named(make, message):
 @pytest.mark.parametrize(
     ("function", "message"),
     [
-        (lambda x, t: x[:, :2], r"flow 'pool': function must give shape \(\d+, 3\), got \(\d+, 2\) at \(.*\) m and .* s"),
+        (
+            lambda x, t: x[:, :2],
+            r"flow 'pool': function must give shape \(\d+, 3\), got \(\d+, 2\) at \(.*\) m and .* s",
+        ),
         (lambda x, t: np.where(t > 0.3, np.nan, 0.0 * x), r"flow 'pool': function must be finite, .* m and 0\.3\d* s"),
         (lambda x, t: x @ np.zeros(2), r"flow 'pool': function failed at \(.*\) m and 0 s: matmul"),
-        (lambda x, t: 0.0 * x + [0.0, 0.0, 0.1], r"flow 'pool' must have no part along z in a planar scene, got 0.1 m/s"),
+        (
+            lambda x, t: 0.0 * x + [0.0, 0.0, 0.1],
+            r"flow 'pool' must have no part along z in a planar scene, got 0.1 m/s",
+        ),
     ],
 )
 def test_a_function_that_does_not_fit_is_named_with_place_and_time(function, message):

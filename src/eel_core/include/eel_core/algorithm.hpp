@@ -21,7 +21,8 @@ void find_loads(const Swimmer& swimmer, Workspace<M>& work)
     integrate_resistive_load(swimmer, work);
 }
 
-// Shape and twist of the head in state y at `time` [s], in such `water`. False where the inertia is not positive definite.
+// Shape and twist of the head in state y at `time` [s], in such `water`. False where the inertia is not positive
+// definite.
 template <class M>
 bool find_head_motion(const Swimmer& swimmer, const LawOnGrid& law, const Water& water, double time, const State& y,
                       Workspace<M>& work)

@@ -17,7 +17,8 @@ namespace eel_core {
 
 // The flow along the body, in the shape and place that `work` and state y hold at `time` [s].
 template <class M>
-EEL_CORE_APART void set_flow(const Swimmer& swimmer, const Water& water, double time, const Vector3<double>& nose, Workspace<M>& work)
+EEL_CORE_APART void set_flow(const Swimmer& swimmer, const Water& water, double time, const Vector3<double>& nose,
+                             Workspace<M>& work)
 {
     work.flowing = water.flow != nullptr;
     if (work.flowing) work.flow.set(water, time, nose, work.head, work.position, swimmer.grid.nodes);
@@ -66,8 +67,7 @@ EEL_CORE_APART void set_flow_load(const Swimmer& swimmer, Workspace<M>& work)
 //
 // u_b = u_t + g v: rate of u as the section meets it.
 template <class M>
-Wrench<M, Lanes> wrench_of_flow(const Section<Lanes>& section, Lanes displaced, const Workspace<M>& work,
-                                std::size_t k)
+Wrench<M, Lanes> wrench_of_flow(const Section<Lanes>& section, Lanes displaced, const Workspace<M>& work, std::size_t k)
 {
     const auto frame = work.frame[k];
     const FlowSample<M, Lanes> water = work.flow[k];
@@ -79,10 +79,10 @@ Wrench<M, Lanes> wrench_of_flow(const Section<Lanes>& section, Lanes displaced, 
     const Vector<M, Lanes> shared =
         water.g.transposed_times(Vector<M, Lanes>(frame.parent(p))) - displaced * water.acceleration();
     const Vector<M, Lanes> rate = cross(omega, u) - met;
-    return about_head<M>(frame, work.position[k],
-                         Wrench<M, Lanes>{cross(w, p) - cross(v, section.water_momentum(v)),
-                                          section.water_momentum(rate) - cross(omega, section.water_momentum(u)) +
-                                              frame.local(shared)});
+    return about_head<M>(
+        frame, work.position[k],
+        Wrench<M, Lanes>{cross(w, p) - cross(v, section.water_momentum(v)),
+                         section.water_momentum(rate) - cross(omega, section.water_momentum(u)) + frame.local(shared)});
 }
 
 // Its integral over the body.
@@ -100,8 +100,8 @@ template <class M>
 EEL_CORE_APART void add_wrench_of_flow(const Swimmer& swimmer, const Wrench<M, double>& whole, Workspace<M>& work)
 {
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
-        work.density.store(k, work.density[k] + wrench_of_flow<M>(swimmer.sections[k], swimmer.sections.displaced[k],
-                                                                  work, k));
+        work.density.store(
+            k, work.density[k] + wrench_of_flow<M>(swimmer.sections[k], swimmer.sections.displaced[k], work, k));
     work.balance += whole;
 }
 
@@ -116,13 +116,13 @@ EEL_CORE_APART double flow_power(const Swimmer& swimmer, const Workspace<M>& wor
         const Vector<M, Lanes> w = work.relative[k], velocity = work.velocity[k];
         const Lanes part = dot(swimmer.sections[k].water_momentum(Vector<M, Lanes>(frame.local(w))),
                                Vector<M, Lanes>(frame.local(water.u_t)));
-        sum += swimmer.grid.weight[k] *
-               (part + swimmer.sections.displaced[k] * dot(water.acceleration(), velocity));
+        sum += swimmer.grid.weight[k] * (part + swimmer.sections.displaced[k] * dot(water.acceleration(), velocity));
     }
     return total(sum);
 }
 
-// What the drag's power lacks where it is that of the motion through the water [W]: integral n . U + c1 t1 . curl u / 2.
+// What the drag's power lacks where it is that of the motion through the water [W]: integral n . U + c1 t1 . curl u
+// / 2.
 template <class M>
 EEL_CORE_APART double drag_power_of_flow(const Swimmer& swimmer, const Workspace<M>& work)
 {
@@ -130,9 +130,9 @@ EEL_CORE_APART double drag_power_of_flow(const Swimmer& swimmer, const Workspace
     for (std::size_t k = 0; swimmer.resistive && k < swimmer.grid.blocks; ++k) {
         const auto frame = work.frame[k];
         const FlowSample<M, Lanes> water = work.flow[k];
-        const auto load = resistive_load(swimmer.sections.drag(k), work.friction_laminar[k], work.friction_excess[k],
-                                         load_weights(swimmer, work, k), speeds_from(work, width * k),
-                                         roll_from(work, width * k));
+        const auto load =
+            resistive_load(swimmer.sections.drag(k), work.friction_laminar[k], work.friction_excess[k],
+                           load_weights(swimmer, work, k), speeds_from(work, width * k), roll_from(work, width * k));
         sum += dot(load.linear, Vector<M, Lanes>(frame.local(water.u))) +
                roll_torque(load) * (0.5 * water.g.curl_along(frame.t1()));
     }

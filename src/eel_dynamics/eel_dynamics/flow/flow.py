@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What all flows share: the velocity u(x, t) of the water without the swimmer, its Jacobian and its rate.
 
-Places and velocities are in the axes of the world (REP-103), with the scene's current not included: the water moves with
-`current + u(x, t)`. Flows add by `+`.
+Places and velocities are in the axes of the world (REP-103). The scene's current is not part of u: the water moves with
+the sum of both. Flows add by `+`.
 """
 
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ class FlowSample(NamedTuple):
 class Flow:
     """A flow of the water. It never changes; two are equal where their fields are."""
 
-    def sources(self, planar: bool) -> list[tuple]:
+    def sources(self, planar: bool) -> list[tuple[Any, ...]]:
         """Its sources as `eel_core.Flow` takes them; planar: of a planar scene."""
         raise NotImplementedError
 
@@ -83,7 +83,7 @@ class FlowSum(Flow):
 
     parts: tuple[Flow, ...]
 
-    def sources(self, planar: bool) -> list[tuple]:
+    def sources(self, planar: bool) -> list[tuple[Any, ...]]:
         return [source for part in self.parts for source in part.sources(planar)]
 
     @property
@@ -122,8 +122,8 @@ def checked_flow(flow: Any, planar: bool) -> Flow | None:
     """`flow`, if it is one, or None. `ValueError` for one that a planar scene does not allow."""
     if flow is None:
         return None
-    checked_instance("flow", flow, Flow)
-    for part in parts_of(flow):
+    given: Flow = checked_instance("flow", flow, Flow)
+    for part in parts_of(given):
         if planar and not part.in_plane:
             raise ValueError(f"flow must stay in the plane z = 0 of a planar scene, and be alike along z, got {part!r}")
-    return flow
+    return given

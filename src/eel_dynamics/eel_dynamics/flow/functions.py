@@ -60,7 +60,7 @@ class FlowField(Flow):
             if (given := getattr(self, name)) is not None and not callable(given):
                 raise ValueError(f"flow {name} must be a function of places and time, got {shown(given)}")
 
-    def sources(self, planar: bool) -> list[tuple]:
+    def sources(self, planar: bool) -> list[tuple[Any, ...]]:
         def fill(time: float, view: memoryview) -> None:
             rows = np.asarray(view)
             x = rows[:, :3].copy()
@@ -87,10 +87,10 @@ class FlowField(Flow):
     def _rate(self, x: np.ndarray, time: float) -> np.ndarray:
         if self.rate is not None:
             return self._called("rate", self.rate, x, time, (3,))
-        after, before = (
-            self._called("function", self.function, x, time + shift, (3,)) for shift in (self.time_step, -self.time_step)
-        )
-        return (after - before) / (2.0 * self.time_step)
+        step = self.time_step
+        after = self._called("function", self.function, x, time + step, (3,))
+        rate: np.ndarray = (after - self._called("function", self.function, x, time - step, (3,))) / (2.0 * step)
+        return rate
 
     def _jacobian(self, x: np.ndarray, time: float) -> np.ndarray:
         if self.jacobian is not None:
@@ -98,7 +98,8 @@ class FlowField(Flow):
         shifts = self.step * np.concatenate([np.eye(3), -np.eye(3)])
         moved = (x + shifts[:, None]).reshape(-1, 3)
         after, before = self._called("function", self.function, moved, time, (3,)).reshape(2, 3, len(x), 3)
-        return np.moveaxis(after - before, 0, -1) / (2.0 * self.step)
+        jacobian: np.ndarray = np.moveaxis(after - before, 0, -1) / (2.0 * self.step)
+        return jacobian
 
     def _called(self, what: str, function: Field, x: np.ndarray, time: float, shape: tuple[int, ...]) -> np.ndarray:
         try:

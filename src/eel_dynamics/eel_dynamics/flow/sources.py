@@ -3,6 +3,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from eel_base.quantity import Quantities, checked_row, documented, numbers, quantity
@@ -25,7 +26,7 @@ class Uniform(Flow):
     after them. `ValueError` names what does not fit. The exact shift of frame of `Scene.current` costs less.
     """
 
-    velocity: tuple
+    velocity: tuple[Any, ...]
     time: tuple[float, ...] | None = None
 
     def __post_init__(self) -> None:
@@ -40,7 +41,7 @@ class Uniform(Flow):
         object.__setattr__(self, "time", tuple(time.tolist()))
         object.__setattr__(self, "velocity", tuple(map(tuple, rows.tolist())))
 
-    def sources(self, planar: bool) -> list[tuple]:
+    def sources(self, planar: bool) -> list[tuple[Any, ...]]:
         if self.time is None:
             return [("ramped", np.array(self.velocity), [])]
         spline = CubicSpline(self.time, self.velocity, bc_type="clamped")
@@ -73,7 +74,7 @@ class Gust(Quantities, Flow):
     hold: float = quantity(1.0, "s", "how long it blows at its height", 0.0)
     fall: float = quantity(1.0, "s", "how long it falls", 0.0, exclusive=True)
 
-    def sources(self, planar: bool) -> list[tuple]:
+    def sources(self, planar: bool) -> list[tuple[Any, ...]]:
         start, risen, falls, end = self.breakpoints
         return [("ramped", np.array(self.velocity), [(start, risen, 1.0), (falls, end, -1.0)])]
 
@@ -107,7 +108,7 @@ class Shear(Quantities, Flow):
         if abs(_unit("flow across", self.across) @ self.velocity) > 1e-9 * math.hypot(*self.velocity):
             raise ValueError(f"flow across must be normal to the velocity {self.velocity}, got {shown(self.across)}")
 
-    def sources(self, planar: bool) -> list[tuple]:
+    def sources(self, planar: bool) -> list[tuple[Any, ...]]:
         across, linear = _unit("flow across", self.across), self.profile == "linear"
         return [("shear", np.array(self.velocity), across, float(across @ self.centre), self.width, linear)]
 
@@ -158,7 +159,7 @@ class Vortex(_Vortices, Quantities):
     centre: tuple[float, float, float] = quantity((0.0, 0.0, 0.0), "m", "a point of its axis at t = 0")
     drift: tuple[float, float, float] = quantity((0.0, 0.0, 0.0), "m/s", "velocity of its axis")
 
-    def sources(self, planar: bool) -> list[tuple]:
+    def sources(self, planar: bool) -> list[tuple[Any, ...]]:
         x, y, _ = self.centre
         return [("vortices", np.array([x, y, self.circulation]), self.core, np.array(self.drift))]
 
@@ -187,7 +188,7 @@ class VortexStreet(_Vortices, Quantities):
         super().__post_init__()
         _unit("flow downstream", self.downstream)
 
-    def sources(self, planar: bool) -> list[tuple]:
+    def sources(self, planar: bool) -> list[tuple[Any, ...]]:
         along = _unit("flow downstream", self.downstream)
         left = np.array([-along[1], along[0]])
         far = self.spacing * np.arange(self.count)[:, None] * along + self.start[:2]
@@ -217,7 +218,7 @@ class Wave(Quantities, Flow):
         super().__post_init__()
         _unit("flow direction", self.direction)
 
-    def sources(self, planar: bool) -> list[tuple]:
+    def sources(self, planar: bool) -> list[tuple[Any, ...]]:
         direction = np.append(_unit("flow direction", self.direction), 0.0)
         wavenumber = TURN / self.wavelength
         return [("wave", self.amplitude, wavenumber, TURN / self.time_scale, self.surface, self.phase, direction)]

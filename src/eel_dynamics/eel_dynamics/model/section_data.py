@@ -66,7 +66,8 @@ class SectionData(NamedTuple):
         return self._replace(mass=none, inertia1=self.added_roll, inertia2=none, inertia3=none)
 
 
-# In which a section's inertial wrench, a flow's pressure and its drag are linear; the order is that of the core's `SectionPart`.
+# In which a section's inertial wrench, a flow's pressure and its drag are linear; the order is that of the core's
+# `SectionPart`.
 PARTS = tuple(name for name in SectionData._fields if name not in ("added_roll", "by_critical_speed"))
 
 

@@ -213,11 +213,12 @@ def simulate_batch(
         threads: None for one per available core.
         progress: progress(done, B) is called after each swimmer.
         most_evaluations: of each, as in `simulate`.
-        flows: one for all, or a sequence of B, each a flow or None. A `FlowField` runs in Python: one swimmer at a time.
+        flows: one for all, or a sequence of B, each a flow or None. A `FlowField` runs one swimmer at a time.
     """
     accuracy = accuracy.tolist() if isinstance(accuracy, np.ndarray) else accuracy
     along = [0.0] if stations is None else stations
-    swimmers = swimmers_of(laws, bodies, scenes, accuracy, along, positions, orientations, twists, most_evaluations, flows)
+    states = positions, orientations, twists
+    swimmers = swimmers_of(laws, bodies, scenes, accuracy, along, *states, most_evaluations, flows)
     seconds = duration_of(duration, swimmers)
     if sample_period is None:
         sample_period = default_sample_period({law for law, _ in swimmers}, seconds)

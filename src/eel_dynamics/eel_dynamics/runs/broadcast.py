@@ -31,8 +31,9 @@ def swimmers_of(
 ) -> list[tuple[Law | SampledLaw, SimulationSetup]]:
     """Laws and set-ups of B swimmers, with `stations` on each body, and `most_evaluations` per simulated second.
 
-    flows: None for none. Each other argument is one for all, or a sequence of B (for the last three the rows of an array (B, .)); a sequence
-    of length 1 counts as one for all. `ValueError` names what does not fit, and the swimmer's number.
+    flows: None for none. Each other argument is one for all, or a sequence of B (for the last three the rows of an
+    array (B, .)); a sequence of length 1 counts as one for all. `ValueError` names what does not fit, and the swimmer's
+    number.
     """
     laws, bodies, scenes, settings, flows, *states = _broadcast(
         laws=_several("laws", laws, LAWS),

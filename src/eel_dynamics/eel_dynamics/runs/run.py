@@ -506,9 +506,9 @@ def run_of(
 ) -> Run:
     """The run of the samples in `out` that were reached.
 
-    setup: has the body, the scene, the flow and the stations x. works (T, 5) [J], and time (T,) [s]: of those samples. start [J]:
-    the energy at the start. wrench, load: whether the internal wrench and the water's load were observed. others: the
-    other fields of the run.
+    setup: has the body, the scene, the flow and the stations x. works (T, 5) [J], and time (T,) [s]: of those samples.
+    start [J]: the energy at the start. wrench, load: whether the internal wrench and the water's load were observed.
+    others: the other fields of the run.
     """
     absent = {*(() if wrench else WRENCH), *(() if load else LOAD)}
     observed: dict[str, Any] = {

@@ -289,8 +289,8 @@ class Simulation:
         """March through `times` (T,) [s] under the law in force, and observe each.
 
         Returns the observations, the works (T, 5) [J] of actuators, wake, nose, drag and flow, the number of good
-        instants, and what stopped the march, or None. look(time [s]) is called every few milliseconds. out: space for the
-        observations (`Observations.empty`). After a bad instant the simulation must be reset.
+        instants, and what stopped the march, or None. look(time [s]) is called every few milliseconds. out: space for
+        the observations (`Observations.empty`). After a bad instant the simulation must be reset.
         """
         out = Observations.empty(len(times), len(self.x), wrench, load) if out is None else out
         works = np.zeros((len(times), len(WORKS)))

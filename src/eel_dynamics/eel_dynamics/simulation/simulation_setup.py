@@ -40,7 +40,8 @@ def checked_state(scene: Scene, position, orientation, twist) -> InitialState:
 
 def check_flow(flow: Flow | None, scene: Scene, start: InitialState) -> None:
     """`ValueError` for a flow that `scene` does not allow, or whose surface is below the head at the `start`."""
-    if checked_flow(flow, scene.planar) is not None and start.position[2] > flow.surface_height:
+    flow = checked_flow(flow, scene.planar)
+    if flow is not None and start.position[2] > flow.surface_height:
         raise ValueError(f"flow surface must be above the head, at z = {start.position[2]:g} m, got {flow!r}")
 
 

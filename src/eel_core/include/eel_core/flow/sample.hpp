@@ -68,9 +68,9 @@ struct Jacobian<Plane, T> {
 
 template <class M, Number T>
 struct FlowSample {
-    Vector<M, T> u;       // [m/s]
-    Vector<M, T> u_t;     // [m/s^2]
-    Jacobian<M, T> g;     // [1/s]
+    Vector<M, T> u;    // [m/s]
+    Vector<M, T> u_t;  // [m/s^2]
+    Jacobian<M, T> g;  // [1/s]
 
     FlowSample& operator+=(const FlowSample& o) { return u += o.u, u_t += o.u_t, g += o.g, *this; }
 
@@ -85,7 +85,7 @@ FlowSample<Plane, T> part_in(Plane, const FlowSample<Space, T>& s)
     return {{s.u.x, s.u.y}, {s.u_t.x, s.u_t.y}, {{s.g.x.x, s.g.x.y}, {s.g.y.x, s.g.y.y}}};
 }
 template <Number T>
-const FlowSample<Space, T>& part_in(Space, const FlowSample<Space, T>& s)
+FlowSample<Space, T> part_in(Space, const FlowSample<Space, T>& s)
 {
     return s;
 }

@@ -75,9 +75,8 @@ class FlowValues {
         constexpr std::size_t columns = FunctionFlow::columns;
         rows_.assign(columns * (count + 1), 0.0);
         for (std::size_t i = 0; i <= count; ++i)
-            Components<Vector3<double>>::each(i < count ? place_.node(i) : nose, [&](std::size_t c, double value) {
-                rows_[columns * i + c] = value;
-            });
+            Components<Vector3<double>>::each(i < count ? place_.node(i) : nose,
+                                              [&](std::size_t c, double value) { rows_[columns * i + c] = value; });
         source.function(time, rows_);
         const auto row = [&](std::size_t i) {
             return Components<WaterAt<double>>::make([&](std::size_t c) { return rows_[columns * i + 3 + c]; });

@@ -39,8 +39,8 @@ class Instant {
 
     // Powers of the axial friction, the lateral and vertical drag, and the roll drag, for a given twist of the head in
     // the state y, whose momentum is not read.
-    std::array<double, 4> drag_powers(const LawOnGrid& law, double time, const Twist<M, double>& twist, const Water& water,
-                                      const State& y)
+    std::array<double, 4> drag_powers(const LawOnGrid& law, double time, const Twist<M, double>& twist,
+                                      const Water& water, const State& y)
     {
         move(law, time, twist, water, y);
         std::array<Lanes, 4> sum;

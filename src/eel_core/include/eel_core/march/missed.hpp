@@ -24,8 +24,8 @@ class MissedWrench {
     // Adds it to `integral`. The drag has the signs of the speeds at each station, as if none changed within its panel.
     // omega, velocity: of the stations, the latter through the water; flow: there, where the water moves by itself.
     void add(const Swimmer& swimmer, const Workspace<Space>& work, const Field<Frame3<double>>& frame,
-             const Field<Vector3<double>>& omega, const Field<Vector3<double>>& velocity,
-             const FlowValues<Space>& flow, Field<Wrench<Space, double>>& integral)
+             const Field<Vector3<double>>& omega, const Field<Vector3<double>>& velocity, const FlowValues<Space>& flow,
+             Field<Wrench<Space, double>>& integral)
     {
         set_inertial_units(swimmer, work);
         if (swimmer.resistive) set_drag_units(swimmer, work);

@@ -27,8 +27,8 @@ struct StationWork {
     Field<Quaternion<double>> base;  // of the node before
     Field<Vector2<double>> curvature;
     Field<Vector3<double>> position, omega, velocity, alpha, acceleration;
-    FlowValues<Space> flow;           // where the water moves by itself
-    Field<Vector3<double>> relative;  // velocity through that water
+    FlowValues<Space> flow;                 // where the water moves by itself
+    Field<Vector3<double>> relative;        // velocity through that water
     Field<Wrench<Space, double>> integral;  // integral of the balance's density from the nose
     MissedWrench missed;                    // of it, where the sections are from data
 };
@@ -169,7 +169,7 @@ class Observer {
     }
 
     EEL_CORE_APART void find_flow(const Water& water, double time, const State& y, const Workspace<Space>& work,
-                   StationWork& here) const
+                                  StationWork& here) const
     {
         const Vector3<double> nose{y[0], y[1], y[2]};
         here.flow.set(water, time, nose, work.head, here.position, swimmer_.stations);
@@ -199,9 +199,9 @@ class Observer {
                             here.integral);
         for (std::size_t k = 0; k < blocks(); ++k) {
             const Frame3<Lanes> frame = here.frame[k];
-            const auto wrench = internal_wrench<Space>(swimmer_, work, here.integral[k], frame, here.position[k],
-                                                       swimmer_.at_station[k], frame.local(through_water(work, here)[k]),
-                                                       frame.local(here.omega[k]));
+            const auto wrench = internal_wrench<Space>(
+                swimmer_, work, here.integral[k], frame, here.position[k], swimmer_.at_station[k],
+                frame.local(through_water(work, here)[k]), frame.local(here.omega[k]));
             show(Profiles::torque, sample, k, wrench.angular);
             show(Profiles::force, sample, k, wrench.linear);
         }
@@ -209,8 +209,8 @@ class Observer {
 
     // Makes the velocity, its rate and slope, and Omega1 of a block of stations those through the water.
     static void move_with_flow(std::size_t k, const StationWork& here, const Vector3<Lanes>& omega,
-                                              const Vector3<Lanes>& curvature, Vector3<Lanes>& v,
-                                              Vector3<Lanes>& v_rate, Vector3<Lanes>& v_slope, Lanes& turning)
+                               const Vector3<Lanes>& curvature, Vector3<Lanes>& v, Vector3<Lanes>& v_rate,
+                               Vector3<Lanes>& v_slope, Lanes& turning)
     {
         const FlowSample<Space, Lanes> water = here.flow[k];
         const Frame3<Lanes> frame = here.frame[k];

@@ -60,9 +60,9 @@ struct Workspace {
 
     // Where the water moves by itself (`flowing`); no memory elsewhere:
     bool flowing = false;
-    FlowValues<M> flow;                // in the axes of the head
-    Field<Vector<M, double>> relative; // [m/s], velocity through the water
-    Wrench<M, double> flow_load{};     // what the flow adds to the rate of the momentum
+    FlowValues<M> flow;                 // in the axes of the head
+    Field<Vector<M, double>> relative;  // [m/s], velocity through the water
+    Wrench<M, double> flow_load{};      // what the flow adds to the rate of the momentum
 
     const Field<Vector<M, double>>& velocity_through_water() const { return flowing ? relative : velocity; }
     Vector<M, double> nose_through_water() const { return flowing ? twist.linear - flow.nose().u : twist.linear; }

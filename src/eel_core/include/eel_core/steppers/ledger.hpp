@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Works of actuators, wake, nose, drag and flow along the way: integrals of their powers, by the Lobatto points of each step.
+// Works of actuators, wake, nose, drag and flow along the way: integrals of their powers, by the Lobatto points of each
+// step.
 #pragma once
 
 #include "eel_core/internal_wrench.hpp"

@@ -28,7 +28,7 @@ struct MarchSettings {
     LawOnGrid law;
     std::vector<double> breakpoints;  // [s], ascending
     StepBounds bounds;
-    bool ledger = true;                      // integrate the works
+    bool ledger = true;  // integrate the works
     Water water{};
 };
 
