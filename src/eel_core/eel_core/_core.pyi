@@ -285,8 +285,8 @@ class March:
         self, times: Buffer, first: int, whole: Buffer, works: Buffer, wrench: bool, load: bool, until: float
     ) -> tuple[int, int]:
         """Marches through the times (T,) [s] from number `first` on, up to `until` [s], and observes each. whole:
-        writable, as `layout` has it; works (T, 5) [J]: writable, of actuators, wake, nose, drag and flow since the start.
-        How many of the instants are complete, and the number of a status; as in `advance`."""
+        writable, as `layout` has it; works (T, 5) [J]: writable, of actuators, wake, nose, drag and flow since the
+        start. How many of the instants are complete, and the number of a status; as in `advance`."""
 
     def observe(self, whole: Buffer, wrench: bool, load: bool) -> bool:
         """Writes what the present shows into `whole`, as `layout` has it for one sample. False where the inertia is not
@@ -369,7 +369,7 @@ class PlanarInstant:
         positive definite."""
 
     def repeat_rate(self, law: LawOnGrid, time: float, state: Buffer, count: int, flow: Flow | None = None) -> None:
-        """Finds the rate of a state (13,) `count` times, without a current and without Python's lock: for benchmarks."""
+        """Finds the rate of a state (13,) `count` times, with no current, without Python's lock: for benchmarks."""
 
     def powers(self, law: LawOnGrid) -> list[float]:
         """Powers (5,) [W] of actuators, wake, nose, drag and flow in the motion whose rate was found last."""
