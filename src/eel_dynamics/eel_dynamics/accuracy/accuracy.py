@@ -54,14 +54,15 @@ FURTHER_POINTS = 9.0  # more points per length, which make any grid finer: the l
 WAVES_POWER = 0.85  # points grow with this power of the number of waves on the body
 SPARED = 8.0  # points per length that grow with the waves too, of those that the panels have to spare
 # The companion of a run, with which it measures its error: some ten times the error, at about a third of the cost.
-# Six tenths of the points tell the error of the grid where it falls with the 1.4th power of the points or faster; with
-# blended friction it is some third power. Half of the points told little at a target of 1e-3: nodes come in blocks, and
-# the companion of a run of 40 nodes had 24, whose own error was above the target.
+# Half of the points tell the error of the grid even where it falls as slowly as with the first power of the points. Of
+# less than `FEW_POINTS` per length six tenths remain: nodes come in blocks, and at a target of 1e-3 the companion of a
+# run of 40 nodes had 24, whose own error was above the target.
 # The longest step differs too, because it alone may limit the steps of both. With ten times the tolerance Adams' method
 # often takes the same steps: 9 of 277 random swims then had an error above its estimate, with 30 times 3.
 # A tolerance below `FINE` needs no more than 20 times; above, two runs of long steps may agree by chance (1 of 239
 # sensitive swims at a target of 1e-2).
-LOOSER, FEWER_POINTS, LONGER_STEPS = 30.0, 0.6, 1.5
+LOOSER, FEWER_POINTS, LONGER_STEPS = 30.0, 0.5, 1.5
+FEW_POINTS, FEWER_OF_FEW = 22.0, 0.6
 FINE, LOOSER_THAN_FINE = 1e-6, 20.0
 ADAMS_ERROR = 3.0  # some times that of the embedded pair at the same tolerance
 # What a tightened run changes with the ratio r < 1 of the wanted error to the measured one: the tolerance with r^1.2,
@@ -183,7 +184,8 @@ class Accuracy:
     def coarser(self) -> "Accuracy":
         """Settings with some ten times the error, for the companion with which a run measures its own error."""
         looser = LOOSER if self.tolerance > FINE else LOOSER_THAN_FINE
-        return self._changed(looser, FEWER_POINTS, LONGER_STEPS)
+        fewer = FEWER_POINTS if self.resolution >= FEW_POINTS else FEWER_OF_FEW
+        return self._changed(looser, fewer, LONGER_STEPS)
 
     def by_adams(self) -> "Accuracy":
         """Settings with some such error by Adams' method, where these are those of the embedded pair."""
