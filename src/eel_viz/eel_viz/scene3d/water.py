@@ -154,7 +154,7 @@ class WaterBox:
 def _tiles(along: int, across: int) -> np.ndarray:
     """Triangles (T, 3) between `along` rows of `across` vertices."""
     here = (np.arange(along - 1)[:, None] * across + np.arange(across - 1)).reshape(-1, 1)
-    return (here + np.array((0, across, across + 1, 0, across + 1, 1))).reshape(-1, 3)
+    return np.asarray(here + np.array((0, across, across + 1, 0, across + 1, 1))).reshape(-1, 3)
 
 
 def caustics(places: np.ndarray) -> np.ndarray:
