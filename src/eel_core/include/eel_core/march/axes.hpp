@@ -28,7 +28,7 @@ inline Spatial<Space, double> half_turn(const Spatial<Space, double>& s)
 template <std::size_t N>
 std::array<double, N> half_turn(std::array<double, N> y)
 {
-    for (const std::size_t turned : {0, 1, 3, 4, 7, 8, 10, 11}) y[turned] = 0.0 - y[turned];
+    for (const std::size_t turned : {0u, 1u, 3u, 4u, 7u, 8u, 10u, 11u}) y[turned] = 0.0 - y[turned];
     return y;
 }
 

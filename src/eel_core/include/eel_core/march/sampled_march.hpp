@@ -96,8 +96,8 @@ class SampledMarch {
         if (begins)
             set_ends(0);
         else
-            for (const std::size_t axis : {0, 1})
-                for (const std::size_t row : {0, 1, 2})
+            for (const std::size_t axis : {0u, 1u})
+                for (const std::size_t row : {0u, 1u, 2u})
                     tables_->copy(axes_rows * axis + 3 + row, axes_rows * axis + row);
         law_.segment = {0, start, time};
         if (begins) begin_blend(start);
