@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names and types of the swimmer's topics, and fields of its ledger, as texts: no ROS is imported.
 
-A new topic has its name here. `SampleMessages` (eel_dynamics/ros/messages.py) fills its message, and `messages_of_run`
-(eel_dynamics/runs/exchange) the same from a run. `READERS` (eel_viz/recording/dispatcher.py) and the method of its name
+A new topic has its name here. `SampleMessages` (eel_dynamics/ros/messages.py) fills its message, `PARTS`
+(eel_dynamics/ros/publishers.py) names what is costly to find for it, and `messages_of_run` (eel_dynamics/runs/exchange)
+makes the same from a run. `READERS` (eel_viz/recording/dispatcher.py) and the method of its name
 in `Loggers` draw it.
 """
 

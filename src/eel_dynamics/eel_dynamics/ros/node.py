@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The dynamics node: declares parameters, subscribes to laws, runs the simulation, publishes samples and diagnostics.
 
-The run loop runs in one thread (loop/run_loop.py), callbacks in the main thread.
+The run loop runs in one thread (loop/run_loop.py), callbacks in the main thread. A new topic begins in
+eel_base/topics.py.
 """
 
 import sys

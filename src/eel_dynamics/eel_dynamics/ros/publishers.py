@@ -5,6 +5,8 @@ In a paced run (real_time_factor > 0) the node never waits: a slow subscriber mi
 possible, publishers are RELIABLE and KEEP_ALL: if the history is full, `publish` fails and is retried until the
 subscriber has caught up, or is considered stuck. The topic then changes to a KEEP_LAST history, so that the run and the
 other subscribers go on.
+
+A new topic begins in eel_base/topics.py. What is costly to find for it is an entry of `PARTS` here.
 """
 
 import math
