@@ -70,8 +70,9 @@ def test_training_finds_a_policy_that_does_the_task(example, name):
 
 
 def test_the_policy_over_topics_swims_as_in_the_environment(start, fresh_domain):
-    """The same start, gait, water and policy. The positions of the head agree to 1e-6 m: stamps are whole nanoseconds,
-    and observations have single precision. The heading is held."""
+    """The same start, gait, water and policy. The positions of the head agree to a tenth of the target, 1e-4 of the
+    path: the two march by methods of their own, stamps are whole nanoseconds, and observations have single precision.
+    The heading is held."""
     swim = SwimClient(domain=fresh_domain, topics=())
     swim.listen("odom", Odometry)
     settings = ("scene.planar:=true", "scene.internal_wrench:=false", "scene.ledger:=false", "estimate_error:=false")
@@ -90,7 +91,7 @@ def test_the_policy_over_topics_swims_as_in_the_environment(start, fresh_domain)
         action = np.tanh([weights[:-1] @ observation + weights[-1]])
         observation, *_ = env.step(action)
         seen = positions[k * 100_000_000]
-        assert (seen.x, seen.y, seen.z) == pytest.approx(env.head.position.tolist(), abs=1e-6)
+        assert (seen.x, seen.y, seen.z) == pytest.approx(env.head.position.tolist(), rel=1e-5, abs=1e-5)
     assert env.heading == pytest.approx(0.6, abs=0.05)
 
 

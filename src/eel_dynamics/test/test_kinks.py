@@ -17,12 +17,15 @@ def drag_powers(friction: str, kinks: str) -> np.ndarray:
     scene, law = Scene(friction=friction), falling()
     swimmer = Simulation(scene=scene, law=law, accuracy=Accuracy(name="some", resolution=13.0, tolerance=1e-4))
     other = Simulation(scene=scene, law=law, accuracy=Accuracy(name="some", resolution=13.0, kinks=kinks))
-    times, twists = np.arange(2.0, 4.0, 0.1), []
+    times, seen = np.arange(2.0, 4.0, 0.1), []
     for time in times:
         swimmer.advance(time)
-        twists.append(swimmer.observe().twist)
-    powers = np.empty((len(times), 4))
-    eel_core.Instant(other.discretisation.swimmer).drag_powers(other.law_on_grid, times, np.array(twists), powers)
+        seen.append(swimmer.observe())
+    twists = np.array([each.twist for each in seen])
+    poses = np.array([[*each.position, *each.orientation] for each in seen])
+    powers, instant = np.empty((len(times), 4)), eel_core.Instant(other.discretisation.swimmer)
+    water = other.setup.current, other.setup.core_flow
+    instant.drag_powers(other.law_on_grid, times, twists, powers, *water, poses)
     return powers
 
 

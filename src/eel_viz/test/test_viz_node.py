@@ -304,7 +304,7 @@ def test_served_data_reaches_a_viewer_that_comes_later(start, network, tmp_path,
                 timeline.end for one in recordings for timeline in one.timelines if timeline.name == entities.TIMELINE
             ]
         assert 19 * 10**8 in ends
-        titles = {"Internal torque C(X)", "Speed and depth of the head", "Log"}
+        titles = {"Internal torque C(X)", "Speed of the head [m/s]", "Log"}
         while not titles <= {view.name for view in client.get_state().views}:
             assert time.monotonic() < deadline, "our arrangement is not shown"
             time.sleep(0.3)

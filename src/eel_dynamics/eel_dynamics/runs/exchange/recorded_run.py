@@ -28,12 +28,11 @@ from eel_dynamics.model.moments import with_moments
 from eel_dynamics.model.panels import panels_of
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.exchange.eel_viz_functions import messages_of_bag
-from eel_dynamics.simulation.energy import EnergyLedger
+from eel_dynamics.simulation.energy import WORKS, EnergyLedger
 
 NEEDED = ("head_pose", "head_twist", "backbone", "curvature")
 FURTHER = ("internal_wrench", "hydrodynamic_load", "energy")
 ENDS = ("tail_force", "nose_force", "wake_momentum_rate")
-WORKS = ("actuator", "wake", "nose", "drag")
 FEWEST = 4  # samples, for splines through them
 AXIS_OF_NUMBER = {column + 1: name for name, column in SECTION_COLUMN.items()}  # as in CurvatureTerm
 
@@ -145,10 +144,11 @@ def _load(rows: dict) -> dict:
 
 
 def _energy(rows: dict, time: np.ndarray) -> EnergyLedger | None:
-    """The ledger, with works since the first sample."""
+    """The ledger, with works since the first sample. The node's water does not move by itself: no power of a flow."""
     if "energy" not in rows:
         return None
-    ledger = {name: np.array([getattr(each, name) for each in rows["energy"]]) for name in ENERGY_FIELDS}
+    ledger = {"flow_power": np.zeros_like(time)}
+    ledger |= {name: np.array([getattr(each, name) for each in rows["energy"]]) for name in ENERGY_FIELDS}
     works = {}
     for part in WORKS:
         total = _spline(time, ledger[f"{part}_power"]).antiderivative()
