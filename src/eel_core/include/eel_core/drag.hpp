@@ -4,8 +4,9 @@
 //     n = -1/2 rho_f (k1 V1|V1|, k2 V2|V2|, k3 V3|V3|)        c1 = -1/2 rho_f k4 Omega1|Omega1|
 //
 // k1 is a friction law: model/friction.hpp. Another law of cross flow (k2, k3) or of roll (k4) is a change of
-// `resistive_load` here, of its kinks (drag_kinks.hpp), and of `sections_of` in eel_dynamics/model/section_data.py. Where a speed changes its sign within a panel, the load has a kink there;
-// `drag_kinks` integrates it exactly.
+// `resistive_load` here, of its kinks (drag_kinks.hpp), and of `sections_of` in
+// eel_dynamics/model/section_data.py. Where a speed changes its sign within a panel, the load has a
+// kink there; `drag_kinks` integrates it exactly.
 #pragma once
 
 #include "eel_core/model/workspace.hpp"
