@@ -16,6 +16,7 @@ from eel_base.files.markdown import table, with_part
 ROOT = Path(__file__).resolve().parent.parent
 REPORTS = ROOT / "benchmarks" / "reports"
 VALIDATION = ROOT / "docs" / "appendix" / "validation.md"
+LIFE = ROOT / "docs" / "explanation" / "life.md"
 WRITTEN_WHOLE = (
     "docs/appendix/validation.md",
     "docs/appendix/tradeoff.md",
@@ -153,6 +154,29 @@ def trust() -> str:
     return table(("check", "difference"), [*rows, (f"{MASS} (printed: 1.94 kg)", measured[MASS])])
 
 
+QUOTED_OF_LIFE = (  # the three rows that agree best, and the one that agrees least
+    ("lamprey", "Strouhal number"),
+    ("lamprey", "speed [m/s]"),
+    ("tendon fish", "leave-out error, one coefficient fitted on two films [m/s]"),
+    ("tendon fish", "mean error of speed, nothing fitted [m/s]"),
+)
+
+
+def life() -> str:
+    """README: measured swimmers, the three best rows of docs/explanation/life.md and the worst."""
+    cells = [
+        [cell.strip() for cell in line.strip("|").split("|")] for line in LIFE.read_text(encoding="utf-8").splitlines()
+    ]
+    rows = []
+    for quoted in QUOTED_OF_LIFE:
+        found = [row for row in cells if tuple(row[:2]) == quoted]
+        if len(found) != 1:
+            raise ValueError(f"docs/explanation/life.md must have one row {quoted}, it has {len(found)}")
+        swimmer, what, measured, ours, *_, words = found[0]
+        rows.append((f"{swimmer}: {what}", measured, ours, words))
+    return table(("measured swimmer", "measured", "ours", "in plain words"), rows)
+
+
 def integrators() -> str:
     """docs/explanation/integrators.md: evaluations by method and target."""
     report = Report("integrators")
@@ -197,7 +221,7 @@ def _from(report: Report, head: Sequence[str], rows: Sequence[Sequence[str]], ma
 
 
 BLOCKS: dict[str, dict[str, Callable[[], str]]] = {
-    "README.md": {"trust": trust, "speed": speed},
+    "README.md": {"trust": trust, "life": life, "speed": speed},
     "docs/howto/controllers.md": {"lockstep": lockstep},
     "docs/howto/learning.md": {"gym": gym},
     "docs/explanation/integrators.md": {"integrators": integrators, "orders": orders},
