@@ -5,10 +5,10 @@ import threading
 import time
 
 import pytest
-from eel_dynamics.ros.diagnostics import Report
-from eel_dynamics.ros.loop.followed_clock import FollowedClock
 from eel_gaits.ros.messages import law_to_message
-from fake_log import Log
+from eel_ros.loop.diagnostics import Report
+from eel_ros.loop.followed_clock import FollowedClock
+from eel_ros.testing.log import Log
 from fake_publishers import fake_publishers, run_loop
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock

@@ -5,11 +5,11 @@ from types import SimpleNamespace
 
 import pytest
 from builtin_interfaces.msg import Time
-from eel_dynamics.ros.diagnostics import Report
 from eel_dynamics.ros.law_subscription import LawSubscription
 from eel_dynamics.ros.loop.law_adopter import LawAdopter
 from eel_gaits.ros.messages import law_to_message
-from fake_log import Log
+from eel_ros.loop.diagnostics import Report
+from eel_ros.testing.log import Log
 from rclpy.serialization import serialize_message
 
 from eel_dynamics import Scene, Simulation

@@ -8,9 +8,9 @@ import pytest
 from eel_dynamics.accuracy.error_estimate import HeadErrors
 from eel_dynamics.ros.messages import SampleMessages, body_message, diagnostic_array, samples_from_message
 from eel_dynamics.ros.parameters import DynamicsParameters
-from eel_dynamics.ros.serialised_message import MARKED_TIME, SerialisedMessage
 from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
 from eel_gaits.gaits.settings import Settings
+from eel_ros.loop.serialised_message import MARKED_TIME, SerialisedMessage
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry
 from rclpy.serialization import deserialize_message, serialize_message

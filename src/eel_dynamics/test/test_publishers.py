@@ -4,10 +4,11 @@
 from types import SimpleNamespace
 
 import pytest
-from eel_dynamics.ros.diagnostics import Report
 from eel_dynamics.ros.parameters import DynamicsParameters
-from eel_dynamics.ros.publishers import END_TIMEOUT, Publishers, WaitBudget
-from fake_log import Log
+from eel_dynamics.ros.publishers import END_TIMEOUT, Publishers
+from eel_ros.loop.channel import WaitBudget
+from eel_ros.loop.diagnostics import Report
+from eel_ros.testing.log import Log
 
 
 class FakeNode:

@@ -6,11 +6,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from eel_dynamics.ros.diagnostics import ERROR, OK, WARN, Report
-from eel_dynamics.ros.loop.clock_ticks import ClockTicks
 from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
-from eel_dynamics.ros.loop.requests import Answer
-from fake_log import Log
+from eel_ros.loop.clock_ticks import ClockTicks
+from eel_ros.loop.diagnostics import ERROR, OK, WARN, Report
+from eel_ros.loop.requests import Answer
+from eel_ros.testing.log import Log
 from fake_publishers import FakeInbox, fake_publishers, run_loop
 
 from eel_dynamics import Simulation
@@ -109,15 +109,14 @@ def test_without_a_rate_of_its_own_the_clock_comes_with_each_sample():
 
 def test_a_clock_that_stands_does_not_go_back_to_the_last_sample():
     told, now = [], 0.0
-    parameters = SimpleNamespace(values=SimpleNamespace(clock_rate=100.0))
-    clock = ClockTicks(parameters, SimpleNamespace(tick=told.append))
+    clock = ClockTicks(100.0, SimpleNamespace(tick=told.append))
     clock.reach(0)
     clock.go_on(30_000_000, 0, now)
     for _ in range(3):
         now += 1e9  # s: later than any clock's time
         clock.repeat(0, now)
     assert told == [0, 10_000_000, 20_000_000, 30_000_000, *[30_000_000] * 3]
-    clock.restart()
+    clock.restart(100.0)
     clock.reach(0)
     assert told[-1] == 0
 
@@ -244,8 +243,8 @@ class MadeUpTime(FakeInbox):
     def __init__(self, monkeypatch):
         super().__init__()
         self.now = 100.0
-        for module in ("run_loop", "clock_ticks", "requests"):
-            monkeypatch.setattr(f"eel_dynamics.ros.loop.{module}.time", SimpleNamespace(monotonic=lambda: self.now))
+        for module in ("eel_dynamics.ros.loop.run_loop", "eel_ros.loop.clock_ticks", "eel_ros.loop.requests"):
+            monkeypatch.setattr(f"{module}.time", SimpleNamespace(monotonic=lambda: self.now))
 
     def wait(self, seconds):
         self.now += seconds

@@ -8,12 +8,12 @@ from collections.abc import Iterator
 from typing import Any
 
 from eel_ros.deliveries import Deliveries
+from eel_ros.loop.diagnostics import ERROR, Report
 from eel_ros.qos import keep_all
 from eel_ros.serving import PolledGroup, ServedNode, log_dropped, read_message
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.qos import ReliabilityPolicy
 
-from eel_dynamics.ros.diagnostics import ERROR, Report
 from eel_dynamics.ros.messages import refused, samples_from_message
 from eel_msgs.msg import CurvatureSamples
 

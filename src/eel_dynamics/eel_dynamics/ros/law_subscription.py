@@ -13,12 +13,12 @@ from typing import Any
 
 from eel_gaits.ros.messages import law_from_message
 from eel_ros.deliveries import Deliveries
+from eel_ros.loop.diagnostics import ERROR, Report
 from eel_ros.qos import latched
 from eel_ros.serving import ServedNode
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.qos import QoSProfile
 
-from eel_dynamics.ros.diagnostics import ERROR, Report
 from eel_dynamics.ros.loop.run_loop import RunLoop
 from eel_dynamics.ros.messages import law_name, read_law, stamped
 from eel_msgs.msg import CurvatureLaw

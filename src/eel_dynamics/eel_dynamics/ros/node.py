@@ -16,6 +16,10 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from eel_base.command.command_line import one_line_warnings
 from eel_base.wording import one_line
+from eel_ros.loop.diagnostics import Report
+from eel_ros.loop.followed_clock import ClockSubscription, FollowedClock
+from eel_ros.loop.other_nodes import Identity, OtherNodes
+from eel_ros.loop.requests import Answer
 from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import help_rows
 from eel_ros.process_end import exit_immediately
@@ -30,13 +34,9 @@ from tf2_msgs.msg import TFMessage
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration
-from eel_dynamics.ros.diagnostics import Report
 from eel_dynamics.ros.law_subscription import LawSubscription
-from eel_dynamics.ros.loop.followed_clock import ClockSubscription, FollowedClock
-from eel_dynamics.ros.loop.requests import Answer
 from eel_dynamics.ros.loop.run_loop import RunLoop
 from eel_dynamics.ros.messages import diagnostic_array, root_message, state_from_message, time_message, values_of_status
-from eel_dynamics.ros.other_nodes import Identity, OtherNodes
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.publishers import Publishers
 from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters

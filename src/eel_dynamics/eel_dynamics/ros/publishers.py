@@ -13,21 +13,20 @@ import math
 import time
 from typing import Any
 
-from eel_ros.qos import keep_all, latched, matches
+from eel_ros.loop.channel import Channel, WaitBudget
+from eel_ros.loop.diagnostics import Report
+from eel_ros.qos import latched
 from eel_ros.serving import ServedNode
 from rclpy.duration import Duration
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rosgraph_msgs.msg import Clock
 
 from eel_dynamics.ros.declaration import Declaration
-from eel_dynamics.ros.diagnostics import Report
 from eel_dynamics.ros.messages import SampleMessages, body_message
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
 from eel_msgs.msg import BodyGeometry
 
-LIVE_DEPTH = 100  # samples: history of a paced run
-LONG_DEPTH = 5000  # samples: history after a subscriber got stuck, as long as the one that keeps all
 RETRY = 0.002  # s between two attempts to publish, in which other threads can run
 BODY_TIMEOUT = 1.0  # s: longest wait for the present subscribers to have the body before the first sample
 END_TIMEOUT = 5.0  # s: longest wait for acknowledgements at the end of a paced run
@@ -39,29 +38,6 @@ COUNT_PERIOD = 0.1  # s of wall time between two counts of subscribers: a count 
 PARTS = {"wrench": ("internal_wrench", "joint_states", "swim_state"), "load": ("hydrodynamic_load",)}
 # of Simulation.observe, and the topics that need them
 NOT_AWAITED = ("/tf", "joint_states", "swim_state")  # topics that the run does not wait for subscribers of
-
-
-class Channel:
-    """One topic of `node` with its publisher."""
-
-    def __init__(self, node: ServedNode, kind: type, topic: str, lossless: bool) -> None:
-        self._node, self._kind, self.topic, self.lossless = node, kind, topic, lossless
-        self.publisher: Any = node.create_publisher(kind, topic, keep_all() if lossless else LIVE_DEPTH)
-
-    def close(self) -> None:
-        """End the topic."""
-        self._node.destroy_publisher(self.publisher)
-
-    def drop_oldest(self) -> None:
-        """Change to a KEEP_LAST history, long enough for the subscribers that are not stuck."""
-        self.close()
-        self.lossless = False
-        self.publisher = self._node.create_publisher(self._kind, self.topic, LONG_DEPTH)
-
-    def count_known(self) -> int:
-        """The number of subscribers on the network that the publisher can match."""
-        wanted = self._node.get_subscriptions_info_by_topic(self.publisher.topic_name)
-        return sum(matches(each.qos_profile, self.publisher.qos_profile) for each in wanted)
 
 
 class Publishers:
@@ -222,26 +198,3 @@ class Publishers:
             "going on without it, it will miss samples",
         )
         channel.drop_oldest()
-
-
-class WaitBudget:
-    """The time spent waiting for subscribers: one for all topics, as a stuck subscriber is stuck on all of them."""
-
-    def __init__(self) -> None:
-        self._since: float | None = None  # s, steady clock
-        self._last = 0.0
-
-    def begin(self, now: float) -> None:
-        """Note a failed publish; a wait that ended more than `QUIET_TIME` ago does not count."""
-        if self._since is None or now - self._last > QUIET_TIME:
-            self._since = now
-        self._last = now
-
-    def over(self, now: float, timeout: float) -> bool:
-        """Whether the waiting has reached `timeout` [s]."""
-        self._last = now
-        return self._since is not None and now - self._since >= timeout
-
-    def renew(self) -> None:
-        """Start over: a subscriber has caught up."""
-        self._since = None

@@ -4,8 +4,9 @@
 import time
 from typing import Any
 
+from eel_ros.loop.diagnostics import ERROR, Report
+
 from eel_dynamics.ros.declaration import Declaration
-from eel_dynamics.ros.diagnostics import ERROR, Report
 from eel_dynamics.ros.loop.run_loop import RunLoop
 
 OVERDUE = 3.0  # s of wall time for one sample of a paced run, after which an error is reported

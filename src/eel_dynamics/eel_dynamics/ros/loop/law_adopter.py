@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
+from eel_ros.loop.diagnostics import ERROR, WARN, Report
 
 from eel_dynamics.curvature.curvature_samples import LateSample
-from eel_dynamics.ros.diagnostics import ERROR, WARN, Report
 from eel_dynamics.ros.messages import refused
 from eel_dynamics.simulation.simulation import Simulation
 

@@ -11,9 +11,9 @@ from time import monotonic
 import numpy as np
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
+from eel_ros.loop.diagnostics import REPEAT, Report
 
 from eel_dynamics.analysis.model_limits import ModelLimits
-from eel_dynamics.ros.diagnostics import REPEAT, Report
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
 

@@ -3,7 +3,8 @@
 
 import time
 
-from eel_dynamics.ros.loop.requests import Answer
+from eel_ros.loop.requests import Answer
+
 from eel_dynamics.ros.publishers import Publishers
 from eel_dynamics.simulation.simulation import Simulation
 

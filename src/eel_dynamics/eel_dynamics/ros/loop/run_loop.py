@@ -18,15 +18,15 @@ from typing import Any
 import numpy as np
 from eel_base.wording import one_line
 from eel_gaits.laws.law import Law
+from eel_ros.loop.clock_ticks import TICK
+from eel_ros.loop.diagnostics import ERROR, Report
+from eel_ros.loop.followed_clock import FollowedClock
+from eel_ros.loop.pacing import Pace
+from eel_ros.loop.requests import Answer, RequestQueue
 
 from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration
-from eel_dynamics.ros.diagnostics import ERROR, Report
-from eel_dynamics.ros.loop.clock_ticks import TICK
-from eel_dynamics.ros.loop.followed_clock import FollowedClock
 from eel_dynamics.ros.loop.law_adopter import LawAdopter
-from eel_dynamics.ros.loop.pacing import Pace
-from eel_dynamics.ros.loop.requests import Answer, RequestQueue
 from eel_dynamics.ros.loop.run_gate import RunGate
 from eel_dynamics.ros.loop.sample_output import SampleOutput, nanoseconds
 from eel_dynamics.ros.parameters import DynamicsParameters

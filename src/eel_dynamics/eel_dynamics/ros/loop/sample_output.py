@@ -6,9 +6,10 @@ While a run stands at its start, sample 0 is repeated. It is not published once 
 
 import math
 
+from eel_ros.loop.clock_ticks import ClockTicks
+from eel_ros.loop.diagnostics import Report
+
 from eel_dynamics.ros.declaration import Declaration
-from eel_dynamics.ros.diagnostics import Report
-from eel_dynamics.ros.loop.clock_ticks import ClockTicks
 from eel_dynamics.ros.loop.error_monitor import ErrorMonitor
 from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
 from eel_dynamics.ros.loop.run_totals import RunTotals
@@ -30,7 +31,7 @@ class SampleOutput:
     def __init__(self, simulation: Simulation, parameters: Declaration, publishers: Publishers, report: Report) -> None:
         self._simulation, self._parameters = simulation, parameters
         self._publishers, self._report = publishers, report
-        self.clock, self.totals = ClockTicks(parameters, publishers), RunTotals()
+        self.clock, self.totals = ClockTicks(parameters.values.clock_rate, publishers), RunTotals()
         self.errors, self._limits = ErrorMonitor(simulation, report), LimitsMonitor(simulation, report)
         self._whole_snapshot_due = True
         self._start_shown = -math.inf  # s, steady clock: last sample 0
@@ -95,7 +96,7 @@ class SampleOutput:
         """Begin again with the start of a `simulation`, which may be another one."""
         self._simulation = simulation
         self.totals, self.errors = RunTotals(), ErrorMonitor(simulation, self._report)
-        self.clock.restart()
+        self.clock.restart(self._parameters.values.clock_rate)
         self.change_state()
 
 

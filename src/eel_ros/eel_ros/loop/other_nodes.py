@@ -16,9 +16,8 @@ from collections.abc import Mapping
 from datetime import UTC, datetime
 from typing import NamedTuple
 
+from eel_ros.loop.diagnostics import ERROR, Report
 from eel_ros.serving import ServedNode
-
-from eel_dynamics.ros.diagnostics import ERROR, Report
 
 GONE = 5.0  # s without diagnostics from a node, after which it counts as gone; they come once a second
 STRANGE = 3.0  # s after which a publisher of /clock whose node has sent no diagnostics is none of these nodes

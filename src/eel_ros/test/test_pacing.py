@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from eel_dynamics.ros.loop.pacing import Pace
+from eel_ros.loop.pacing import Pace
 
 
 def test_pace_gives_due_times():

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The node's log and its content of /diagnostics."""
 
-from eel_dynamics.ros.diagnostics import ERROR, OK, WARN, Report
-from fake_log import Log
+from eel_ros.loop.diagnostics import ERROR, OK, WARN, Report
+from eel_ros.testing.log import Log
 
 
 def test_lasting_condition_is_logged_once_and_shown_while_it_lasts():

@@ -3,33 +3,38 @@
 
 import math
 import time
-
-from eel_dynamics.ros.declaration import Declaration
-from eel_dynamics.ros.publishers import Publishers
+from typing import Protocol
 
 TICK = 0.05  # s of wall time between two messages while the simulation stands
 
 
-class ClockTicks:
-    """Publishes /clock through `publishers`: messages k = 0, 1, ... at the simulation times k/clock_rate.
+class ClockPublisher(Protocol):
+    """What publishes /clock."""
 
-    With a clock_rate of 0 there is one with each sample. The time that it shows goes back at a reset alone.
+    def tick(self, nanoseconds: int) -> None:
+        """Publish it, with simulation time `nanoseconds` [ns]."""
+
+
+class ClockTicks:
+    """Publishes /clock through a `publisher`: messages k = 0, 1, ... at the simulation times k/rate.
+
+    With a `rate` [Hz] of 0 there is one with each sample. The time that it shows goes back at a reset alone.
     """
 
-    def __init__(self, parameters: Declaration, publishers: Publishers) -> None:
-        self._parameters, self._publishers = parameters, publishers
+    def __init__(self, rate: float, publisher: ClockPublisher) -> None:
+        self._publisher = publisher
         self._sent = -math.inf  # s, steady clock: the last message
-        self.restart()
+        self.restart(rate)
 
-    def restart(self) -> None:
-        """Begin again at simulation time 0."""
+    def restart(self, rate: float) -> None:
+        """Begin again at simulation time 0, with a `rate` [Hz]."""
+        self._rate = rate
         self._count = self._shown = 0  # messages at k/rate so far; simulation time [ns] of the last message
 
     @property
     def next(self) -> float:
         """Simulation time [s] of the next message between two samples; infinite if there are none."""
-        rate = self._parameters.values.clock_rate
-        return self._count / rate if rate > 0.0 else math.inf
+        return self._count / self._rate if self._rate > 0.0 else math.inf
 
     def reach(self, stamp: int) -> None:
         """Publish what is due with the sample at simulation time `stamp` [ns]."""
@@ -57,5 +62,5 @@ class ClockTicks:
             self._send(due)
 
     def _send(self, nanoseconds: int) -> None:
-        self._publishers.tick(nanoseconds)
+        self._publisher.tick(nanoseconds)
         self._shown, self._sent = nanoseconds, time.monotonic()

@@ -4,10 +4,10 @@
 from types import SimpleNamespace
 
 import pytest
-from eel_dynamics.ros import other_nodes
-from eel_dynamics.ros.diagnostics import Report
-from eel_dynamics.ros.other_nodes import Identity, OtherNodes
-from fake_log import Log
+from eel_ros.loop import other_nodes
+from eel_ros.loop.diagnostics import Report
+from eel_ros.loop.other_nodes import Identity, OtherNodes
+from eel_ros.testing.log import Log
 
 FIRST, SECOND = Identity("2026-01-01T00:00:00", "a", "7"), Identity("2026-01-01T00:00:01", "a", "8")
 

@@ -5,11 +5,22 @@ import math
 import threading
 import time
 from collections.abc import Callable, Generator
-from typing import Any, NamedTuple
-
-from eel_dynamics.ros.curvature_inbox import CurvatureInbox
+from typing import Any, NamedTuple, Protocol
 
 INTERRUPT_AFTER = 1.0  # s of wall time for one sample, after which any request interrupts its computation
+
+
+class Waking(Protocol):
+    """What a run loop sleeps on."""
+
+    def set(self) -> None:
+        """Wake the run loop, or let its next `wait` return at once."""
+
+    def wait(self, seconds: float) -> bool:
+        """Sleep until it is woken, at most `seconds`; whether it was."""
+
+    def wake_callers(self) -> None:
+        """Let the executor look whether the requests that callbacks await are done."""
 
 
 class Answer:
@@ -22,7 +33,7 @@ class Answer:
         deadline: [s, steady clock] until when it is awaited.
     """
 
-    def __init__(self, inbox: CurvatureInbox) -> None:
+    def __init__(self, inbox: Waking) -> None:
         self._inbox, self._awaited, self.done = inbox, False, threading.Event()
         self.time, self.failure, self.deadline = math.nan, "", math.inf
 
@@ -55,7 +66,7 @@ class RequestQueue:
         stopped: the run is to end.
     """
 
-    def __init__(self, inbox: CurvatureInbox) -> None:
+    def __init__(self, inbox: Waking) -> None:
         self._guard, self._inbox = threading.Lock(), inbox
         self._waiting: list[Request] = []
         self._urgent = self.stopped = False
