@@ -21,7 +21,7 @@ sanitize: build   ## the mechanics under AddressSanitizer and UndefinedBehaviorS
 aarch64: build   ## the C++ tests of the mechanics compiled for 64-bit ARM, run by qemu
 	@$(RUN) tools/core_tests.sh aarch64
 
-validation: build   ## docs/appendix/validation.md anew, from what the tests of the mechanics measure
+validation: build   ## docs/appendix/validation.csv and its page anew, from what the tests of the mechanics measure
 	@$(RUN) python src/eel_dynamics/test/validation.py
 
 soak: build   ## the long tests (ARGS=... goes to pytest)
@@ -45,7 +45,7 @@ manoeuvres: build   ## swim every gait, and write docs/reference/manoeuvres.md w
 pilot: build   ## swim random courses with the pilot, and write the figures of docs/howto/pilot.md (ARGS="--courses 10")
 	@$(RUN) python tools/pilot_figures.py $(ARGS)
 
-robustness: build   ## write the table of faults in docs/appendix/robustness.md from the tests
+robustness: build   ## list every fault, and the test that shows what happens, in out/robustness.md
 	@$(RUN) python tools/fault_table.py
 
 quotes: build   ## write the figures that README.md and docs quote, from the newest reports

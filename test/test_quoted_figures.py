@@ -19,8 +19,8 @@ def reports(tmp_path, monkeypatch):
     """A folder of two reports, of which the newer lacks one of the figures."""
     monkeypatch.setattr(quoted_figures, "ROOT", tmp_path)
     monkeypatch.setattr(quoted_figures, "REPORTS", tmp_path)
-    (tmp_path / "2026-01-01.md").write_text(REPORT.format(speed="2e+04", count=350))
-    (tmp_path / "2026-02-01.md").write_text(REPORT.format(speed="3e+04", count=340).partition("other")[0])
+    (tmp_path / "2026-01-01.txt").write_text(REPORT.format(speed="2e+04", count=350))
+    (tmp_path / "2026-02-01.txt").write_text(REPORT.format(speed="3e+04", count=340).partition("other")[0])
     return tmp_path
 
 
@@ -32,7 +32,7 @@ def test_a_figure_comes_from_the_newest_report_that_has_it(reports):
 def test_a_figure_that_no_report_has_is_named_with_the_command_that_measures_it(reports):
     with pytest.raises(ValueError, match="figure wrench: make bench ARGS=wrench"):
         quoted_figures.Report("wrench")
-    with pytest.raises(ValueError, match=r"2026-02-01.md has no line 'motion alone, target 0.1' under falling"):
+    with pytest.raises(ValueError, match=r"2026-02-01.txt has no line 'motion alone, target 0.1' under falling"):
         quoted_figures.Report("falling").value("motion alone, target 0.1")
 
 

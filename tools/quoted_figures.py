@@ -2,10 +2,11 @@
 """Writes the figures that README.md and docs quote: `make quotes`; `--check` says which are stale.
 
 They stand between two marker lines and come from the newest report in benchmarks/reports that has them (the output of
-`make bench`), or from docs/appendix/validation.md (`make validation`). These pages quote no other measured figure
+`make bench`), or from docs/appendix/validation.csv (`make validation`). These pages quote no other measured figure
 but what another command writes between markers of its own.
 """
 
+import csv
 import re
 import sys
 from collections.abc import Callable, Sequence
@@ -15,12 +16,11 @@ from eel_base.files.markdown import table, with_part
 
 ROOT = Path(__file__).resolve().parent.parent
 REPORTS = ROOT / "benchmarks" / "reports"
-VALIDATION = ROOT / "docs" / "appendix" / "validation.md"
+VALIDATION = ROOT / "docs" / "appendix" / "validation.csv"
 LIFE = ROOT / "docs" / "explanation" / "life.md"
 WRITTEN_WHOLE = (
     "docs/appendix/validation.md",
     "docs/appendix/tradeoff.md",
-    "docs/appendix/tradeoff_tables.md",
     "docs/explanation/accuracy.md",
     "docs/explanation/steering.md",
     "docs/figures/README.md",
@@ -37,7 +37,7 @@ class Report:
 
     def __init__(self, figure: str):
         self.figure, self.command = figure, f"make bench ARGS={figure}"
-        for self.path in sorted(REPORTS.glob("*.md"), reverse=True):
+        for self.path in sorted(REPORTS.glob("*.txt"), reverse=True):
             found = re.search(rf"^{figure}: .*\n((?:  .*\n)+)", self.path.read_text(encoding="utf-8"), re.MULTILINE)
             if found:
                 self.lines = [line.strip() for line in found[1].splitlines()]
@@ -82,48 +82,44 @@ TARGETS = {
 }
 AGAIN = ", on a busy machine, to be measured again"  # where a report says so
 PRESCRIBED = "[0-9]+ links, joints prescribed"
-ALL = "ledger, wrench, 201 samples"
+MOTION, ALL = "motion alone", "ledger, wrench, 201 samples"
 
 
 def speed() -> str:
     """README: error against cost of the falling gait, and what other programs take for it."""
-    falling, evaluation, scheme, peers = map(Report, ("falling", "evaluation", "paper_scheme", "peers"))
+    falling, scheme, peers = map(Report, ("falling", "paper_scheme", "peers"))
     rows = []
     for target, label in TARGETS.items():
         cells = [label]
-        for case in ("motion alone", ALL):
+        for case in (MOTION, ALL):
             told = falling.rest(f"{case}, target {target}")
             pace, error = re.findall(r"(\S+) times real time, error (\S+),", told)[0]
-            cells += [error, f"{float(f'{float(pace):.2g}'):,.0f}"]
+            cells.append(f"{float(f'{float(pace):.2g}'):,.0f} ({error})")
         rows.append(cells)
 
     def span(ratios: list[float]) -> str:
-        return f"{min(ratios):,.0f} to {max(ratios):,.0f} times as long"
+        return f"{min(ratios):,.0f} to {max(ratios):,.0f} times"
 
-    cases = [
-        f"with the error estimate, {case}, target {target}" for case in ("motion alone", ALL) for target in TARGETS
-    ]
+    cases = [f"with the error estimate, {case}, target {target}" for case in (MOTION, ALL) for target in TARGETS]
     longer = [falling.value(case) for case in cases]
-    head = "target", "error, motion alone", "times real time", f"error, {ALL}", "times real time"
+    prescribed, servos = peers.ratios(PRESCRIBED), peers.ratios("10 links, step")
+    head = "target", MOTION, ALL
+    again = AGAIN if "to be measured again" in peers.path.read_text(encoding="utf-8") else ""
     lines = [
         table(head, rows),
         "",
-        "Errors are of the head's position at the end, by its path, with laminar friction. A run that measures",
-        f"its own error, as `simulate` does, takes {min(longer):.1f} to {max(longer):.1f} times as long.",
-        f"One evaluation takes {evaluation.value('24 nodes'):.2g} us at 24 nodes ({link(evaluation)}).",
-        f"The paper's own scheme takes {span(scheme.ratios('motion alone'))} at equal error ({link(scheme)}).",
-        "",
-        "Other simulators on the same gait, with less physics of the water, at equal error against their own converged",
-        f"answers ({link(peers)}{AGAIN if 'to be measured again' in peers.path.read_text(encoding='utf-8') else ''}):",
-        f"MuJoCo at its best (joints prescribed, 10 and 20 links) {span(peers.ratios(PRESCRIBED))}, with servos",
-        f"(10 links) {span(peers.ratios('10 links, step'))};",
-        f"PyElastica {span(peers.ratios('[0-9]+ elements'))}.",
+        "Times real time (error of the head's position, by its path). A run that measures its own error, as",
+        f"`simulate` does, takes {min(longer):.1f} to {max(longer):.1f} times as long. Others take longer at equal",
+        f"error, with less physics of the water ({link(falling)}, {link(peers)}{again}):",
+        f"- the paper's own scheme: {span(scheme.ratios('motion alone'))}",
+        f"- MuJoCo: {span(prescribed)} with joints prescribed, {span(servos)} with servos",
+        f"- PyElastica: {span(peers.ratios('[0-9]+ elements'))}",
     ]
     return "\n".join(lines)
 
 
 ACTUATORS = " of the actuators' work"
-CHECKS = {  # what README says: the lines of docs/appendix/validation.md whose worst it is, and what it is relative to
+CHECKS = {  # what the page says: the lines of validation.csv whose worst it is, and what it is relative to
     "accelerations, wrench, loads against a second code, written from kinetic energy alone, other direction of "
     "integration; no drag": (r"(head's acceleration|internal torque and force|shape in space).* without drag", ""),
     "head's path over 10 s against that code with DOP853, laminar friction, accuracy reference": (
@@ -139,17 +135,15 @@ CHECKS = {  # what README says: the lines of docs/appendix/validation.md whose w
 MASS = "mass of the paper's robot"
 
 
-def trust() -> str:
-    """README: what the checks of the mechanics measure, the worst of each kind."""
-    lines = [
-        line.split(" | ") for line in VALIDATION.read_text(encoding="utf-8").splitlines() if line.count(" | ") == 4
-    ]
-    measured = {row[0].removeprefix("| "): row[1] for row in lines}
+def checks() -> str:
+    """docs/appendix/validation.md: what the checks of the mechanics measure, the worst of each kind."""
+    with VALIDATION.open(newline="", encoding="utf-8") as file:
+        measured = {row["compared"]: row["measured"] for row in csv.DictReader(file)}
     rows = []
     for check, (pattern, scale) in CHECKS.items():
         found = [float(value.split()[0]) for what, value in measured.items() if re.fullmatch(pattern, what)]
         if not found:
-            raise ValueError(f"docs/appendix/validation.md has no line like {pattern!r}: make validation")
+            raise ValueError(f"docs/appendix/validation.csv has no line like {pattern!r}: make validation")
         rows.append((check, f"{max(found):.1e}{scale}"))
     return table(("check", "difference"), [*rows, (f"{MASS} (printed: 1.94 kg)", measured[MASS])])
 
@@ -221,7 +215,8 @@ def _from(report: Report, head: Sequence[str], rows: Sequence[Sequence[str]], ma
 
 
 BLOCKS: dict[str, dict[str, Callable[[], str]]] = {
-    "README.md": {"trust": trust, "life": life, "speed": speed},
+    "README.md": {"life": life, "speed": speed},
+    "docs/appendix/validation.md": {"checks": checks},
     "docs/howto/controllers.md": {"lockstep": lockstep},
     "docs/howto/learning.md": {"gym": gym},
     "docs/explanation/integrators.md": {"integrators": integrators, "orders": orders},

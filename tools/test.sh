@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# All tests but the long ones. The files that measure (docs/appendix/validation.md) run in one process, which keeps
+# All tests but the long ones. The files that measure (docs/appendix/validation.csv) run in one process, which keeps
 # account of what they found. Beside it, all other files are dealt out to four workers, the longest folders first, each in a
 # ROS domain of its own:
 # most of them start processes, and wait for them. Arguments go to one pytest.

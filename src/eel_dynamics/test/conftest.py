@@ -10,7 +10,7 @@ collect_ignore = [] if PAGE.is_file() else ["test_validation_page.py"]  # a pack
 
 @pytest.fixture(scope="session")
 def measured():
-    """measured(what, value, tolerance, wanted=None, unit=""): asserts, and records for docs/appendix/validation.md."""
+    """measured(what, value, tolerance, wanted=None, unit=""): asserts, and records for docs/appendix/validation.csv."""
     return CHECKS.measure
 
 

@@ -1,25 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests of the mechanics measure: recorded while they run, listed at their end, written as
-docs/appendix/validation.md.
+"""What the tests of the mechanics measure: recorded while they run, listed at their end, kept in
+docs/appendix/validation.csv and told in short by validation.md beside it.
 
-    make validation        # runs those tests and writes the page
+    make validation        # runs those tests and writes both
 
 A test that carries the marker `identity` calls the fixture `measured(what, value, tolerance)`: it fails where the value
 is beyond its tolerance, and is recorded else, the worst value of all cases.
 """
 
-import json
+import csv
 import math
+import shutil
 import subprocess
 import sys
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from eel_base.files import markdown
 
 ROOT = Path(__file__).resolve().parents[3]
-RECORD = ROOT / "out" / "validation.json"
-PAGE = ROOT / "docs" / "appendix" / "validation.md"
+RECORD = ROOT / "out" / "validation.csv"  # of the last session
+KEPT = ROOT / "docs" / "appendix" / "validation.csv"
+PAGE = KEPT.with_suffix(".md")
+COLUMNS = "identity", "compared", "measured", "tolerance", "cases", "share of tolerance", "test"
 
 IDENTITIES = {
     "Energy ledger": "The change of kinetic energy of body and water is the integral of the four powers: actuators, "
@@ -43,30 +47,10 @@ IDENTITIES = {
     "Read off a run": "Figures of `Run.analysis()` and `Run.actuators()` against the same, computed another way.",
 }
 
-HEAD = """\
-# Validation
-
-`make validation` writes this page from what the tests of the mechanics measure. Each line is an assertion of
-`make test`. It has the worst value over all cases (random laws, states, bodies and scenes, samples, parameters) beside
-its tolerance. The reason of the tolerance stands in the test. Values without a unit are
-relative to the greatest magnitude of what is compared. Round-off differs from machine to machine in its last digits.
-
-## What this shows, and what it does not
-These checks show that the equations of the model are solved correctly. They do not validate the model against real
-water. It is inviscid slender-body theory with fitted drag. Published comparisons support no better accuracy than:
-
-| against | difference | source |
-|---|---|---|
-| Navier-Stokes, planar gaits | up to 10 % | Boyer et al., IEEE T-RO 24 (2008) |
-| a swimming robot (AmphiBot III), speed | up to 16 % | Porez, Boyer, Ijspeert, Int. J. Robotics Res. 33 (2014) |
-
-Where the tail leads, V1(l) > 0, the theory lets the wake feed energy into the body. The ledger shows it.
-"""
-
 
 @dataclass
 class Check:
-    """One line of the page: what is compared, the worst value, its tolerance, where it is measured, how often."""
+    """One line of the record: what is compared, the worst value, its tolerance, where it is measured, how often."""
 
     identity: str
     what: str
@@ -75,7 +59,7 @@ class Check:
     tolerance: float
     wanted: float | None
     unit: str
-    cases: int = field(default=1)
+    cases: int = 1
 
     @property
     def distance(self) -> float:
@@ -99,8 +83,10 @@ class Check:
         return max(0, 1 - math.floor(math.log10(self.tolerance)))
 
     @property
-    def row(self) -> str:
-        return f"| {self.what} | {self.measured} | {self.allowed} | {self.cases} | `{self.test}` |"
+    def row(self) -> list[str]:
+        """Its cells under `COLUMNS`."""
+        share = f"{self.distance / self.tolerance:.1e}" if self.tolerance else "0"
+        return [self.identity, self.what, self.measured, self.allowed, str(self.cases), share, self.test]
 
 
 class Checks:
@@ -141,19 +127,13 @@ class Checks:
         return [(identity, group) for identity, group in listed.items() if group]
 
     def save(self) -> None:
-        """Keep the record for the page, where there is one: a package that is tested alone has none."""
+        """Keep the record, where there is a page of it: a package that is tested alone has none."""
         if not PAGE.is_file():
             return
         RECORD.parent.mkdir(exist_ok=True)
-        RECORD.write_text(json.dumps([asdict(check) for check in self.by_name.values()], indent=1) + "\n")
-
-    @staticmethod
-    def load() -> "Checks":
-        checks = Checks()
-        for fields in json.loads(RECORD.read_text()):
-            check = Check(**fields)
-            checks.by_name[check.identity, check.what] = check
-        return checks
+        with RECORD.open("w", newline="", encoding="utf-8") as file:
+            rows = [check.row for _, group in self.grouped() for check in group]
+            csv.writer(file, lineterminator="\n").writerows([COLUMNS, *rows])
 
     def lines(self) -> list[str]:
         """The list at the end of a run of tests."""
@@ -163,14 +143,21 @@ class Checks:
             out += [f"  {check.measured:>16}  ({check.allowed})  {check.what}" for check in group]
         return out
 
-    def page(self) -> str:
-        parts = [HEAD]
-        for identity, group in self.grouped():
-            table = ["| compared | measured | tolerance | cases | test |", "|---|---|---|---|---|"]
-            parts.append(
-                "\n".join([f"## {identity}", IDENTITIES[identity], "", *table, *(c.row for c in group)]) + "\n"
-            )
-        return "\n".join(parts)
+
+def kept() -> list[dict[str, str]]:
+    """The lines of docs/appendix/validation.csv, by column."""
+    with KEPT.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def summary() -> str:
+    """The page's table: what must hold, how many checks show it, and how near the worst comes to its tolerance."""
+    lines = []
+    for identity, about in IDENTITIES.items():
+        shares = [float(row["share of tolerance"]) for row in kept() if row["identity"] == identity]
+        if shares:
+            lines.append((f"**{identity}.** {about}", str(len(shares)), f"{100.0 * max(shares):.2g} %"))
+    return markdown.table(("what must hold", "checks", "worst, of its tolerance"), lines)
 
 
 def main() -> int:
@@ -182,9 +169,12 @@ def main() -> int:
     sys.path.append(str(ROOT / "test"))
     import measurements  # simulates, which the tests that import this file need not
 
-    PAGE.parent.mkdir(exist_ok=True)
-    PAGE.write_text(f"{Checks.load().page()}\n{measurements.section()}", encoding="utf-8")
-    print(f"wrote {PAGE.relative_to(ROOT)}")
+    shutil.copy(RECORD, KEPT)
+    page = PAGE.read_text(encoding="utf-8")
+    for name, text in (("identities", summary()), ("measurements", measurements.section())):
+        page = markdown.with_part(page, name, text)
+    PAGE.write_text(page, encoding="utf-8")
+    print(f"wrote {KEPT.relative_to(ROOT)} and {PAGE.relative_to(ROOT)}")
     return 0
 
 

@@ -61,16 +61,15 @@ class Outputs:
             print(f"written to {written_as(path)}")
         return f"![{title}]({os.path.relpath(paths[-1], self.page.parent if self.page else '.')})"
 
-    def write(self, parts: dict[str, str], values: dict[str, str] | None = None, page: Path | None = None) -> None:
+    def write(self, parts: dict[str, str], values: dict[str, str] | None = None) -> None:
         """Write the `parts` of the page, and the `values` within its sentences, by name.
 
-        A new page has the parts alone. page: another one, in place of that of the options; without both, nothing is
-        written. `NotWritten`: it cannot be completed.
+        A new page has the parts alone. Without a page, nothing is written. `NotWritten`: it cannot be completed.
         """
-        names, page = ([*self._parts], self.page) if page is None else ([], page)
+        page = self.page
         if page is None:
             return
-        names += [name for name in parts if name not in names]
+        names = list(dict.fromkeys([*self._parts, *parts]))
         if page.exists():
             text = page.read_text(encoding="utf-8")
         else:

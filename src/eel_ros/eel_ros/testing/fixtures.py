@@ -22,8 +22,8 @@ from eel_ros.testing.ros_domain import reserve_domain
 
 MARKERS = (
     "soak: takes minutes; run by make soak",
-    "fault(group, fault, outcome): a row of docs/appendix/robustness.md; `make robustness` writes the page",
-    "identity(name): a test whose measured values go into docs/appendix/validation.md, under that heading",
+    "fault(group, fault, outcome): a row of out/robustness.md, which `make robustness` writes",
+    "identity(name): a test whose measured values go into docs/appendix/validation.csv, under that heading",
 )
 
 STARTS_IN_TURN = """

@@ -2,7 +2,8 @@
 """`eel tradeoff`: measure what accuracy costs, and what poorer models miss.
 
 eel tradeoff falling
-eel tradeoff falling straight turning --page docs/appendix/tradeoff.md --out docs/images
+eel tradeoff falling --page docs/appendix/tradeoff.md --out docs/images
+eel tradeoff falling straight turning --csv
 eel tradeoff straight --set period=0.7 --quick
 eel tradeoff --delivered --seed 7 --page docs/explanation/accuracy.md --out docs/images
 """
@@ -24,7 +25,7 @@ from eel_studies.points import Point
 from eel_studies.tradeoff import measuring, models
 from eel_studies.tradeoff.delivered import COUNT, SEED, deliver, delivered_table, draw_delivered
 from eel_studies.tradeoff.drawing import SIZE, draw_trade
-from eel_studies.tradeoff.page import PARTS, reference_line, write_pages
+from eel_studies.tradeoff.page import PARTS, reference_line, write_page
 from eel_studies.tradeoff.price import SWIMS, draw_prices, prices
 from eel_studies.tradeoff.settings import settings
 from eel_studies.tradeoff.table import model_table, trade_table
@@ -68,7 +69,7 @@ def _trade(options: argparse.Namespace) -> int:
             path = outputs.folder / f"{name}.csv"
             trade_table(trade, everything=True).write_csv(path)
             print(f"written to {written_as(path)}")
-    write_pages(outputs, found, pictures)
+    write_page(outputs, found, pictures)
     return 0
 
 

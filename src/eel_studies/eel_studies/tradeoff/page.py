@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What docs/appendix/tradeoff.md tells (six rows, a picture), and tradeoff_tables.md beside it (all tables)."""
+"""What docs/appendix/tradeoff.md tells: six rows, a picture, and the simpler models."""
 
 import math
 import platform
@@ -11,36 +11,25 @@ from eel_studies.outputs import Outputs
 from eel_studies.tradeoff.measuring import Trade
 from eel_studies.tradeoff.models import Model
 from eel_studies.tradeoff.settings import CHECK
-from eel_studies.tradeoff.table import WANTED, cheapest, digits_table, model_table, trade_table
+from eel_studies.tradeoff.table import WANTED, cheapest, digits_table, model_table
 
-PARTS = "digits", "picture"
+PARTS = "digits", "picture", "models"
 
 
-def write_pages(outputs: Outputs, found: list[tuple[Trade, list[Model]]], pictures: list[str]) -> None:
-    """Write the page, where one is asked for, and all tables to a page beside it.
+def write_page(outputs: Outputs, found: list[tuple[Trade, list[Model]]], pictures: list[str]) -> None:
+    """Write the page, where one is asked for, of the first gait.
 
     found: pairs of a trade and its models. pictures: of them, as the page links them.
     """
-    if not outputs.page:
-        return
-    first, tables = found[0][0], outputs.page.with_name(f"{outputs.page.stem}_tables{outputs.page.suffix}")
+    first, models = found[0]
     values = {
-        "gaits": " ".join(trade.name for trade, _ in found),
         "machine": machine(),
-        "repeats": str(first.repeats),
         "gait": first.name,
         "duration": f"{first.duration:g}",
         "digit": digit_line(first),
     }
-    both, short, long = ("gaits", "machine"), ("gait", "duration", "digit"), ("repeats",)
-    text = "\n\n".join(
-        f"## {trade.name}, {trade.duration:g} s\n\n{reference_line(trade)}\n\n"
-        f"{trade_table(trade).markdown()}\n\n{model_table(models, trade).markdown()}"
-        for trade, models in found
-    )
-    parts = dict(zip(PARTS, (digits_table(first).markdown(), pictures[0]), strict=True))
-    outputs.write(parts, {name: values[name] for name in both + short})
-    outputs.write({"tables": text}, {name: values[name] for name in both + long}, tables)
+    texts = digits_table(first).markdown(), pictures[0], model_table(models, first).markdown()
+    outputs.write(dict(zip(PARTS, texts, strict=True)), values)
 
 
 def digit_line(trade: Trade) -> str:
