@@ -15,7 +15,7 @@ ROS node declares its parameters from the same fields. Metadata of a field:
 
 import math
 from collections.abc import Mapping
-from dataclasses import Field, dataclass, field, fields
+from dataclasses import MISSING, Field, dataclass, field, fields
 from typing import Any, Self, TypeVar
 
 import numpy as np
@@ -74,9 +74,8 @@ def described_fields(kind: type[Any]) -> str:
         about = item.metadata
         allowed = "one of " + ", ".join(about["choices"]) if "choices" in about else limits(about)
         unit = f" [{about['unit']}]" if about["unit"] else ""
-        lines.append(
-            f"    {item.name} = {item.default!r}: {about['description']}{unit}{f'; {allowed}' if allowed else ''}"
-        )
+        default = "" if item.default is MISSING else f" = {item.default!r}"
+        lines.append(f"    {item.name}{default}: {about['description']}{unit}{f'; {allowed}' if allowed else ''}")
     return "\n".join(lines)
 
 

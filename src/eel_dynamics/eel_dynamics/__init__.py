@@ -15,6 +15,10 @@ from eel_dynamics.flow.functions import FlowField
 from eel_dynamics.flow.sources import Gust, Shear, Uniform, Vortex, VortexStreet, Wave
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.robot.actuators import Servo, Torque
+from eel_dynamics.robot.continuous import Muscle, PassiveTail
+from eel_dynamics.robot.joint import Joint
+from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.batch import Batch, simulate_batch
 from eel_dynamics.runs.run import Run, simulate
 from eel_dynamics.simulation.energy import EnergyLedger
@@ -33,12 +37,18 @@ __all__ = [
     "FlowSample",
     "Gust",
     "HydrodynamicWrench",
+    "Joint",
+    "Muscle",
+    "PassiveTail",
+    "Robot",
     "Run",
     "Scene",
+    "Servo",
     "Shear",
     "Simulation",
     "SimulationStopped",
     "Snapshot",
+    "Torque",
     "Uniform",
     "Unsettled",
     "Vortex",
