@@ -12,6 +12,7 @@ from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.settling import Unsettled
 from eel_dynamics.flow.flow import Flow, FlowSample
 from eel_dynamics.flow.functions import FlowField
+from eel_dynamics.flow.gridded import GriddedFlow
 from eel_dynamics.flow.sources import Gust, Shear, Uniform, Vortex, VortexStreet, Wave
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
@@ -35,6 +36,7 @@ __all__ = [
     "Flow",
     "FlowField",
     "FlowSample",
+    "GriddedFlow",
     "Gust",
     "HydrodynamicWrench",
     "Joint",

@@ -24,7 +24,7 @@ from eel_dynamics.analysis.model_limits import warnings_of
 from eel_dynamics.analysis.peaks import FINER, MOST_SAMPLES, greatest_torque_of
 from eel_dynamics.analysis.run_summary import describe
 from eel_dynamics.analysis.settling import Unsettled
-from eel_dynamics.flow.flow import Flow
+from eel_dynamics.flow.flow import Flow, check_covers
 from eel_dynamics.model.axes import CONVENTIONS, REP103, SIGNS, turn_vector, turned
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
@@ -388,6 +388,7 @@ def simulate(
     if setup.scene.planar:
         check_planar_law(law)
     times = checked_times(duration, default_sample_period([law], duration) if sample_period is None else sample_period)
+    check_covers(flow, float(times[-1]))
     check_memory(1, len(times), len(setup.x), wrench, bool(load), runs=2 if estimate else 1)
     if estimate:
         setup = replace(setup, accuracy=Accuracy.to_refine(setup.accuracy))
