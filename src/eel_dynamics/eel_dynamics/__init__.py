@@ -22,6 +22,8 @@ from eel_dynamics.robot.joint import Joint
 from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.batch import Batch, simulate_batch
 from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.runs.scene_file import load_scene, save_scene
+from eel_dynamics.runs.swim import Swim
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.prescribed import HydrodynamicWrench, hydrodynamic_wrench
@@ -50,6 +52,7 @@ __all__ = [
     "Simulation",
     "SimulationStopped",
     "Snapshot",
+    "Swim",
     "Torque",
     "Uniform",
     "Unsettled",
@@ -57,6 +60,8 @@ __all__ = [
     "VortexStreet",
     "Wave",
     "hydrodynamic_wrench",
+    "load_scene",
+    "save_scene",
     "simulate",
     "simulate_batch",
 ]

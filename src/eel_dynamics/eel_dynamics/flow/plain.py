@@ -6,7 +6,7 @@ from dataclasses import fields
 from typing import Any
 
 import numpy as np
-from eel_base.wording import not_one_of
+from eel_base.wording import did_you_mean, not_one_of, shown
 
 from eel_dynamics.flow.flow import Flow, FlowSum, parts_of
 from eel_dynamics.flow.functions import FlowField, LostFunction
@@ -51,5 +51,10 @@ def _made(plain: dict[str, Any]) -> Flow:
         return GriddedFlow(**arrays | {"velocity": arrays["velocity"].reshape(*shape, 3)}, **plain)
     if kind not in KINDS:
         raise ValueError(not_one_of("flow kind", kind, (*KINDS, "FlowField", "GriddedFlow")))
+    known = [item.name for item in fields(KINDS[kind])]
+    for name in plain:
+        if name not in known:
+            hint = did_you_mean(name, known)
+            raise ValueError(f"flow {kind} has no field {shown(name)}{hint}, it has: {', '.join(known)}")
     flow: Flow = KINDS[kind](**plain)
     return flow

@@ -440,7 +440,7 @@ def _simulated_again(
     return again.in_axes(axes)
 
 
-class Swim(NamedTuple):
+class SwimResult(NamedTuple):
     """A run, what it was made from, and why it stopped before its end, if it did."""
 
     run: Run
@@ -473,7 +473,7 @@ class SwimRequest(NamedTuple):
         simulation: Simulation,
         look: Callable[[float], None] | None = None,
         out: Observations | None = None,
-    ) -> Swim:
+    ) -> SwimResult:
         """Swim it with a `simulation` of its own, at its start. look, out: as in `Simulation.record`."""
         out, works, done, stopped = simulation.record(self.times, self.wrench, self.load, look, out)
         start, (steps, _, evaluations) = simulation.energy_at_start, simulation.evaluations
@@ -491,7 +491,7 @@ class SwimRequest(NamedTuple):
             evaluations=evaluations,
             nodes=len(simulation.grid.x),
         )
-        return Swim(run, out, works, start, stopped)
+        return SwimResult(run, out, works, start, stopped)
 
 
 def run_of(
