@@ -73,11 +73,13 @@ STUDIES = (
     "MeasuredPath",
     "MeasuredSpeed",
     "PeriodicLinearisation",
+    "Terms",
     "gradient",
     "identify",
     "optimise",
     "periodic_linearisation",
     "sweep",
+    "terms",
 )
 
 
