@@ -205,6 +205,9 @@ class March:
     def _stopped(self, status: int) -> SimulationStopped:
         if status != MARCHED and self.core.outside is not None:
             return self._left_grid(self.core.outside)
+        height, flow = self.core.state[2], self.setup.flow
+        if flow is not None and height > flow.surface_height:
+            return SimulationStopped(self.time, "the head is above the surface of the flow, z", height, "dive deeper")
         return stopped_by(status, self.time, self._bounds, self.setup.settings)
 
     def _left_grid(self, where: tuple[float, ...]) -> SimulationStopped:
