@@ -32,10 +32,13 @@ STROBES = "/world/strobes"  # the midline, once a second
 COURSE = "/world/course/legs"  # between the way points of a goal
 TUBE = "/world/course/tube"  # about the legs, as wide as the spheres
 WAY_POINTS = "/world/course/points"  # spheres within which they count as reached
+HEADING = "/world/notes/heading"  # an arrow ahead of the head
+SPEED_NOTE = "/world/notes/speed"  # words beside it
+TORQUE_NOTE = "/world/notes/torque"  # words at the place of the greatest C3
 TRAIL = "/world/trail"  # its last seconds, fading
 LOAD = "/world/load/distributed"
 LOAD_ENDS = "/world/load/ends"
-WAKE = "/world/wake"  # threads: momentum that the tail gave to the wake per time, in the last seconds
+WAKE = "/world/wake"  # a ribbon: momentum that the tail gave to the wake per time, in the last seconds
 
 # --- drawings against X ------------------------------------------------------------------------------------------
 PROFILES = "/profiles"

@@ -14,6 +14,7 @@ from eel_viz.plots.series import Attitude
 from eel_viz.plots.state_text import Summary
 from eel_viz.recording.reading import read
 from eel_viz.scene3d import colours
+from eel_viz.scene3d.lettering import strokes_of
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -198,6 +199,76 @@ def test_the_heat_map_forgets_what_is_older_than_its_length(stream):
     drawing.draw(10**9)
     stream.disconnect()
     assert set(np.unique(image(stream.path))) == {colours.diverging_index(np.zeros(1), 1.0)[0]}
+
+
+GROUNDS = {  # the brightest ground of letters: its colour, and those of the letters
+    "plots": (colours.PLOT_BACKGROUND, (colours.LABEL, colours.OTHER, *colours.AXIS)),
+    "the legend's band": (
+        colours.WATER_BACKGROUND,
+        (colours.LABEL, colours.FORCE, colours.ENDS, colours.WAKE),
+    ),
+    "the walls of the water": (colours.WATER_SHALLOW, (colours.WATER_LABEL, colours.NOTE)),
+    "the floor": (colours.WATER_FLOOR, (colours.NOTE,)),
+}
+
+
+@pytest.mark.parametrize("name", GROUNDS)
+def test_letters_have_a_contrast_of_4_5_on_their_ground_in_every_theme(name):
+    ground, letters = GROUNDS[name]
+    assert min(colours.contrast(letter, ground) for letter in letters) >= 4.5
+
+
+def test_contrast_is_that_of_the_web_s_guidelines():
+    assert colours.contrast((0, 0, 0), (255, 255, 255)) == pytest.approx(21.0)
+    assert colours.contrast((119, 119, 119), (255, 255, 255)) == pytest.approx(4.48, abs=0.005)
+
+
+def test_no_words_have_the_theme_s_ground_but_ours(stream):
+    """The viewer draws its own labels on plates of its theme: none may be shown. Each view has a ground of ours."""
+    from eel_viz.recording.loggers import Loggers
+    from eel_viz.recording.rates import Rates
+    from eel_viz.settings import Settings
+    from eel_viz.views.blueprint import ARRANGEMENTS
+    from eel_viz.views.views import PLAIN
+    from made_up import Swimmer
+    from made_up_recording import body, sample
+    from rerun.chunk import RrdReader
+
+    loggers = Loggers(stream.recording, Settings(compare="other"), Rates(), "this")
+    loggers.body(0, body())
+    for k in range(10):
+        for method, arguments in sample(Swimmer(), k * 10**8).items():
+            getattr(loggers, method)(k * 10**8, *arguments)
+    loggers.flush()
+    stream.disconnect()
+    texts = 0
+    for chunk in RrdReader(str(stream.path)).stream():
+        batch = chunk.to_record_batch()
+        names = [name for name in batch.schema.names if name.endswith(":labels")]
+        for name in names:
+            texts += 1
+            shown = batch.column(name.replace(":labels", ":show_labels")).to_pylist()
+            assert not any(any(row) for row in shown), chunk.entity_path
+    assert texts > 10
+
+    def views(part):
+        if hasattr(part, "origin"):
+            return [part]
+        return [view for each in part.contents for view in views(each)]
+
+    for make in ARRANGEMENTS.values():
+        for view in views(make(PLAIN)):
+            if "Text" not in view.class_identifier:
+                assert any("ackground" in name for name in view.properties), view.name
+
+
+def test_letters_are_as_high_and_stand_where_they_are_told():
+    low, high = (np.concatenate(strokes_of("H"))[:, 1].min(), np.concatenate(strokes_of("H"))[:, 1].max())
+    assert (low, high) == pytest.approx((-0.5, 0.5))
+    for align in (0.0, 0.5, 1.0):
+        x = np.concatenate(strokes_of("XX", align))[:, 0]
+        assert (x.min() + x.max()) / 2 == pytest.approx((0.5 - align) * 2 * 20 / 21, abs=0.01)
+    assert len(strokes_of("ä")) == len(strokes_of("?"))
 
 
 def test_diverging_colours_are_ordered_and_differ_in_hue_from_the_middle():

@@ -61,7 +61,7 @@ def test_one_viewer_draws_many_pictures_and_each_is_right(can_draw, recording, t
     with drawn(recording, size=(640, 361), blueprint="torques") as drawing:
         assert (drawing.start, drawing.end) == (0.0, 1.0)
         first = drawing.png(0.8)  # taken when all has come to rest; between two viewers the edges of lines may differ
-        assert (np.abs(pixels(first) - pixels(pictures[2])) > 2).mean() < 1e-3
+        assert (np.abs(pixels(first) - pixels(pictures[2])) > 2).mean() < 2e-3
         assert np.abs(pixels(first) - pixels(pictures[1])).max() > 50
         drawing.arrange("motion")
         assert drawing.png(0.8) != pictures[2]

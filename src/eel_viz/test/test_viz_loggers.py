@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from eel_base.attitude import attitude, world_from_body, world_from_section
 from eel_viz.plots import heat_map
+from eel_viz.plots.limit import RECENT
 from eel_viz.recording.dispatcher import Dispatcher
 from eel_viz.recording.loggers import Loggers
 from eel_viz.recording.rates import Rates
@@ -18,9 +19,11 @@ from eel_viz.recording.recording_file import FileDestination
 from eel_viz.recording.recordings import Recordings
 from eel_viz.scene3d import camera
 from eel_viz.scene3d.colours import diverging_index
+from eel_viz.scene3d.lettering import strokes_of
 from eel_viz.scene3d.skin import Skin
-from eel_viz.scene3d.track import LENGTH, PIECES, POINTS, STROBE_PERIOD, THREADS
-from eel_viz.scene3d.water import GRID, LABELS, WALLS
+from eel_viz.scene3d.swimmer_scene import in_sight
+from eel_viz.scene3d.track import EDGES, LENGTH, PIECES, POINTS, STROBE_PERIOD
+from eel_viz.scene3d.water import FLOOR, GRID, LABELS, WALLS
 from eel_viz.settings import Settings
 from eel_viz.views.blueprint import arrangement
 from made_up_recording import body
@@ -212,7 +215,7 @@ def test_skin_and_frames_at_the_drawing_rate(made):
         np.testing.assert_allclose(tails["translation"][k][0], backbone.position[-1], atol=SINGLE)
         np.testing.assert_allclose(tails["quaternion"][k][0], backbone.orientation[-1], atol=SINGLE)
         for logged_frame, frame in (
-            (follow, followed.follow(stamp, backbone.position, 1.0)),
+            (follow, followed.follow(stamp, in_sight(backbone.position), 1.0)),
             (whole, path_frame.include(backbone.position, 1.0)),
         ):
             np.testing.assert_allclose(logged_frame["translation"][k][0], frame[0], atol=SINGLE)
@@ -301,10 +304,13 @@ def test_nothing_is_shown_that_no_test_compares_with_the_messages(made):
     changing = {str(chunk.entity_path) for chunk in chunks if not chunk.is_static}
     plots = (entities.TORQUE, entities.FORCE, entities.CURVATURE)
     compared = {*TIME_SERIES, *NUMBERS, entities.BACKBONE, entities.SKIN, entities.HEAD, entities.TAIL, entities.FOLLOW}
-    compared |= {entities.TRACK, entities.STROBES, entities.TRAIL}
+    compared |= {entities.TRACK, entities.STROBES, entities.TRAIL, entities.HEADING, entities.SPEED_NOTE}
+    compared |= {entities.TORQUE_NOTE, *(f"{note}/words" for note in (entities.SPEED_NOTE, entities.TORQUE_NOTE))}
     compared |= {entities.LOAD, entities.LOAD_ENDS, entities.WAKE, entities.WAKE_LEGEND, entities.HEAT_MAP_IMAGE}
     compared |= {f"{root}/{part}" for root in plots for part in (entities.CURVES, entities.ENVELOPE, entities.TICKS)}
-    compared |= {f"{root}/{part}" for root in (entities.WATER, entities.PATH_WATER) for part in (GRID, LABELS, WALLS)}
+    compared |= {
+        f"{root}/{part}" for root in (entities.WATER, entities.PATH_WATER) for part in (GRID, LABELS, WALLS, FLOOR)
+    }
     compared |= {entities.SHADOW, entities.RUN, entities.LOG, entities.EYES, entities.WHOLE_PATH}
     compared |= {f"{entities.LEGEND}/{part}" for part in ("bar", "labels", "arrows")}
     compared.add(f"{entities.HEAT_MAP_FRAME}/labels")
@@ -339,12 +345,35 @@ def test_the_wake_shows_what_the_tail_gave_and_fades(record_made_up):
         np.array([line.orientation[-1] for line in lines]), np.array([load.wake for load in loads])
     )
     ends = np.concatenate([tails, tails + 2.0 * given_away], axis=1)
-    for stamp, strips in zip(stamps, wake["strips"], strict=True):
-        at = np.maximum(stamp / 1e9 - np.linspace(0.0, LENGTH, THREADS), 0.0)
+    for stamp, strips in zip(stamps, wake["vertex_positions"], strict=True):
+        at = np.maximum(stamp / 1e9 - np.linspace(0.0, LENGTH, EDGES), 0.0)
         expected = np.stack([np.interp(at, np.array(stamps) / 1e9, column) for column in ends.T], axis=1)
-        np.testing.assert_allclose(np.array(strips).reshape(THREADS, 6), expected, atol=3 * SINGLE)
-    shades = np.array(read(path, entities.WAKE, static=True)["colors"][0], dtype=np.uint32)
+        np.testing.assert_allclose(np.array(strips).reshape(EDGES, 6), expected, atol=3 * SINGLE)
+    shades = np.array(read(path, entities.WAKE, static=True)["vertex_colors"][0], dtype=np.uint32)
     assert np.all(np.diff(((shades >> 24) & 255).astype(int)) <= 0)
+
+
+def test_notes_say_how_fast_the_head_is_and_where_the_greatest_torque_was(long_swim):
+    path, samples = long_swim
+    stamps = sorted(stamp for stamp, topics in samples.items() if "internal_wrench" in topics)
+    note, place = (read(path, entity) for entity in (f"{entities.TORQUE_NOTE}/words", entities.TORQUE_NOTE))
+    middles = dict(zip(place.stamps.tolist(), place["translation"], strict=True))
+    for stamp, (words,) in zip(note.stamps.tolist(), note.values["labels"], strict=True):
+        assert stamp > 0
+        torques = {at: samples[at]["internal_wrench"][0].values["torque_3"] for at in stamps if at <= stamp}
+        known = [  # with and without the torque of the stamp itself
+            max(np.abs(torques[at]).max() for at in torques if stamp - RECENT - 50_000_000 <= at <= last)
+            for last in (stamp, stamp - 40_000_000)
+        ]
+        told, _, _, _, _, _, x, _ = words.split()
+        assert min(abs(float(told) - size) / size for size in known) < 0.051
+        backbone = samples[stamp]["backbone"][0]
+        at = [np.interp(float(x), backbone.x, column) for column in backbone.position.T]
+        np.testing.assert_allclose(middles[stamp][0], at, atol=0.006 * backbone.x[-1])
+    speeds = read(path, f"{entities.SPEED_NOTE}/words")
+    for stamp, (words,) in zip(speeds.stamps.tolist(), speeds.values["labels"], strict=True):
+        near = [np.linalg.norm(samples[at]["head_twist"][0].linear) for at in stamps if stamp - 10**8 <= at <= stamp]
+        assert min(near) - 0.006 <= float(words.split()[0]) <= max(near) + 0.006
 
 
 @pytest.fixture(scope="module")
@@ -362,28 +391,33 @@ def test_the_water_encloses_the_swimmer_and_its_labels_say_where(long_swim, root
     path, samples = long_swim
     grid, labels, follow = (read(path, entity) for entity in (f"{root}/{GRID}", f"{root}/{LABELS}", frame))
     boxes = dict(zip(grid.stamps.tolist(), grid["strips"], strict=True))
-    shown = dict(zip(labels.stamps.tolist(), zip(labels["labels"], labels["positions"], strict=True), strict=True))
-    box, present, counts = None, ((), ()), []
-    for stamp, middle, scale in zip(follow.stamps.tolist(), follow["translation"], follow["scale"], strict=True):
+    shown = {}
+    for stamp, texts, strips in zip(
+        labels.stamps.tolist(), labels.values["labels"], labels.values["strips"], strict=True
+    ):
+        sizes = [len(strokes_of(text)) for text in texts]
+        assert sum(sizes) == len(strips)
+        ends = np.cumsum(sizes)
+        letters = [np.concatenate(strips[end - size : end]) for size, end in zip(sizes, ends, strict=True)]
+        shown[stamp] = [
+            (text, (each.min(axis=0) + each.max(axis=0)) / 2) for text, each in zip(texts, letters, strict=True)
+        ]
+    box, present, counts = None, [], []
+    for stamp, scale in zip(follow.stamps.tolist(), follow["scale"], strict=True):
         if stamp in boxes:
             corners = np.array(boxes[stamp]).reshape(-1, 3)
             box = corners.min(axis=0), corners.max(axis=0)
         present = shown.get(stamp, present)
         position = samples[stamp]["backbone"][0].position
         assert np.all(position - box[0] > 0.2) and np.all(box[1] - position > 0.1)
-        centre, radius = np.array(middle[0], dtype=float), float(scale[0][0])
-        seen = camera.in_picture((position - centre) / radius)
-        counts.append(len(present[0]))
-        for text, point in zip(*present, strict=True):
+        radius = float(scale[0][0])
+        counts.append(len(present))
+        for text, point in present:
             kind, value, unit = text.split()
             axis = ("x", "y", "depth").index(kind)
-            assert unit == "m" and float(value) == pytest.approx(
-                -point[2] if kind == "depth" else point[axis], abs=1e-6
-            )
-            place = camera.in_picture((np.array(point) - centre) / radius)
-            assert np.abs(place[0]) < 1.4 * camera.EDGE and np.abs(place[1]) < camera.EDGE
-            distance = np.abs(place - seen) if root == entities.WATER else np.ones((1, 2))
-            assert not np.any((distance[:, 0] < 0.1) & (distance[:, 1] < 0.07)), "a label stands before the swimmer"
+            at = -point[2] if kind == "depth" else point[axis]
+            assert unit == "m" and float(value) == pytest.approx(at, abs=0.06 * radius)
+            assert np.all(point < box[1] + 1e-6), "letters stand on the walls or before them"
     assert min(counts) >= 2 and np.mean(counts) > 4
 
 

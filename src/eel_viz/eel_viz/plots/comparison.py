@@ -105,7 +105,7 @@ class Comparison:
         body_length = max(float(backbone.x[-1] - backbone.x[0]) for backbone in last)
         centre, radius = self._frame.follow(stamp, positions, body_length)
         log_frame(self._stream, stamp, entities.BOTH, centre, radius)
-        self._water.draw(stamp, centre, radius, positions)
+        self._water.draw(stamp, centre, radius)
 
     def _text(self) -> str:
         """Markdown: the greatest differences, and the figures of both runs side by side."""

@@ -14,13 +14,14 @@ from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.plots.limit import Limit
 from eel_viz.scene3d import colours
-from eel_viz.scene3d.labels import text_labels
+from eel_viz.scene3d.lettering import flat_texts
 
 COLUMNS = 200
 ROWS = 41
 STEP = 0.04  # s; the map is 8 s long
 NO_DATA = 0
-BOUNDS_X = (-23.0, COLUMNS + 24.0)
+LETTERS = 3.6  # height of a capital
+BOUNDS_X = (-26.0, COLUMNS + 24.0)
 BOUNDS_Y = (-3.0, ROWS + 9.0)
 
 
@@ -73,10 +74,10 @@ class HeatMap:
         )
 
     def _draw_labels(self, stamp: int, length: float, limit: float) -> None:
-        rise, right = 4.2, COLUMNS + 8.0
-        places = [(x, y - rise) for x in (-9.0, right + 9.0) for y in (2.5, ROWS / 2, ROWS - 2.5)]
+        right = COLUMNS + 8.0
+        places = [(x, y) for x in (-13.0, right + 8.0) for y in (2.5, ROWS / 2, ROWS - 2.5)]
         texts = ["head 0", f"X {length / 2:.3g} m", f"tail {length:.3g}", f"+{limit:g}", "0", f"-{limit:g}"]
         span = COLUMNS * STEP
-        places += [(COLUMNS * k / 4, ROWS + 4.5 - rise) for k in range(5)]
+        places += [(COLUMNS * k / 4, ROWS + 4.5) for k in range(5)]
         texts += [f"-{span * (1 - k / 4):g} s" for k in range(4)] + ["now"]
-        self._stream.log(stamp, f"{entities.HEAT_MAP_FRAME}/labels", text_labels(rr.Points2D, places, texts))
+        self._stream.log(stamp, f"{entities.HEAT_MAP_FRAME}/labels", flat_texts(places, texts, LETTERS))

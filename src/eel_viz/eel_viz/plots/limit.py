@@ -1,14 +1,38 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The limit of a scale: what the user has set, or a round number that fits the last values."""
+"""The greatest value of the last seconds; the limit of a scale: what the user has set, or a round number that fits."""
 
 from collections import deque
 
 import numpy as np
 
 STEPS = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+RECENT = 3_000_000_000  # ns: what counts, so that a start or a manoeuvre does not fix a scale
 
 
-RECENT = 3_000_000_000  # ns: what counts for a scale, so that a start or a manoeuvre does not fix it
+class RecentPeak:
+    """The greatest value of the last `RECENT`, and its place [m]; both 0 before the first."""
+
+    def __init__(self) -> None:
+        self._greatest: deque[tuple[int, float, float]] = deque()  # ns, value, m: each greater than those after it
+
+    @property
+    def value(self) -> float:
+        """The greatest value."""
+        return self._greatest[0][1] if self._greatest else 0.0
+
+    @property
+    def place(self) -> float:
+        """Where it was [m]."""
+        return self._greatest[0][2] if self._greatest else 0.0
+
+    def include(self, stamp: int, value: float, place: float = 0.0) -> None:
+        """Take the `value` >= 0 at `stamp` [ns] and `place` [m]."""
+        recent = self._greatest
+        while recent and (recent[-1][1] <= value or recent[-1][0] > stamp):
+            recent.pop()
+        recent.append((stamp, value, place))
+        while recent[0][0] < stamp - RECENT:
+            recent.popleft()
 
 
 class Limit:
@@ -19,22 +43,17 @@ class Limit:
 
     def __init__(self, least: float, *, grows: bool = True) -> None:
         self._least, self._grows = least, grows
-        self._greatest: deque[tuple[int, float]] = deque()  # ns, value: each greater than those after it
+        self.recent = RecentPeak()
 
     @property
     def value(self) -> float:
         """The present limit; 1 while all values have been zero."""
-        greatest = self._greatest[0][1] if self._grows and self._greatest else 0.0
+        greatest = self.recent.value if self._grows else 0.0
         return (self._least if greatest <= self._least else rounded_up(greatest)) or 1.0
 
-    def include(self, stamp: int, value: float) -> None:
-        """Take the `value` >= 0 at `stamp` [ns]."""
-        recent = self._greatest
-        while recent and (recent[-1][1] <= value or recent[-1][0] > stamp):
-            recent.pop()
-        recent.append((stamp, value))
-        while recent[0][0] < stamp - RECENT:
-            recent.popleft()
+    def include(self, stamp: int, value: float, place: float = 0.0) -> None:
+        """Take the `value` >= 0 at `stamp` [ns] and `place` [m]."""
+        self.recent.include(stamp, value, place)
 
 
 def rounded_up(value: float) -> float:

@@ -18,13 +18,13 @@ from eel_viz.messages import same
 from eel_viz.plots.limit import RECENT, Limit
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.colours import Colour
-from eel_viz.scene3d.labels import text_labels
+from eel_viz.scene3d.lettering import flat_texts
 
 WIDTH = 5.2
-LABEL_RISE = 0.085  # a label hangs below its point
-IN_FRONT = 40.0  # draw order of labels: before the curves (30), their envelope (20) and the frame (10)
+LETTERS = 0.092  # height of a capital
+IN_FRONT = 40.0  # draw order of letters: before the curves (30), their envelope (20) and the frame (10)
 SLOT = 500_000_000  # ns: the envelope forgets in such steps
-BOUNDS_X = (-0.5, WIDTH + 0.18)
+BOUNDS_X = (-0.62, WIDTH + 0.18)
 BOUNDS_Y = (-0.79, 0.79)
 
 
@@ -117,21 +117,17 @@ class ProfilePlot:
             f"{self._root}/{entities.ENVELOPE}",
             rr.LineStrips2D.from_fields(colors=behind * 2, radii=rr.Radius.ui_points(0.7), draw_order=20.0),
         )
-        widths = [0.16 + 0.095 * len(name) for name in self._names]
-        starts = 0.08 + np.cumsum([0.0, *widths[:-1]])
-        keys = [(start + width / 2, -0.62 - LABEL_RISE) for start, width in zip(starts, widths, strict=True)]
-        log(
-            f"{self._root}/{entities.KEY}",
-            text_labels(rr.Points2D, keys, list(self._names), palette, draw_order=IN_FRONT),
-        )
+        widths = [0.20 + 0.088 * len(name) for name in self._names]
+        keys = [(start, -0.64) for start in np.cumsum([0.0, *widths[:-1]])]
+        texts = flat_texts(keys, self._names, LETTERS, palette, align=0.0, draw_order=IN_FRONT)
+        log(f"{self._root}/{entities.KEY}", texts)
 
     def _draw_ticks(self, stamp: int, length: float) -> None:
-        places = [(-0.26, -y - LABEL_RISE) for y in (0.5, 0.0, -0.5)]
+        places = [(-0.30, -y) for y in (0.5, 0.0, -0.5)]
         texts = [f"{y * self.limit:+.3g}" if y else "0" for y in (1.0, 0.0, -1.0)]
-        places += [(WIDTH * k / 5, 0.585 - LABEL_RISE) for k in range(6)]
+        places += [(WIDTH * k / 5, 0.64) for k in range(6)]
         texts += [f"{length * k / 5:.3g}" for k in range(6)]
-        places.append((WIDTH * 0.88, -0.62 - LABEL_RISE))
+        places.append((WIDTH * 0.87, -0.64))
         texts.append(f"[{self._unit}] over X [m]")
-        self._stream.log(
-            stamp, f"{self._root}/{entities.TICKS}", text_labels(rr.Points2D, places, texts, draw_order=IN_FRONT)
-        )
+        ticks = flat_texts(places, texts, LETTERS, draw_order=IN_FRONT)
+        self._stream.log(stamp, f"{self._root}/{entities.TICKS}", ticks)

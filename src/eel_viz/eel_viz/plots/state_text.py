@@ -122,11 +122,11 @@ class Summary:
 def look_text(scales: Drawing) -> str:
     """Markdown: what to look at, in three sentences, and the scales of the arrows."""
     lines = [
-        "The eel swims towards its eyes: bends run from nose to tail and push the water back.",
+        "The eel swims towards its eyes, along the white arrow: bends run from nose to tail and push the water back.",
         "Colour on its flanks is the torque **C3** that bends it sideways, red one way and blue the other, on the "
         "scale of the map at the upper right.",
-        "Arrows are the **force of the water** (yellow; magenta at nose and tail), violet threads what the tail leaves "
-        "in the **wake**.",
+        "Arrows are the **force of the water** (yellow; magenta at nose and tail), the violet ribbon what the tail "
+        "leaves in the **wake**.",
         "",
         f"Lengths: {scales.load_scale:g} m for 1 N/m along the body, {scales.end_force_scale:g} m for 1 N at its ends.",
     ]

@@ -126,8 +126,10 @@ class Loggers:
 
     def head_twist(self, stamp: int, twist: Twist) -> None:
         """Log the head's speed, and its velocities in base_link."""
+        speed = float(np.linalg.norm(twist.linear))
+        self._scene.speed(speed)
         if self._due("head_twist", stamp, self._number_period):
-            self._stream.add_scalars(stamp, entities.SPEED, [np.linalg.norm(twist.linear)])
+            self._stream.add_scalars(stamp, entities.SPEED, [speed])
             self._stream.add_scalars(stamp, entities.LINEAR, twist.linear)
             self._stream.add_scalars(stamp, entities.ANGULAR, twist.angular)
 
@@ -154,12 +156,14 @@ class Loggers:
         self._force.include(stamp, wrench.x, force)
         if self._due("wrench", stamp, self._number_period):
             self._numbers(stamp, entities.WRENCH_NUMBERS, "InternalWrench", wrench.values, wrench.x)
-        self._colour_limit.include(stamp, float(np.abs(torque[:, 2]).max()))
+        k = int(np.argmax(np.abs(torque[:, 2])))
+        self._colour_limit.include(stamp, abs(float(torque[k, 2])), float(wrench.x[k]))
         self._heat_map.include(stamp, wrench.x, torque[:, 2])
         if self._due("profiles", stamp, self._drawing_period):
             self._torque.draw(stamp, wrench.x, torque)
             self._force.draw(stamp, wrench.x, force)
-            self._scene.torque(stamp, wrench.x, torque[:, 2], self._colour_limit.value)
+            recent = self._colour_limit.recent
+            self._scene.torque(stamp, wrench.x, torque[:, 2], self._colour_limit.value, (recent.place, recent.value))
         if self._due("envelope", stamp, ENVELOPE_PERIOD):
             self._torque.draw_envelope(stamp)
             self._force.draw_envelope(stamp)

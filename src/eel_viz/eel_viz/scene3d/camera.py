@@ -62,20 +62,20 @@ class FollowFilter:
     def __init__(self) -> None:
         self._stamp: int | None = None
         self.position = np.zeros(3)  # m
-        self._velocity = np.zeros(3)  # m/s
+        self.velocity = np.zeros(3)  # m/s
 
     def follow(self, stamp: int, target: np.ndarray) -> np.ndarray:
         """The filtered position, (3,) [m], at `stamp` [ns], when the point is at `target`, (3,) [m]."""
         elapsed = np.inf if self._stamp is None else (stamp - self._stamp) * 1e-9
         self._stamp = stamp
         if abs(elapsed) > self.JUMP:
-            self.position, self._velocity = np.array(target, dtype=float), np.zeros(3)
+            self.position, self.velocity = np.array(target, dtype=float), np.zeros(3)
             return self.position
         turn, decay = self.RATE * elapsed, np.exp(-self.RATE * elapsed)
         behind = self.position - target
         # exact for a target that has been at its new place since the last call
-        self.position = target + decay * ((1.0 - turn) * behind + elapsed * self._velocity)
-        self._velocity = decay * (-self.RATE * turn * behind + (1.0 + turn) * self._velocity)
+        self.position = target + decay * ((1.0 - turn) * behind + elapsed * self.velocity)
+        self.velocity = decay * (-self.RATE * turn * behind + (1.0 + turn) * self.velocity)
         return self.position
 
 
@@ -83,7 +83,7 @@ class FollowFrame:
     """The frame that moves with one swimmer or two, and never turns. It grows at once, and shrinks slowly."""
 
     def __init__(self) -> None:
-        self._filter = FollowFilter()
+        self.filter = FollowFilter()
         self._last: tuple[int, float] | None = None  # ns, m
 
     def follow(self, stamp: int, positions: np.ndarray, length: float) -> tuple[np.ndarray, float]:
@@ -91,7 +91,7 @@ class FollowFrame:
 
         positions: (N, 3) [m] in the world, of all that must be seen. length: of the body [m].
         """
-        middle = self._filter.follow(stamp, positions.mean(axis=0))
+        middle = self.filter.follow(stamp, positions.mean(axis=0))
         radius = least = max(CLOSE * length, least_radius(positions - middle))
         if self._last is not None and stamp >= self._last[0]:
             kept = np.exp((self._last[0] - stamp) * 1e-9 / RELEASE)

@@ -20,16 +20,17 @@ COURSE = (150, 232, 196)  # mint: way points of a goal
 OTHER = (244, 244, 240)  # white: the run that is laid over this one
 PLAIN = (190, 196, 202)  # a quantity that is alone in its plot
 GREY = (150, 155, 160)  # no data
-LABEL = (205, 210, 215)
+LABEL = (205, 210, 215)  # letters on the ground of plots and of the legend
+NOTE = (255, 255, 255)  # letters before the water
 TICK = (70, 76, 84)
 FRAME = (110, 116, 124)
 WATER_LINE = (30, 58, 80)
 WATER_LINE_MAJOR = (46, 84, 110)
-WATER_LABEL = (120, 152, 178)
+WATER_LABEL = (150, 180, 205)  # letters on the walls
 WATER_BACKGROUND = (9, 20, 33)
 PLOT_BACKGROUND = (13, 16, 17)
 WATER_DEEP, WATER_SHALLOW, WATER_FLOOR = (8, 20, 32), (24, 64, 90), (46, 108, 128)
-BACK, BELLY = (58, 74, 62), (226, 222, 200)  # of the skin
+BACK, BELLY = (80, 98, 82), (226, 222, 200)  # of the skin
 IRIS, PUPIL = (214, 178, 92), (8, 9, 10)
 
 _ANCHORS = np.array(
@@ -51,6 +52,17 @@ DIVERGING = (
     .round()
     .astype(np.uint8)
 )
+
+
+def contrast(letters: Colour, ground: Colour) -> float:
+    """Contrast of letters on a ground, 1 to 21, as the Web Content Accessibility Guidelines 2.2 define it."""
+    light = [np.array((0.2126, 0.7152, 0.0722)) @ _linear(np.array(colour) / 255.0) for colour in (letters, ground)]
+    return float((max(light) + 0.05) / (min(light) + 0.05))
+
+
+def _linear(share: np.ndarray) -> np.ndarray:
+    """Intensity of sRGB's shares, 0 to 1."""
+    return np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
 
 
 def dim(colour: Colour, factor: float = 0.45) -> Colour:

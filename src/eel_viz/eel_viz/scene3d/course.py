@@ -9,7 +9,7 @@ import rerun as rr
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.scene3d import colours
-from eel_viz.scene3d.orientation import turns_of_up_into
+from eel_viz.scene3d.shapes import turns_of_up_into
 
 
 class Course:

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The legend of the following views: a bar of the torque's colours, and what the arrows and threads are.
+"""The legend of the following views: a bar of the torque's colours, and what arrows and ribbon are.
 
 It stands at the lower edge of the picture, below `camera.CLEAR`, and so never before the swimmer.
 """
+
+from collections.abc import Sequence
 
 import numpy as np
 import rerun as rr
@@ -10,13 +12,17 @@ import rerun as rr
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.scene3d import camera, colours
-from eel_viz.scene3d.labels import text_labels
+from eel_viz.scene3d.colours import Colour
+from eel_viz.scene3d.lettering import standing_texts
+from eel_viz.scene3d.shapes import tiles
 
 DISTANCE = 1.0  # radii, from the eye: so a tangent in the picture is a length in radii
 BAR_AT = (-0.50, -0.425)  # tangents: the middle of the bar
 BAR_SIZE = (0.27, 0.018)
-WORDS_AT = -0.43  # tangent: the height of the words
+WORDS_AT = -0.44  # tangent: the height of the words
 FORCE_AT, ENDS_AT, WAKE_AT = -0.06, 0.27, 0.51  # tangents: the middles of the words
+LETTERS = 0.020  # tangent: height of a capital
+BAND = (-0.60, -0.39)  # tangents: lower and upper edge of the ground of the legend
 STEPS = 33
 
 
@@ -31,16 +37,20 @@ def log_bar(stream: BatchedStream, stamp: int, *, limit: float, unit: str, name:
     shades = np.tile(colours.diverging(np.linspace(-1.0, 1.0, STEPS), 1.0), (2, 1))
     mesh = rr.Mesh3D(vertex_positions=vertices, triangle_indices=triangles, vertex_colors=shades)
     stream.log(stamp, f"{entities.LEGEND}/bar", mesh)
-    places = [middle + share * BAR_SIZE[0] * camera.RIGHT for share in (-0.5, 0.0, 0.5)]
+    corners = [camera.before_eye(1.02 * DISTANCE, right, up) for up in BAND for right in (-2.0, 2.0)]
+    band = rr.Mesh3D(vertex_positions=corners, triangle_indices=tiles(2, 2), albedo_factor=colours.WATER_BACKGROUND)
+    stream.log_static(f"{entities.LEGEND}/band", band)
+    under = middle - 1.3 * LETTERS * camera.UP
+    places = [under + share * BAR_SIZE[0] * camera.RIGHT for share in (-0.5, 0.0, 0.5)]
     stream.log(
         stamp,
         f"{entities.LEGEND}/labels",
-        text_labels(rr.Points3D, places, [f"-{limit:g}", f"{name} [{unit}]", f"+{limit:g}"]),
+        _written(places, [f"-{limit:g}", f"{name} [{unit}]", f"+{limit:g}"]),
     )
 
 
 def log_words(stream: BatchedStream, stamp: int) -> None:
-    """Log what arrows and threads are, in their colours."""
+    """Log what arrows and ribbon are, in their colours."""
     for path, words in (
         (
             f"{entities.LEGEND}/arrows",
@@ -50,4 +60,8 @@ def log_words(stream: BatchedStream, stamp: int) -> None:
     ):
         at, texts, shades = zip(*words, strict=True)
         places = [camera.before_eye(DISTANCE, right, WORDS_AT) for right in at]
-        stream.log(stamp, path, text_labels(rr.Points3D, places, list(texts), shades))
+        stream.log(stamp, path, _written(places, texts, shades))
+
+
+def _written(places: list[np.ndarray], texts: Sequence[str], shades: Sequence[Colour] = ()) -> rr.LineStrips3D:
+    return standing_texts(places, texts, LETTERS * camera.RIGHT, LETTERS * camera.UP, shades)

@@ -17,9 +17,9 @@ RINGS = 26
 SIDES = 12
 NOSE, TAIL = 0.06, 0.04  # shares of the length that have finer rings
 FLANK = 0.6  # sine of the greatest angle that a torque colours fully
-EYE_AT, EYE_HEIGHT = 0.03, 0.32  # of the eyes: X [lengths], and height above the middle [half heights]
-EYE_DEPTH = 0.03  # how far their middle lies in the skin [half heights]
-EYE_SIZES = np.array(((0.24, 0.08, 0.24), (0.15, 0.095, 0.15)))  # half axes of iris and pupil [half heights]
+EYE_AT, EYE_HEIGHT = 0.04, 0.34  # of the eyes: X [lengths], and height above the middle [half heights]
+EYE_DEPTH = 0.06  # how far their middle lies in the skin [half heights]
+EYE_SIZES = np.array(((0.32, 0.08, 0.32), (0.20, 0.095, 0.20)))  # half axes of iris and pupil [half heights]
 
 
 class Skin:
@@ -28,7 +28,7 @@ class Skin:
     x, half_width, half_height: [m], each (B,), as in the message `BodyGeometry`.
 
     Attributes:
-        x: abscissae of the rings [m], (rings,). triangles: indices of vertices, uint32 (T, 3).
+        x, half_width: of the rings [m], (rings,). triangles: indices of vertices, uint32 (T, 3).
         shades: colours of the vertices without torque, uint8 (V, 3): dark back (+ axis 3), light belly, so roll shows.
         eyes, eye_sizes: middles and half axes [m] of iris and pupil at either side, each (4, 3), in the nose's REP-103
             axes.
@@ -53,6 +53,7 @@ class Skin:
         (width, width_slope), (height, height_slope) = axis(half_width), axis(half_height)
         angles = np.linspace(0.0, 2 * np.pi, sides, endpoint=False)
         cos, sin = np.cos(angles), np.sin(angles)
+        self.half_width = width
         self._offset = np.stack([np.zeros((rings, sides)), np.outer(width, cos), np.outer(height, sin)], axis=2)
         b, a = np.maximum(width, 1e-6), np.maximum(height, 1e-6)
         slopes = -(np.outer(a / b * width_slope, cos**2) + np.outer(b / a * height_slope, sin**2))

@@ -11,12 +11,15 @@ from eel_viz.scene3d import colours, legend
 from eel_viz.scene3d.arrows import Arrows
 from eel_viz.scene3d.camera import FollowFrame, PathFrame
 from eel_viz.scene3d.course import Course
+from eel_viz.scene3d.notes import AHEAD, Notes
+from eel_viz.scene3d.shapes import tiles
 from eel_viz.scene3d.skin import Skin
 from eel_viz.scene3d.track import Strobes, Track
 from eel_viz.scene3d.water import WaterBox
 
 AXES_LENGTH = 0.12  # m
 SHADOW_POINTS = 24
+BEHIND = 0.22  # of the distance from head to tail: how much of the wake is in the picture
 PATH_WATER_PERIOD = 400_000_000  # ns: its frame changes slowly
 
 
@@ -32,10 +35,12 @@ class SwimmerScene:
         self._water, self._path_water = (WaterBox(stream, root) for root in (entities.WATER, entities.PATH_WATER))
         self._path_water_stamp: int | None = None  # ns
         self._track, self._strobes = Track(stream), Strobes(stream)
+        self._notes = Notes(stream)
         self._arrows, self._course = Arrows(stream, **scales), Course(stream, reach)
         stream.log_static(entities.WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP)
         stream.log_static(entities.BACKBONE, rr.LineStrips3D.from_fields(colors=[colours.LABEL], radii=[0.0004]))
-        stream.log_static(entities.SHADOW, rr.LineStrips3D.from_fields(colors=[(4, 10, 17)], radii=[0.03]))
+        shadow = rr.Mesh3D.from_fields(triangle_indices=tiles(SHADOW_POINTS, 2), albedo_factor=(0, 0, 0, 130))
+        stream.log_static(entities.SHADOW, shadow)
         for path in (entities.HEAD, entities.TAIL):
             stream.log_static(path, rr.TransformAxes3D(AXES_LENGTH))
 
@@ -67,17 +72,16 @@ class SwimmerScene:
     def backbone(self, stamp: int, backbone: Backbone) -> None:
         """Draw skin, tail, water and arrows, and move the cameras' frames."""
         position, length = backbone.position, float(backbone.x[-1] - backbone.x[0])
-        frame = self._frame.follow(stamp, position, length)
-        self._water.draw(stamp, *frame, position)
+        frame = self._frame.follow(stamp, in_sight(position), length)
+        self._notes.draw(stamp, backbone, self._frame.filter.velocity, frame[1])
+        self._water.draw(stamp, *frame)
         log_frame(self._stream, stamp, entities.FOLLOW, *frame)
         frame = self._path_frame.include(position, length)
         if self._path_water_stamp is None or abs(stamp - self._path_water_stamp) >= PATH_WATER_PERIOD:
             self._path_water_stamp = stamp
-            self._path_water.draw(stamp, *frame, position)
+            self._path_water.draw(stamp, *frame)
         log_frame(self._stream, stamp, entities.WHOLE_PATH, *frame)
-        shadow = np.array(position[:: max(1, len(position) // SHADOW_POINTS)], dtype=np.float32)
-        shadow[:, 2] = self._water.floor + 0.002
-        self._stream.add_lines(stamp, entities.SHADOW, shadow[None])
+        self._draw_shadow(stamp, backbone)
         self._stream.add_pose(stamp, entities.TAIL, position[-1], backbone.orientation[-1])
         if self._skin is not None:
             vertices, normals = self._skin.place(backbone.x, position, backbone.orientation)
@@ -85,8 +89,26 @@ class SwimmerScene:
             self._stream.add_pose(stamp, entities.EYES, position[0], backbone.orientation[0])
         self._arrows.backbone(stamp, backbone)
 
-    def torque(self, stamp: int, x: np.ndarray, torque: np.ndarray, limit: float) -> None:
-        """Colour the flanks by `torque` (M,) [N m] at `x` (M,) [m]; the colours are deepest at `limit`."""
+    def _draw_shadow(self, stamp: int, backbone: Backbone) -> None:
+        """Draw the shadow on the floor, as wide as the body, below it."""
+        x = np.linspace(backbone.x[0], backbone.x[-1], SHADOW_POINTS)
+        middle = np.stack([np.interp(x, backbone.x, column) for column in backbone.position.T], axis=1)
+        along = np.gradient(middle[:, :2], axis=0)
+        aside = along[:, ::-1] * (1.0, -1.0) / np.maximum(np.linalg.norm(along, axis=1), 1e-9)[:, None]
+        width = np.interp(x, self._skin.x, self._skin.half_width) if self._skin is not None else np.zeros_like(x)
+        edges = np.repeat(middle[:, None], 2, axis=1)
+        edges[:, :, :2] += np.array((1.0, -1.0))[:, None] * (width[:, None] * aside)[:, None]
+        edges[:, :, 2] = self._water.floor + 0.002 * (x[-1] - x[0])
+        self._stream.add_row(
+            stamp, entities.SHADOW, rr.Mesh3D, vertex_positions=edges.reshape(-1, 3).astype(np.float32)
+        )
+
+    def torque(self, stamp: int, x: np.ndarray, torque: np.ndarray, limit: float, peak: tuple[float, float]) -> None:
+        """Colour the flanks by `torque` (M,) [N m] at `x` (M,) [m]; the colours are deepest at `limit`.
+
+        peak: place [m] and size [N m] of the greatest torque of the last seconds.
+        """
+        self._notes.peak = peak
         if limit != self._torque_limit:
             self._torque_limit = limit
             legend.log_bar(self._stream, stamp, limit=limit, unit="N m", name="C3")
@@ -94,12 +116,22 @@ class SwimmerScene:
             shades = self._skin.coloured(x, torque, limit)
             self._stream.add_row(stamp, entities.SKIN, rr.Mesh3D, vertex_colors=shades)
 
+    def speed(self, speed: float) -> None:
+        """Take the speed of the head [m/s], for the words beside its arrow."""
+        self._notes.speed = speed
+
     def load(self, stamp: int, load: Load) -> None:
         """Draw the force of the water as arrows."""
         if not self._loaded:
             self._loaded = True
             legend.log_words(self._stream, stamp)
         self._arrows.load(stamp, load)
+
+
+def in_sight(position: np.ndarray) -> np.ndarray:
+    """What must be in the picture of a body at `position` (M, 3) [m]: body, arrow, the beginning of the wake."""
+    ahead = position[:1] - position[-1:]
+    return np.concatenate([position, position + AHEAD[1] * ahead, position - BEHIND * ahead])
 
 
 def log_frame(stream: BatchedStream, stamp: int, path: str, centre: np.ndarray, radius: float) -> None:

@@ -4,14 +4,17 @@ cursor; and the last seconds of two things, which fade out: the path of the head
 """
 
 import numpy as np
+import rerun as rr
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.scene3d import colours
+from eel_viz.scene3d.shapes import tiles
 
 LENGTH = 3.0  # s: duration of the trail
 PIECES, POINTS = 10, 6  # pieces of one brightness each, and points of a piece
-THREADS = 91  # of the wake
+EDGES = 91  # across the wake
+SHEER = 110  # of 255: opacity of the wake
 STROBE_PERIOD = 1_000_000_000  # ns
 ROOM = 64  # positions, at least, between two reallocations of the history
 
@@ -66,22 +69,27 @@ class Track:
 
 
 class Wake:
-    """Draws threads from the tail's path: the momentum given to the wake per time, `scale` [m per N] long.
+    """Draws a ribbon from the tail's path on: the momentum given to the wake per time, `scale` [m per N] wide.
 
-    A scheme: the model has no flow in the wake. So the threads stay where the tail was, also in a current.
+    A scheme: the model has no flow in the wake. So the ribbon stays where the tail was, also in a current.
     """
 
     def __init__(self, stream: BatchedStream, scale: float) -> None:
         self._stream, self._scale = stream, scale
-        self._ends = RecentRows(6)  # m: the tail's place, and the thread's tip
-        self._ages = np.linspace(0.0, LENGTH * 1e9, THREADS)  # ns
-        shades = colours.faded(colours.WAKE, np.linspace(1.0, 0.0, THREADS))
-        stream.log_line_style(entities.WAKE, shades, width=0.8)
+        self._ends = RecentRows(6)  # m: the tail's place, and the ribbon's other edge
+        self._ages = np.linspace(0.0, LENGTH * 1e9, EDGES)  # ns
+        shades = np.repeat(colours.faded(colours.WAKE, np.linspace(1.0, 0.0, EDGES)), 2, axis=0)
+        ribbon = rr.Mesh3D.from_fields(
+            triangle_indices=tiles(EDGES, 2), vertex_colors=shades, albedo_factor=(255, 255, 255, SHEER)
+        )
+        stream.log_static(entities.WAKE, ribbon)
 
     def draw(self, stamp: int, tail: np.ndarray, momentum_rate: np.ndarray) -> None:
         """Continue to the `tail`, (3,) [m], and the `momentum_rate`, (3,) [N], in the world, at `stamp` [ns]."""
         self._ends.add(stamp, np.concatenate([tail, tail + self._scale * momentum_rate]))
-        self._stream.add_lines(stamp, entities.WAKE, self._ends.at(stamp - self._ages).reshape(THREADS, 2, 3))
+        self._stream.add_row(
+            stamp, entities.WAKE, rr.Mesh3D, vertex_positions=self._ends.at(stamp - self._ages).reshape(-1, 3)
+        )
 
 
 class Strobes:

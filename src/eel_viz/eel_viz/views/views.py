@@ -31,7 +31,7 @@ class Look:
     @property
     def hidden(self) -> tuple[str, ...]:
         """The entities that are not shown."""
-        return (*(() if self.frames else FRAMES), *(() if self.wake else WAKE))
+        return (entities.BACKBONE, *(() if self.frames else FRAMES), *(() if self.wake else WAKE))
 
 
 PLAIN = Look()
