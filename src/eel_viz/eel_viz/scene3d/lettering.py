@@ -115,7 +115,9 @@ def _read(line: str) -> tuple[float, list[np.ndarray]]:
     return float(ord(width) - ZERO), points
 
 
-GLYPHS = {" ": (SPACE, [])} | {line[0]: _read(line) for line in _LETTERS.splitlines()}
+GLYPHS: dict[str, tuple[float, list[np.ndarray]]] = {" ": (SPACE, [])} | {
+    line[0]: _read(line) for line in _LETTERS.splitlines()
+}
 
 
 def strokes_of(text: str, align: float = 0.5) -> list[np.ndarray]:

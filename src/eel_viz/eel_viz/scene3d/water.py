@@ -145,9 +145,15 @@ class WaterBox:
                 along.append(size * np.array(ALONG[name]))
         seen = camera.in_picture((np.array(places) - centre) / radius)
         shown = (np.abs(seen) <= LABELLED).all(axis=1) & (seen[:, 1] >= -camera.CLEAR["down"])
-        chosen = [[row[k] for k in np.flatnonzero(shown)] for row in (places, texts, along)]
-        shades = [colours.WATER_LABEL] * len(chosen[1])
-        letters = standing_texts(*chosen[:2], np.reshape(chosen[2], (-1, 3)), np.array((0, 0, size)), shades)
+        chosen = np.flatnonzero(shown).tolist()
+        shades = [colours.WATER_LABEL] * len(chosen)
+        letters = standing_texts(
+            [places[k] for k in chosen],
+            [texts[k] for k in chosen],
+            np.array(along)[chosen],
+            np.array((0, 0, size)),
+            shades,
+        )
         self._stream.log(stamp, f"{self._root}/{LABELS}", letters)
 
 
