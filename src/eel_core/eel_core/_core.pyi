@@ -150,8 +150,7 @@ class Flow(_Shared):
         ("spline", knots (n,), coefficients (n - 1, 4, 3) of cubics from the constant on); ("shear", velocity (3,) far
         to one side, unit normal (3,) of the layer, place of its middle along that, width, whether it is linear);
         ("vortices", rows (n, 3) of x, y and circulation, radius of the cores, drift (3,)); ("wave", amplitude,
-        wavenumber, angular frequency, height of the surface, phase, horizontal unit direction (3,)); ("grid",
-        axes t, x, y and z, velocities (t, x, y, z, 3)); ("function",
+        wavenumber, angular frequency, height of the surface, phase, horizontal unit direction (3,)); ("function",
         function(time, rows (n, 18))), which fills in rows as those of `at`. `ValueError` for another kind."""
 
     def at(self, time: float, rows: Buffer) -> None:
@@ -226,6 +225,116 @@ class StepBounds(_Shared):
     @property
     def spare_steps(self) -> float:
         """Steps beyond these, to be spent at any time."""
+
+class _Modes(Protocol):
+    """M modes that bend by themselves, and C coordinates: those of the modes, then motors' behind series springs."""
+
+    @property
+    def axis(self) -> Buffer: ...  # (M,) unsigned 64 bits, 0 pitch, 1 yaw
+    @property
+    def first(self) -> Buffer: ...  # (M,) unsigned 64 bits, first node of the support
+    @property
+    def last(self) -> Buffer: ...  # (M,) unsigned 64 bits, the node behind its last
+    @property
+    def span(self) -> Buffer: ...  # (M,) integral of the mode's size along the body
+    @property
+    def inertia(self) -> Buffer: ...  # (C,) [kg m^2], armature or rotor
+    @property
+    def rest(self) -> Buffer: ...  # (C,) where the springs rest
+    @property
+    def stiffness(self) -> Buffer: ...  # (C, C) of the springs
+    @property
+    def damping(self) -> Buffer: ...  # (C, C)
+    @property
+    def servos(
+        self,
+    ) -> Iterable[tuple[int, float, float, float, float]]: ...  # coordinate, kp, kd, torque limit, speed limit
+    @property
+    def stops(self) -> Iterable[tuple[int, float, float, float, float]]: ...  # mode, low, high, stiffness, damping
+    @property
+    def torques(self) -> Iterable[tuple[Any, ...]]: ...
+    # coordinate and function(time [s]); or coordinate, knots (k,) [s], cubics (k - 1, 4) from the highest power on
+
+class Modes(_Shared):
+    """The modes of a robot on a grid. It is copied from Python and never changes."""
+
+    def __init__(self, modes: _Modes) -> None:
+        """`ValueError` for arrays that do not fit together."""
+
+class BentMarch:
+    """A swimmer with modes on its way: as `March`, where not said otherwise."""
+
+    def __init__(self, swimmer: Swimmer, modes: Modes, planar: bool) -> None:
+        """`ValueError` for modes on another grid."""
+
+    def __copy__(self) -> Self: ...
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self: ...
+    def change(self, swimmer: Swimmer, modes: Modes, planar: bool) -> None:
+        """Goes on in another grid, with the same coordinates at the same rates; a law on the new grid must follow."""
+
+    def follow(
+        self,
+        law: LawOnGrid,
+        reference: Buffer,
+        drive: LawOnGrid | None,
+        push: Buffer,
+        breakpoints: Sequence[float],
+        bounds: StepBounds,
+        torque_floor: float,
+        ledger: bool,
+        current: Buffer,
+        smoothly: bool,
+    ) -> None:
+        """law: of R rows that are imposed and M of the modes. reference (S, R): what the servos follow, by the factors
+        of the imposed rows. drive: its factors, by push (C, its rows), are the muscles' forces on the coordinates.
+        bounds: an infinite tolerance gives steps of one length. torque_floor [N m]: smaller torques count as none."""
+
+    def start(self, position: Buffer, orientation: Buffer, twist: Buffer, x: Buffer, rate: Buffer) -> float:
+        """Stands at time 0 with coordinates x (C,) and their rates (C,) too. All energy [J]."""
+
+    def set_state(self, position: Buffer, orientation: Buffer, twist: Buffer) -> float: ...
+    def set_twist(self, twist: Buffer) -> float: ...
+    def twist(self) -> list[float]: ...
+    def set_slice(self, nodes: int) -> None: ...
+    def advance(self, time: float) -> int: ...
+    def record(
+        self,
+        times: Buffer,
+        first: int,
+        whole: Buffer,
+        works: Buffer,
+        rows: Buffer,
+        wrench: bool,
+        load: bool,
+        until: float,
+    ) -> tuple[int, int]:
+        """rows (T, size): writable, the coordinates' numbers as `row` has them."""
+
+    def observe(self, whole: Buffer, row: Buffer, wrench: bool, load: bool) -> bool: ...
+    def singular_mode(self) -> int | None:
+        """The first mode that makes the mass matrix singular in the present state; None where it is definite."""
+
+    @property
+    def time(self) -> float: ...
+    @property
+    def state(self) -> list[float]: ...
+    @property
+    def memory(self) -> int: ...
+    @property
+    def coordinates(self) -> list[float]:
+        """(C,)."""
+    @property
+    def rates(self) -> list[float]:
+        """(C,)."""
+    @property
+    def works(self) -> list[float]: ...
+    @property
+    def row(self) -> dict[str, tuple[int, int]]:
+        """Where the numbers of an instant lie in a row, from and up to: x, rate, acceleration (C,) each; moment (M,),
+        the internal moment on each mode; torque (S,) of the servos; pushing (C,) of muscles and given torques; elastic
+        [J], rotors [J], motor_power [W], damping_power [W], damping_work [J]."""
+    @property
+    def counts(self) -> tuple[int, int, int]: ...
 
 class March:
     """A swimmer on its way. Its law comes first (`follow`), then the start; one thread at a time may call it.
@@ -305,9 +414,6 @@ class March:
     @property
     def works(self) -> list[float]:
         """(5,) [J] of actuators, wake, nose, drag and flow since the start."""
-    @property
-    def outside(self) -> tuple[float, float, float, float] | None:
-        """Time [s] and place [m], world, outside the grid of the flow, where the last evaluation was there."""
     @property
     def counts(self) -> tuple[int, int, int]:
         """Steps, rejected steps and evaluations of the head's dynamics so far."""

@@ -12,7 +12,6 @@ from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.settling import Unsettled
 from eel_dynamics.flow.flow import Flow, FlowSample
 from eel_dynamics.flow.functions import FlowField
-from eel_dynamics.flow.gridded import GriddedFlow
 from eel_dynamics.flow.sources import Gust, Shear, Uniform, Vortex, VortexStreet, Wave
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
@@ -22,8 +21,6 @@ from eel_dynamics.robot.joint import Joint
 from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.batch import Batch, simulate_batch
 from eel_dynamics.runs.run import Run, simulate
-from eel_dynamics.runs.scene_file import load_scene, save_scene
-from eel_dynamics.runs.swim import Swim
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.prescribed import HydrodynamicWrench, hydrodynamic_wrench
@@ -38,7 +35,6 @@ __all__ = [
     "Flow",
     "FlowField",
     "FlowSample",
-    "GriddedFlow",
     "Gust",
     "HydrodynamicWrench",
     "Joint",
@@ -52,7 +48,6 @@ __all__ = [
     "Simulation",
     "SimulationStopped",
     "Snapshot",
-    "Swim",
     "Torque",
     "Uniform",
     "Unsettled",
@@ -60,8 +55,6 @@ __all__ = [
     "VortexStreet",
     "Wave",
     "hydrodynamic_wrench",
-    "load_scene",
-    "save_scene",
     "simulate",
     "simulate_batch",
 ]
@@ -73,13 +66,11 @@ STUDIES = (
     "MeasuredPath",
     "MeasuredSpeed",
     "PeriodicLinearisation",
-    "Terms",
     "gradient",
     "identify",
     "optimise",
     "periodic_linearisation",
     "sweep",
-    "terms",
 )
 
 

@@ -17,11 +17,13 @@ class ShapeNeeds(NamedTuple):
 
 
 class GridSettings(NamedTuple):
-    """Points per body length, the kinks of the drag that are integrated exactly, and the knots [m] of a law."""
+    """Points per body length, the kinks of the drag that are integrated exactly, and where panels end besides: at the
+    knots [m] of a law, and at the edges [m] of a robot's modes."""
 
     resolution: float
     kinks: str
     knots: tuple[float, ...]
+    edges: tuple[float, ...] = ()
 
     @staticmethod
     def of(accuracy: Accuracy, needs: ShapeNeeds) -> "GridSettings":

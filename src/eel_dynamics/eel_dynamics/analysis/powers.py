@@ -35,6 +35,8 @@ def drag_powers(run) -> np.ndarray:
     axis 1. Positive is into the body, so none is positive. They are evaluated from the law and the head's motion, at
     the nodes of a simulation with the run's settings; their sum is the ledger's `drag_power`.
     """
+    if run.robot is not None:
+        raise ValueError(f"drag_powers needs a run whose law is imposed, got one of {run.robot!r}")
     run = run.in_axes(REP103)
     simulation = Simulation(
         body=run.body, scene=run.scene, accuracy=run.accuracy.as_it_is(), stations=2, law=run.law, flow=run.flow

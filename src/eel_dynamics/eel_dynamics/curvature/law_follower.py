@@ -186,7 +186,7 @@ class LawFollower:
 
     def _at(self, time: float) -> np.ndarray:
         """Tabulated value, rate and acceleration (3, 2, width) at `time` [s]."""
-        rows, axis = self._rows()
+        rows, axis = self.rows()
         factor = np.array(self.law_on_grid.factors(time))
         result = np.zeros((3, 2, self._tabulation.width))
         for each in range(2):
@@ -213,7 +213,7 @@ class LawFollower:
         self._source = source
         self.law_on_grid = self._with_blend()
 
-    def _rows(self) -> tuple[np.ndarray, np.ndarray]:
+    def rows(self) -> tuple[np.ndarray, np.ndarray]:
         """Rows (m, width) of source and blend, and their axes (m,)."""
         if self._blend is None:
             return self._source.rows, self._source.axis
@@ -221,9 +221,12 @@ class LawFollower:
         return rows, np.concatenate((self._source.axis, np.repeat((0, 1), 3)))
 
     def _with_blend(self) -> eel_core.LawOnGrid:
+        shared = self._source.tables if self._blend is None else None
+        return self.on_tables(self._tabulation.law_tables(*self.rows()) if shared is None else shared)
+
+    def on_tables(self, tables: eel_core.LawTables) -> eel_core.LawOnGrid:
+        """Source and blend with other `tables`, whose first rows stand for those of `rows`."""
         source, blend = self._source, self._blend
-        shared = source.tables if blend is None else None
-        tables = self._tabulation.law_tables(*self._rows()) if shared is None else shared
         segment = source.segment and (0, *source.segment)
         dying = blend and (len(source.rows), blend.start, blend.end)
         return eel_core.LawOnGrid(tables, float(source.origin), list(source.waves), segment, dying)

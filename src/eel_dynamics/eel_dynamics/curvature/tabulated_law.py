@@ -30,27 +30,34 @@ POINTS, WEIGHTS = np.polynomial.legendre.leggauss(10)  # of Gauss, per interval,
 class Tabulation:
     """Points along the body at which rows are tabulated, and their Magnus moments.
 
-    columns: [nodes n | moments of nodes 3n | stations s | moments of stations 3s]
+    columns: [nodes n | moments of nodes 3n | stations s | moments of stations 3s | further points p]
     """
 
-    def __init__(self, nodes: np.ndarray, previous: np.ndarray, stations: np.ndarray, station_base: np.ndarray):
-        self.nodes, self.stations = len(nodes), len(stations)
+    def __init__(
+        self,
+        nodes: np.ndarray,
+        previous: np.ndarray,
+        stations: np.ndarray,
+        station_base: np.ndarray,
+        further: np.ndarray | tuple = (),
+    ):
+        self.nodes, self.stations, self.further = len(nodes), len(stations), len(further)
         start, end = np.concatenate((previous, station_base)), np.concatenate((nodes, stations))
         self._length = end - start
         inside = 0.5 * (start + end)[:, None] + 0.5 * self._length[:, None] * POINTS
-        self.x = np.concatenate((nodes, stations, inside.ravel()))
+        self.x = np.concatenate((nodes, stations, inside.ravel(), further))
         b0, b1, b2 = 0.5 * WEIGHTS, 0.25 * WEIGHTS * POINTS, 0.125 * WEIGHTS * POINTS**2
         self._moments = np.stack((b0, 12.0 * b1, 180.0 * b2 - 15.0 * b0))  # B0, alpha2, alpha3 per unit length
 
     @property
     def width(self) -> int:
         """Numbers in a tabulated row."""
-        return 4 * (self.nodes + self.stations)
+        return 4 * (self.nodes + self.stations) + self.further
 
     def columns(self, values: np.ndarray) -> np.ndarray:
         """Tabulated rows (..., width) of fields with `values` (..., len(x)) at the points x."""
         n, s = self.nodes, self.stations
-        inside = values[..., n + s :].reshape(*values.shape[:-1], n + s, len(POINTS))
+        inside = values[..., n + s : (n + s) * (1 + len(POINTS))].reshape(*values.shape[:-1], n + s, len(POINTS))
         moments = np.einsum("...ig,kg->...ki", inside, self._moments) * self._length
         flat = values.shape[:-1]
         return np.concatenate(
@@ -59,6 +66,7 @@ class Tabulation:
                 moments[..., :n].reshape(*flat, 3 * n),
                 values[..., n : n + s],
                 moments[..., n:].reshape(*flat, 3 * s),
+                values[..., values.shape[-1] - self.further :],
             ),
             axis=-1,
         )
@@ -73,7 +81,8 @@ class Tabulation:
 
     def law_tables(self, rows: np.ndarray, axis) -> eel_core.LawTables:
         """Tabulated `rows` (m, width) of the axes `axis` (m,) (0 pitch, 1 yaw), for the compiled mechanics."""
-        return eel_core.LawTables(np.asarray(axis).tolist(), np.ascontiguousarray(rows), self.nodes, self.stations)
+        rows = np.ascontiguousarray(rows[:, : self.width - self.further])
+        return eel_core.LawTables(np.asarray(axis).tolist(), rows, self.nodes, self.stations)
 
 
 class TabulatedLaw(NamedTuple):

@@ -16,8 +16,10 @@ CLOSEST = 1e-3  # lengths between a kink of the body and a knot of a law that st
 
 
 @lru_cache(maxsize=256)
-def panels_of(body, resolution: float, knots: tuple[float, ...] = (), wrench: bool = True) -> tuple[Panel, ...]:
-    """Panels between the kinks of `body` and the `knots` [m] of a law's splines.
+def panels_of(
+    body, resolution: float, knots: tuple[float, ...] = (), wrench: bool = True, edges: tuple[float, ...] = ()
+) -> tuple[Panel, ...]:
+    """Panels between the kinks of `body`, the `knots` [m] of a law's splines and the `edges` [m] of a robot's modes.
 
     Together they have about `resolution` points per body length, and each has three to spare. Where the internal
     `wrench` is wanted, the first panel has more: the body and its loads go like roots of X there (they weigh little).
@@ -29,7 +31,7 @@ def panels_of(body, resolution: float, knots: tuple[float, ...] = (), wrench: bo
     kinks = np.array([0.0, *body.panel_ends])
     inner = [knot for knot in knots if np.min(np.abs(kinks - knot)) > least and kinks[1] < knot < body.length]
     panels, start = [], 0.0
-    for end in sorted({*body.panel_ends, *inner}):
+    for end in sorted({*body.panel_ends, *inner, *edges}):
         points = 3 + nearest(resolution * (end - start) / body.length)
         graded = "start" if start == 0.0 else "end" if end == body.length and body.pointed_tail else ""
         if graded:

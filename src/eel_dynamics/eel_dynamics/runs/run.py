@@ -24,11 +24,12 @@ from eel_dynamics.analysis.model_limits import warnings_of
 from eel_dynamics.analysis.peaks import FINER, MOST_SAMPLES, greatest_torque_of
 from eel_dynamics.analysis.run_summary import describe
 from eel_dynamics.analysis.settling import Unsettled
-from eel_dynamics.flow.flow import Flow, check_covers
+from eel_dynamics.flow.flow import Flow
 from eel_dynamics.model.axes import CONVENTIONS, REP103, SIGNS, turn_vector, turned
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.companion import stable_step, with_error_estimate
 from eel_dynamics.runs.exchange.eel_viz_functions import recorder_of_runs
 from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
@@ -41,6 +42,7 @@ from eel_dynamics.runs.storage.netcdf import loaded, write
 from eel_dynamics.runs.storage.run_contents import contents_of_run, fields_of_run
 from eel_dynamics.runs.storage.tables import dataset_of, frame_of
 from eel_dynamics.runs.variables import documented_arrays
+from eel_dynamics.simulation.bending.joint_motion import JointMotion
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import LOAD, WRENCH, Observations
 from eel_dynamics.simulation.simulation import Simulation
@@ -90,6 +92,14 @@ class Run:
     nodes: int
     error_estimate: ErrorEstimate | None = None  #: None where none was wanted, or for fewer than two samples
     flow: Flow | None = None  #: of the water; its own numbers are in REP-103 axes always
+    robot: Robot | None = None  #: what bends by itself; the joints' arrays are None without one
+    joint_angle: np.ndarray | None = None
+    joint_rate: np.ndarray | None = None
+    joint_torque: np.ndarray | None = None
+    motor_angle: np.ndarray | None = None
+    motor_torque: np.ndarray | None = None
+    motor_power: np.ndarray | None = None
+    mode_amplitude: np.ndarray | None = None
     axes: str = REP103  #: of world and head: "rep103" (x forward, y left, z up), or "paper"
 
     def __eq__(self, other: object) -> bool:
@@ -345,6 +355,7 @@ def simulate(
     most_evaluations: float = MOST_EVALUATIONS,
     progress: Callable[[float, float], None] | None = None,
     flow: Flow | None = None,
+    robot: Robot | None = None,
 ) -> Run:
     """Simulate `law` for `duration` [s], with samples every `sample_period` [s] from t = 0 on.
 
@@ -369,6 +380,8 @@ def simulate(
         progress: progress(time, left) is called once a second with the simulation time reached [s] and the remaining
             wall time [s]. Without it, a run longer than a minute gives a warning.
         flow: how the water moves by itself, beside the scene's current (`Gust`, `Wave` ...); None: not at all.
+        robot: joints, tails or muscles that bend by themselves. The law then is what its servos are asked to follow,
+            and `Run.joint_angle` and the like are what they do; None: the law is imposed.
     """
     setup = SimulationSetup.of(
         body=body,
@@ -378,6 +391,7 @@ def simulate(
         initial_state=(position, orientation, twist),
         most_evaluations=most_evaluations,
         flow=flow,
+        robot=robot,
     )
     length, wrench = setup.body.length, setup.scene.internal_wrench
     if until_settled(duration):
@@ -388,7 +402,6 @@ def simulate(
     if setup.scene.planar:
         check_planar_law(law)
     times = checked_times(duration, default_sample_period([law], duration) if sample_period is None else sample_period)
-    check_covers(flow, float(times[-1]))
     check_memory(1, len(times), len(setup.x), wrench, bool(load), runs=2 if estimate else 1)
     if estimate:
         setup = replace(setup, accuracy=Accuracy.to_refine(setup.accuracy))
@@ -436,11 +449,12 @@ def _simulated_again(
         most_evaluations=most_evaluations,
         progress=lambda reached, left: None,
         flow=run.flow,
+        robot=run.robot,
     )
     return again.in_axes(axes)
 
 
-class SwimResult(NamedTuple):
+class Swim(NamedTuple):
     """A run, what it was made from, and why it stopped before its end, if it did."""
 
     run: Run
@@ -473,7 +487,7 @@ class SwimRequest(NamedTuple):
         simulation: Simulation,
         look: Callable[[float], None] | None = None,
         out: Observations | None = None,
-    ) -> SwimResult:
+    ) -> Swim:
         """Swim it with a `simulation` of its own, at its start. look, out: as in `Simulation.record`."""
         out, works, done, stopped = simulation.record(self.times, self.wrench, self.load, look, out)
         start, (steps, _, evaluations) = simulation.energy_at_start, simulation.evaluations
@@ -490,8 +504,9 @@ class SwimRequest(NamedTuple):
             steps=steps,
             evaluations=evaluations,
             nodes=len(simulation.grid.x),
+            joints=simulation.joints,
         )
-        return SwimResult(run, out, works, start, stopped)
+        return Swim(run, out, works, start, stopped)
 
 
 def run_of(
@@ -503,18 +518,23 @@ def run_of(
     time: np.ndarray,
     wrench: bool,
     load: bool,
+    joints: JointMotion | None = None,
     **others: Any,
 ) -> Run:
     """The run of the samples in `out` that were reached.
 
     setup: has the body, the scene, the flow and the stations x. works (T, 5) [J], and time (T,) [s]: of those samples.
     start [J]: the energy at the start. wrench, load: whether the internal wrench and the water's load were observed.
-    others: the other fields of the run.
+    joints: the motion of a robot's joints at all samples. others: the other fields of the run.
     """
     absent = {*(() if wrench else WRENCH), *(() if load else LOAD)}
     observed: dict[str, Any] = {
         name: None if name in absent else array[: len(time)] for name, array in out.arrays().items()
     }
+    robot = None
+    if joints is not None:
+        observed |= {name: array[: len(time)] for name, array in joints.arrays().items()}
+        robot = joints.ledger()[: len(time)]
     energies, powers, closure = (observed.pop(name) for name in ("energies", "powers", "closure"))
     return Run(
         body=setup.body,
@@ -522,7 +542,8 @@ def run_of(
         flow=setup.flow,
         x=setup.x,
         time=time,
-        energy=EnergyLedger.of(energies, powers, works, start) if setup.scene.ledger else None,
+        robot=setup.robot,
+        energy=EnergyLedger.of(energies, powers, works, start, robot) if setup.scene.ledger else None,
         closure_torque=None if closure is None else closure[:, 0],
         closure_force=None if closure is None else closure[:, 1],
         **observed,

@@ -11,6 +11,7 @@ from typing import NamedTuple, TypeVar, get_type_hints
 import numpy as np
 
 from eel_dynamics.model.axes import REP103
+from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import OBSERVED, Variable
 
@@ -22,7 +23,7 @@ LABELS = {  # of the dimensions that are neither time, station nor swimmer
     "quaternion": ("x", "y", "z", "w"),
     "component": ("omega_x", "omega_y", "omega_z", "v_x", "v_y", "v_z"),
 }
-SIZES = {"time": "T", "station": "M", "swimmer": "B"}  # names of the other dimensions' sizes
+SIZES = {"time": "T", "station": "M", "swimmer": "B", "joint": "J", "mode": "N"}  # names of the other dimensions' sizes
 CLOSURES = {
     "closure_torque": Variable(("time",), "N m", "magnitude of the internal torque left over at the nose"),
     "closure_force": Variable(("time",), "N", "magnitude of the internal force left over at the nose, less its load"),
@@ -32,6 +33,7 @@ OWN = {  # of a run itself
     "x": Variable(("station",), "m", "stations of the profiles, from the nose"),
     **{name: each for name, each in OBSERVED.items() if name not in ("energies", "powers", "closure")},
     **CLOSURES,
+    **JOINT_ARRAYS,
 }
 ENERGY = "energy_"  # begins the names of the ledger's arrays in a file
 LEDGER = {

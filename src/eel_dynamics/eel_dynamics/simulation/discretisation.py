@@ -31,17 +31,23 @@ class Discretisation(NamedTuple):
         return self
 
 
-def discretise(body: Body, scene: Scene, settings: GridSettings, stations: bytes) -> Discretisation:
+def discretise(
+    body: Body, scene: Scene, settings: GridSettings, stations: bytes, further: bytes = b""
+) -> Discretisation:
     """Tabulate `body` in `scene` on a grid of these `settings`, and at the `stations`.
 
-    stations: the bytes of the array of their X [m]. `ValueError` for a body without inertia in some direction.
+    stations, further: the bytes of the arrays of their X [m]; the latter are points at which laws are tabulated too.
+    `ValueError` for a body without inertia in some direction.
     """
-    panels = panels_of(body, settings.resolution, settings.knots, scene.internal_wrench or scene.ledger)
-    return _on_panels(body, scene, panels, settings.kinks, stations)
+    wrench = scene.internal_wrench or scene.ledger
+    panels = panels_of(body, settings.resolution, settings.knots, wrench, settings.edges)
+    return _on_panels(body, scene, panels, settings.kinks, stations, further)
 
 
 @lru_cache(maxsize=256)
-def _on_panels(body: Body, scene: Scene, panels: tuple[Panel, ...], kinks: str, stations: bytes) -> Discretisation:
+def _on_panels(
+    body: Body, scene: Scene, panels: tuple[Panel, ...], kinks: str, stations: bytes, further: bytes
+) -> Discretisation:
     """Many resolutions give the same `panels`: nodes fill blocks of eight."""
     x, grid = np.frombuffer(stations), Grid.of(panels)
     sections = sections_on(body, scene, grid)
@@ -49,6 +55,6 @@ def _on_panels(body: Body, scene: Scene, panels: tuple[Panel, ...], kinks: str, 
     nodes_before = np.searchsorted(grid.x, x, side="right")
     base = np.where(nodes_before > 0, grid.x[nodes_before - 1], 0.0)
     swimmer = core_swimmer(body, scene, grid, sections, x, kinks)
-    tabulation = Tabulation(grid.x, grid.previous, x, base)
+    tabulation = Tabulation(grid.x, grid.previous, x, base, np.frombuffer(further))
     mass, righting = float(grid.weight @ sections.mass), righting_time(scene, sections, grid.weight)
     return Discretisation(grid, sections, swimmer, mass, righting, tabulation)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The energy ledger: where the work of the actuators goes (eq. 60 times the head's twist).
 
-    d/dt (kinetic_body + kinetic_fluid + potential) = actuator_power + wake_power + nose_power + drag_power + flow_power
+    d/dt (kinetic_body + kinetic_fluid + potential + elastic) =
+        actuator_power + wake_power + nose_power + drag_power + flow_power + damping_power
 
 A positive power feeds energy into body and water. The power of the wake is V1(l) T_f(l). It is positive where the tail
 leads, which is a limit of the theory. The power of the nose includes that of its added mass, so kinetic_fluid does not
@@ -11,9 +12,13 @@ the righting moment (`Scene.metacentric_height`), 0 where every section stands u
 Where the water moves by itself (`flow`), U is its velocity at a section and p the momentum of the section's water that
 moves through it: kinetic_fluid is the integral of T_f + p . U, and flow_power that of p . u_t + rho_f A a_u . V, the
 powers of the rate of u at the fixed place and of the undisturbed pressure. It is 0 without a flow.
+
+Of a robot, the actuators are its motors, its muscles, and what imposes the curvature that no joint makes; its rotors
+are part of kinetic_body. elastic is the energy of its springs, damping_power that of its dampers and of friction; both
+are 0 without one.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Annotated, Any
 
 import numpy as np
@@ -44,6 +49,9 @@ class EnergyLedger:
     nose_work: Annotated[np.ndarray, "J", "work of the load on the nose since the start"]
     drag_work: Annotated[np.ndarray, "J", "work of the drag along the body since the start"]
     flow_work: Annotated[np.ndarray, "J", "work of the water's own motion since the start"]
+    elastic: Annotated[np.ndarray, "J", "elastic energy of a robot's springs, 0 without a robot"]
+    damping_power: Annotated[np.ndarray, "W", "power of a robot's dampers, 0 without a robot"]
+    damping_work: Annotated[np.ndarray, "J", "work of a robot's dampers since the start"]
 
     def __eq__(self, other: object) -> bool:
         return same_fields(self, other)
@@ -65,16 +73,24 @@ class EnergyLedger:
         return [item.name for item in fields(EnergyLedger)]
 
     @staticmethod
-    def of(energies: Any, powers: Any, works: Any, start: Any) -> "EnergyLedger":
+    def of(energies: Any, powers: Any, works: Any, start: Any, robot: Any = None) -> "EnergyLedger":
         """A ledger from its numbers.
 
         energies (..., 3) [J]: kinetic of body and of water, potential. powers (..., 5) [W] and works (..., 5) [J]: of
-        actuators, wake, nose, drag and flow. start [J]: the sum of the energies at the start.
+        actuators, wake, nose, drag and flow. start [J]: the sum of the energies at the start. robot (..., 3): elastic
+        energy [J], power [W] and work [J] of the dampers; None: 0.
         """
+        if robot is not None:
+            elastic, damping_power, damping_work = np.moveaxis(robot, -1, 0)
+            ledger = EnergyLedger.of(energies, powers, works, start)
+            residual = ledger.residual + elastic - damping_work
+            more = {"elastic": elastic, "damping_power": damping_power, "damping_work": damping_work}
+            return replace(ledger, residual=residual, **more)
         if energies.ndim == 1:  # an instant, for a node at real time
             energies, powers, works = energies.tolist(), powers.tolist(), works.tolist()
-            return EnergyLedger(*(*energies, *powers, sum(energies) - start - sum(works), *works))
+            return EnergyLedger(*(*energies, *powers, sum(energies) - start - sum(works), *works, 0.0, 0.0, 0.0))
         residual = energies.sum(axis=-1) - start - works.sum(axis=-1)
         columns = (np.moveaxis(each, -1, 0) for each in (energies, powers, works))
         energies, powers, works = columns
-        return EnergyLedger(*(*energies, *powers, residual, *works))
+        none = np.zeros_like(residual)
+        return EnergyLedger(*(*energies, *powers, residual, *works, none, none, none))

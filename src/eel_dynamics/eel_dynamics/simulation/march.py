@@ -3,6 +3,7 @@
 
 from collections.abc import Callable
 from copy import deepcopy
+from typing import Any
 
 import numpy as np
 from eel_gaits.laws.law import Law
@@ -14,11 +15,11 @@ from eel_dynamics.accuracy.step_bounds import step_bounds_of
 from eel_dynamics.curvature.curvature_samples import CurvatureSample
 from eel_dynamics.curvature.law_follower import LawFollower
 from eel_dynamics.model.initial_state import InitialState, time_scale
-from eel_dynamics.simulation.discretisation import discretise
+from eel_dynamics.simulation.discretisation import Discretisation, discretise
 from eel_dynamics.simulation.observations import Observations, Snapshot
 from eel_dynamics.simulation.sample_check import first_bad_sample
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
-from eel_dynamics.simulation.stopping import SimulationStopped, left_grid, not_begun, remedy, stopped_by
+from eel_dynamics.simulation.stopping import SimulationStopped, not_begun, remedy, stopped_by
 
 MARCHED, SINGULAR, UNFINISHED = (eel_core.STATUSES.index(name) for name in ("marched", "singular", "unfinished"))
 
@@ -42,24 +43,35 @@ class March:
     def __init__(self, setup: SimulationSetup, settings: GridSettings, needs: ShapeNeeds, law=None, origin=0.0):
         self.setup, self._needs, self._time_scale = setup, needs, setup.time_scale
         self.time, self.settings = 0.0, settings
-        self.discretisation = discretise(setup.body, setup.scene, settings, setup.x.tobytes())
+        self.discretisation = self._discretise(settings)
         self.follower = LawFollower(self.discretisation.tabulation, setup.default_transition, law, origin)
-        self.core = eel_core.March(self.discretisation.swimmer, *self._method)
+        self.core = self._new_core()
         self.law_on_grid, self._bounds = self.follower.law_on_grid, self._step_bounds()
         self._hand_over_law()
         position, orientation, _ = setup.initial_state
-        self.energy_at_start = self.core.start(position, orientation, setup.initial_twist)
+        self.energy_at_start = self._start(position, orientation, setup.initial_twist)
         if not np.isfinite(self.energy_at_start):
-            if self.core.outside is not None:
-                raise self._left_grid(self.core.outside)
             raise SimulationStopped(0.0, "kinetic energy", self.energy_at_start, "start slower")
 
     @property
     def _method(self) -> tuple[str, int, bool]:
         return self.setup.settings.method, self.setup.settings.order, bool(self.setup.scene.planar)
 
-    @staticmethod
+    def _discretise(self, settings: GridSettings) -> Discretisation:
+        return discretise(self.setup.body, self.setup.scene, settings, self.setup.x.tobytes())
+
+    def _new_core(self) -> Any:
+        return eel_core.March(self.discretisation.swimmer, *self._method)
+
+    def _start(self, *state) -> float:
+        return self.core.start(*state)
+
+    def _change_core(self) -> None:
+        self.core.change(self.discretisation.swimmer, *self._method)
+
+    @classmethod
     def from_start(
+        cls,
         setup: SimulationSetup,
         law: Law | SampledLaw | None,
         origin: float = 0.0,
@@ -73,7 +85,7 @@ class March:
         wanted = setup.grid_for(needs)
         try:
             with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is reported
-                return March(setup, wanted if settings is None else settings.at_least(wanted), needs, law, origin)
+                return cls(setup, wanted if settings is None else settings.at_least(wanted), needs, law, origin)
         except SimulationStopped as stopped:
             raise stopped if law is None else not_begun(law, stopped) from None
 
@@ -81,7 +93,7 @@ class March:
         """A copy in the present state, on a grid for the accuracy of `setup`, which differs in that alone."""
         copied, finer = deepcopy(self), setup.settings.resolution / self.setup.settings.resolution
         copied.setup, resolution = setup, max(1.0, finer * self.settings.resolution)
-        copied._change_grid(GridSettings(resolution, setup.settings.kinks, self.settings.knots))
+        copied._change_grid(self.settings._replace(resolution=resolution, kinks=setup.settings.kinks))
         return copied
 
     # -- law and grid
@@ -112,10 +124,10 @@ class March:
 
     def _change_grid(self, settings: GridSettings):
         old, twist = self.discretisation.grid, self.twist
-        self.discretisation = new = discretise(self.setup.body, self.setup.scene, settings, self.setup.x.tobytes())
+        self.discretisation = new = self._discretise(settings)
         self.follower.move(new.tabulation, old.interpolation_at(new.tabulation.x))
         self.settings = settings
-        self.core.change(new.swimmer, *self._method)
+        self._change_core()
         self._hand_over_law()
         self.core.set_twist(twist)
 
@@ -182,7 +194,7 @@ class March:
         while status == MARCHED and done < len(times):
             event, status = self._pass_event(), UNFINISHED
             while status == UNFINISHED:
-                done, status = self.core.record(times, done, out.whole, works, bool(wrench), bool(load), event)
+                done, status = self._record(times, done, out, works, bool(wrench), bool(load), event)
                 if status == MARCHED and done < len(times):
                     status = self.core.advance(event)
                 if look is not None and status == UNFINISHED:
@@ -196,25 +208,16 @@ class March:
         if done:
             self.time = float(times[done - 1])
         if failure:
-            for place in out.backbone[done]:
-                if self.setup.flow is not None and self.setup.flow.outside(times[done], place):
-                    return done, self._left_grid((times[done], *place))
             return done, SimulationStopped(self.time, quantity, value, remedy(self.setup.settings))
         return done, None if status == MARCHED else self._stopped(status)
 
+    def _record(self, times: np.ndarray, first: int, out: Observations, works: np.ndarray, *rest) -> tuple[int, int]:
+        return self.core.record(times, first, out.whole, works, *rest)
+
     def _stopped(self, status: int) -> SimulationStopped:
-        if status != MARCHED and self.core.outside is not None:
-            return self._left_grid(self.core.outside)
-        height, flow = self.core.state[2], self.setup.flow
-        if flow is not None and height > flow.surface_height:
-            return SimulationStopped(self.time, "the head is above the surface of the flow, z", height, "dive deeper")
         return stopped_by(status, self.time, self._bounds, self.setup.settings)
 
-    def _left_grid(self, where: tuple[float, ...]) -> SimulationStopped:
-        """The error for a swimmer with a point at a time [s] and a place [m] where the flow is not known."""
-        time, *place = map(float, where)
-        found = self.setup.flow and self.setup.flow.outside(time, place)
-        return left_grid(time, place, *(found or ("", np.nan)))
+    joints: Any = None  # of a robot: `JointMotion` of the last `record`
 
     # -- the present
 
@@ -223,13 +226,14 @@ class March:
         scene = self.setup.scene
         wrench, load = bool(wrench and scene.internal_wrench), bool(load)
         snapshot = Snapshot(self.time, self.setup.x, wrench, load)
-        if not self.core.observe(snapshot.whole, wrench, load):
+        if not self._observe(snapshot, wrench, load):
             raise self._stopped(SINGULAR)
-        if self.setup.flow is not None and self.core.outside is not None:
-            raise self._left_grid(self.core.outside)
         if scene.ledger:
             snapshot.keep_ledger(np.array(self.core.works), self.energy_at_start)
         return snapshot
+
+    def _observe(self, snapshot: Snapshot, wrench: bool, load: bool) -> bool:
+        return self.core.observe(snapshot.whole, wrench, load)
 
     @property
     def twist(self) -> np.ndarray:

@@ -124,15 +124,25 @@ class Snapshot(Observations):
         x: (M,) [m], the stations.
     """
 
-    __slots__ = ("_energy", "_energy_at_start", "_works", "time", "x")
+    __slots__ = ("_energy", "_energy_at_start", "_joints", "_works", "time", "x")
 
     def __init__(self, time: float, x: np.ndarray, wrench: bool, load: bool):
         places, size = _places_of_instant(len(x), wrench, load)
         super().__init__(np.zeros(size), places)
         self.time, self.x = time, x
         self._works: np.ndarray | None = None
+        self._joints: Any = None
         self._energy_at_start = 0.0
         self._energy: EnergyLedger | None = None
+
+    def keep_joints(self, joints: Any) -> None:
+        """Have the `JointMotion` of the instant."""
+        self._joints = joints
+
+    @property
+    def joints(self) -> dict[str, np.ndarray]:
+        """The arrays of `JOINT_ARRAYS` at the instant, without the dimension "time"; empty without a robot."""
+        return {} if self._joints is None else {name: row[0] for name, row in self._joints.arrays().items()}
 
     def keep_ledger(self, works: np.ndarray, energy_at_start: float) -> None:
         """Have a ledger, from the `works` (5,) [J] since the start and the energy [J] there."""
@@ -142,7 +152,8 @@ class Snapshot(Observations):
     def energy(self) -> EnergyLedger | None:
         """One float per field; None without a ledger."""
         if self._energy is None and self._works is not None:
-            self._energy = EnergyLedger.of(self.energies, self.powers, self._works, self._energy_at_start)
+            robot = None if self._joints is None else self._joints.ledger()[0]
+            self._energy = EnergyLedger.of(self.energies, self.powers, self._works, self._energy_at_start, robot)
         return self._energy
 
     @property

@@ -28,10 +28,12 @@ from eel_dynamics.model.body import Body
 from eel_dynamics.model.grid import Grid
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.robot.robot import Robot
+from eel_dynamics.simulation.bending.bent_march import march_of
+from eel_dynamics.simulation.bending.joint_motion import JointMotion
 from eel_dynamics.simulation.discretisation import Discretisation
 from eel_dynamics.simulation.energy import WORKS
 from eel_dynamics.simulation.error_meter import ErrorMeter
-from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Observations, Snapshot
 from eel_dynamics.simulation.simulation_setup import SimulationSetup, checked_state
 from eel_dynamics.simulation.stopping import SimulationStopped
@@ -56,6 +58,7 @@ class Simulation:
             stops.
         measure_error: whether a companion with coarser settings follows, for `error_estimate` and `head_errors`.
         flow: how the water moves by itself, beside the scene's current; None: not at all.
+        robot: what bends by itself. The law then is what its servos are asked to follow; None: the law is imposed.
     """
 
     def __init__(
@@ -72,6 +75,7 @@ class Simulation:
         most_evaluations: float = MOST_EVALUATIONS,
         measure_error: bool = False,
         flow: Flow | None = None,
+        robot: Robot | None = None,
     ) -> None:
         setup = SimulationSetup.of(
             body=body,
@@ -82,13 +86,14 @@ class Simulation:
             default_transition=default_transition,
             most_evaluations=most_evaluations,
             flow=flow,
+            robot=robot,
         )
         if isinstance(setup.accuracy, Budget):
             at_hand = partial(swim_time, setup.body, setup.scene, setup.x.tobytes())
             setup = replace(setup, accuracy=within_budget(setup.accuracy, setup.scene, at_hand))
         self._setup = setup
         self.body, self.scene, self.x = setup.body, setup.scene, setup.x
-        self._march = March.from_start(setup, law)
+        self._march = march_of(setup).from_start(setup, law)
         self.ready, self._started = law is not None, False
         self._meter = ErrorMeter(self._march, setup) if measure_error else None
 
@@ -167,7 +172,7 @@ class Simulation:
             if meter is not None:
                 meter.change_law(march, law, origin, blend, needs)
         else:
-            self._march = march = March.from_start(self._setup, law, origin, march.settings)
+            self._march = march = march_of(self._setup).from_start(self._setup, law, origin, march.settings)
             if meter is not None:
                 meter.begin_with(march, law, origin)
         self.ready = True
@@ -256,7 +261,7 @@ class Simulation:
 
         `ValueError` for a law that cannot begin from the initial state; the simulation then stays as it is.
         """
-        self._march = March.from_start(self._setup, self.law)
+        self._march = march_of(self._setup).from_start(self._setup, self.law)
         self.ready, self._started = self.law is not None, False
         if self._meter is not None:
             self._meter.restart(self._march)
@@ -301,6 +306,12 @@ class Simulation:
         return out, works, *recorded
 
     @property
+    def joints(self) -> JointMotion | None:
+        """The motion of a robot's joints at the samples of the last `record`; None without one."""
+        joints: JointMotion | None = self._march.joints
+        return joints
+
+    @property
     def energy_at_start(self) -> float:
         """Kinetic and potential energy [J] in the initial state."""
         return self._march.energy_at_start
@@ -313,7 +324,8 @@ class Simulation:
     @property
     def evaluations(self) -> tuple[int, int, int]:
         """Numbers of steps, rejected steps and evaluations of the head's dynamics so far."""
-        return self._march.core.counts
+        counts: tuple[int, int, int] = self._march.core.counts
+        return counts
 
     # -- error, where it is measured (`measure_error`); else None
 
@@ -347,7 +359,7 @@ class Simulation:
     @property
     def memory(self) -> int:
         """Bytes that an evaluation reads and writes."""
-        return self._march.core.memory
+        return int(self._march.core.memory)
 
 
 @cache

@@ -18,10 +18,12 @@ from eel_dynamics.accuracy.law_waves import check_law, knots_of_law, waves_of_ro
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS, check_cost
 from eel_dynamics.curvature.curvature_samples import check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
-from eel_dynamics.flow.flow import Flow, check_covers, checked_flow, core_flow
+from eel_dynamics.flow.flow import Flow, checked_flow, core_flow
 from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.initial_state import InitialState, check_planar, checked_quaternion, time_scale
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.robot.compiled import ModeTable, mode_table
+from eel_dynamics.robot.robot import Robot, checked_robot
 
 FITTING = 1e-6  # part of the body's length by which the rows of a law may be shorter or longer
 
@@ -39,13 +41,17 @@ def checked_state(scene: Scene, position, orientation, twist) -> InitialState:
 
 
 def check_flow(flow: Flow | None, scene: Scene, start: InitialState) -> None:
-    """`ValueError` for a flow that `scene` does not allow, or that is not one of water at the head's `start`."""
+    """`ValueError` for a flow that `scene` does not allow, or whose surface is below the head at the `start`."""
     flow = checked_flow(flow, scene.planar)
-    check_covers(flow, 0.0)
-    if flow is not None and (out := flow.outside(0.0, start.position)):
-        raise ValueError(f"position must lie in the grid of the flow, {out[0]}, got {shown(start.position.tolist())}")
     if flow is not None and start.position[2] > flow.surface_height:
         raise ValueError(f"flow surface must be above the head, at z = {start.position[2]:g} m, got {flow!r}")
+
+
+def check_possible(robot: Robot, body: Body, scene: Scene, flow: Flow | None) -> None:
+    """`ValueError` for a `robot` that does not fit the body, or with physics that bodies with modes do not have yet."""
+    if flow is not None:
+        raise ValueError(f"robot cannot swim in water that moves by itself yet: take flow=None, got {flow!r}")
+    mode_table(robot, body, bool(scene.planar))
 
 
 @dataclass(frozen=True)
@@ -60,6 +66,7 @@ class SimulationSetup:
     default_transition: float = DEFAULT_TRANSITION  # s
     most_evaluations: float = MOST_EVALUATIONS  # by simulated second
     flow: Flow | None = None
+    robot: Robot | None = None
 
     @staticmethod
     def of(
@@ -72,24 +79,28 @@ class SimulationSetup:
         default_transition: float = DEFAULT_TRANSITION,
         most_evaluations: float = MOST_EVALUATIONS,
         flow: Flow | None = None,
+        robot: Robot | None = None,
     ) -> "SimulationSetup":
         """The set-up from the arguments of `Simulation`. `ValueError` names the one that does not fit.
 
         initial_state: (position, orientation, twist).
         """
-        body = checked_body(body)
+        robot = checked_robot(robot)
+        body = checked_body(robot.body if body is None and robot is not None else body)
         scene = Scene() if scene is None else checked_instance("scene", scene, Scene)
         accuracy, x = Accuracy.of(accuracy), checked_stations(stations, body.length)
         start = checked_state(scene, *initial_state)
         check_flow(flow, scene, start)
+        if robot is not None:
+            check_possible(robot, body, scene, flow)
         most_evaluations = positive("most_evaluations", most_evaluations, "per simulated second")
         transition = positive("default_transition", default_transition, "s")
-        return SimulationSetup(body, scene, accuracy, x, start, transition, most_evaluations, flow)
+        return SimulationSetup(body, scene, accuracy, x, start, transition, most_evaluations, flow, robot)
 
     @property
     def arguments(self) -> dict:
         """The arguments of `Simulation` that give such a set-up, without a law."""
-        own = ("body", "scene", "accuracy", "default_transition", "most_evaluations", "flow")
+        own = ("body", "scene", "accuracy", "default_transition", "most_evaluations", "flow", "robot")
         return {name: getattr(self, name) for name in own} | {"stations": self.x} | self.initial_state._asdict()
 
     def __deepcopy__(self, memo: dict) -> "SimulationSetup":
@@ -114,7 +125,13 @@ class SimulationSetup:
         """The settings of the grid for the `needs` of a law, and those of the flow."""
         if self.flow is not None:
             needs = needs._replace(waves=max(needs.waves, self.body.length / self.flow.shortest_wave))
-        return GridSettings.of(self.settings, needs)
+        wanted = GridSettings.of(self.settings, needs)
+        return wanted if self.modes is None else wanted._replace(edges=self.modes.edges)
+
+    @cached_property
+    def modes(self) -> ModeTable | None:
+        """The modes of the robot on the body; None without one."""
+        return None if self.robot is None else mode_table(self.robot, self.body, bool(self.scene.planar))
 
     @cached_property
     def initial_twist(self) -> np.ndarray:

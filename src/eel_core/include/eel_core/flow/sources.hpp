@@ -7,7 +7,6 @@
 #include <variant>
 #include <vector>
 
-#include "eel_core/flow/gridded.hpp"
 #include "eel_core/flow/sample.hpp"
 #include "eel_core/law.hpp"
 
@@ -187,8 +186,7 @@ struct FunctionFlow {
 };
 
 struct Flow {
-    std::vector<std::variant<RampedFlow, SplineFlow, ShearFlow, VortexFlow, WaveFlow, GriddedFlow, FunctionFlow>>
-        sources;
+    std::vector<std::variant<RampedFlow, SplineFlow, ShearFlow, VortexFlow, WaveFlow, FunctionFlow>> sources;
 };
 
 // Writes u, u_t and the Jacobian at the places of `rows` (count, 18), as those of `FunctionFlow`, into them.

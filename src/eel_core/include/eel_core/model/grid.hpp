@@ -85,6 +85,20 @@ class FromNose {
         integrate(integrand, first_row, Components<Value>::make([](std::size_t) { return 0.0; }), result, result);
     }
 
+    // The same over the stretches from `begin` up to `end` alone, of an integrand that is zero before them; so must be
+    // the `result` there.
+    template <class Value, class Source>
+    void integrate_within(const Field<Source>& integrand, std::size_t first_row, std::size_t begin, std::size_t end,
+                          Field<Value>& result) const
+    {
+        const Value none = Components<Value>::make([](std::size_t) { return 0.0; });
+        for (std::size_t s = begin; s < end; ++s) {
+            const auto here = within<Value>(integrand, first_row, stretches_[s]);
+            const Value before = stretches_[s].begin > 0 ? result.node(stretches_[s].begin - 1) : none;
+            for (std::size_t part = 0; part < parts; ++part) result.store(parts * s + part, before + here[part]);
+        }
+    }
+
     // Adds to `result` at the points, times their `factor`, what these rows give of `integrand`: of the first
     // components, those of a `Value`.
     template <class Value, class Source>

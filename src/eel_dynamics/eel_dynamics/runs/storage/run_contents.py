@@ -18,6 +18,8 @@ def contents_of_run(run) -> Contents:
     """The contents of a `Run`. `ValueError` for one without samples."""
     if not len(run.time):
         raise ValueError("a run without samples holds no data")
+    if run.robot is not None:
+        raise ValueError(f"a run of a robot cannot be saved yet, got one of {run.robot!r}")
     values = {
         **{name: plain.plain_of(getattr(run, name)) for name in ("law", "body", "scene", "accuracy", "error_estimate")},
         "flow": plain_of_flow(run.flow),
@@ -98,9 +100,10 @@ def observed_of_batch(contents: Contents) -> tuple[Observations, np.ndarray]:
 
 
 def _ledger_of(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The arrays of the ledger; files of still water need not have those of the flow."""
+    """The arrays of the ledger; files of still water or imposed bending need not have theirs."""
     none = np.zeros_like(arrays[ENERGY + "residual"])
-    absent = {name: none for name in ("flow_power", "flow_work") if ENERGY + name not in arrays}
+    later = "flow_power", "flow_work", "elastic", "damping_power", "damping_work"
+    absent = {name: none for name in later if ENERGY + name not in arrays}
     return absent | {name: arrays[ENERGY + name] for name in LEDGER if name not in absent}
 
 

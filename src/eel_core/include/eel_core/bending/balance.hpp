@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+// One instant of a body with modes: its motion, the rates of its momenta, and its accelerations.
+//
+// The state has, beside the head's, a momentum pi_m for each coordinate: (L, P', pi) = M (Omega, V, qdot) + momentum of
+// the imposed change of shape. Its rate is
+//
+//     pidot_m = dT/dq_m + omega_m(l) . C_t + v_m(l) . N_t + integral (omega_m . c + v_m . n) dX - Q_m
+//     dT/dq_m = - integral B_m . R^T (omega x S_C + v x S_N) dX
+//
+// with the momentum (S_C, S_N) of the part behind a section, about it. The accelerations solve M a = h.
+#pragma once
+
+#include "eel_core/bending/columns.hpp"
+
+namespace eel_core {
+
+template <class M>
+class BentBody {
+  public:
+    static constexpr std::size_t head = M::freedoms;
+
+    BentBody(const Swimmer& swimmer, const Modes& modes)
+        : work(swimmer),
+          columns(swimmer, modes),
+          rate(modes.coordinates),
+          acceleration(modes.coordinates),
+          momentum_rate(modes.coordinates),
+          drift(modes.coordinates),
+          reference(modes.servos.size()),
+          swimmer_(&swimmer),
+          modes_(&modes),
+          load_(swimmer.grid.blocks),
+          mode_load_(modes.modes),
+          solution_(head + modes.coordinates)
+    {
+        const std::size_t n = modes.coordinates;
+        forces.total.resize(n), forces.pushing.resize(n), forces.torque.resize(modes.servos.size());
+    }
+
+    Workspace<M> work;
+    Columns<M> columns;
+    std::vector<double> rate, acceleration;  // of the coordinates
+    std::vector<double> momentum_rate;       // pidot
+    std::vector<double> drift;  // rates of the coordinates' rates that momenta at rest would leave, by M and b alone
+    Forces forces;
+    std::vector<Jet> reference;  // of the servos
+    State head_rate{};           // of the head's part of the state
+    std::size_t singular = 0;    // row of M that is not positive definite
+
+    std::size_t bytes() const
+    {
+        std::size_t sum = work.bytes() + load_.bytes();
+        for (const Column<M>& each : columns.column)
+            sum += each.omega.bytes() + each.velocity.bytes() + each.momentum.bytes();
+        return sum;
+    }
+
+    // The shape at the coordinates x, and M. False where M is not positive definite.
+    bool configure_at(const BentLaw& law, double time, const State& y, const double* x)
+    {
+        work.factor.resize(law.law.tables->rows());
+        for (std::size_t m = 0; m < modes_->modes; ++m) work.factor[law.first_mode + m] = {x[m], 0.0, 0.0};
+        configure(*swimmer_, law.law, time, work);
+        set_references(law, work.factor, reference);
+        set_pushing(*modes_, law, time, drive_, forces.pushing);
+        work.head = head_frame(y, M());
+        work.momentum = momentum_in_head(y, work.head);
+        columns.set(*swimmer_, *modes_, law, work);
+        factored_ = columns.mass;
+        singular = factored_.factor();
+        return singular == Definite::definite;
+    }
+
+    // Motion and loads of a configured body, from the momenta of the coordinates.
+    void move_by_momenta(const double* momenta, const double* x)
+    {
+        const auto whole = components_of(work.momentum);
+        for (std::size_t i = 0; i < solution_.size(); ++i)
+            solution_[i] = (i < head ? whole[i] : momenta[i - head]) - columns.momentum[i];
+        factored_.solve(solution_.data());
+        std::copy_n(solution_.begin() + head, rate.size(), rate.begin());
+        move(x);
+    }
+    // The same from their rates.
+    void move_by_rates(const double* rates, const double* x)
+    {
+        std::copy_n(rates, rate.size(), rate.begin());
+        auto left = components_of(work.momentum);
+        for (std::size_t i = 0; i < head; ++i) {
+            left[i] -= columns.momentum[i];
+            for (std::size_t m = 0; m < modes_->modes; ++m) left[i] -= columns.mass.at(head + m, i) * rate[m];
+        }
+        work.inertia.factor();
+        work.inertia.solve(left);
+        std::copy_n(left.begin(), head, solution_.begin());
+        move(x);
+    }
+
+    // Momenta (L, P') of the head in its axes, and those of the coordinates, for a twist of the head and `rates`.
+    Momentum<M, double> momenta_of(const Twist<M, double>& twist, const double* rates, double* momenta) const
+    {
+        auto sum = components_of(twist);
+        std::vector<double> all(sum.begin(), sum.end());
+        all.insert(all.end(), rates, rates + rate.size());
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            double row = columns.momentum[i];
+            for (std::size_t j = 0; j < all.size(); ++j) row += columns.mass.at(i, j) * all[j];
+            if (i < head)
+                sum[i] = row;
+            else
+                momenta[i - head] = row;
+        }
+        return Components<Momentum<M, double>>::make([&](std::size_t k) { return sum[k]; });
+    }
+
+    // `head_rate` and `momentum_rate` in the motion that `work` holds, of state y.
+    void find_rates(const BentLaw& law, const Vector3<double>& current, const State& y)
+    {
+        put_velocity(work.twist, work.head, current, y, head_rate);
+        by_loads_ = momentum_rate_from_loads(*swimmer_, work);
+        put_momentum(by_loads_, work.head, head_rate);
+        set_momentum_behind();
+        for (std::size_t m = 0; m < modes_->modes; ++m)
+            momentum_rate[m] = gradient_of_energy(law, m) + mode_load_[m] - forces.total[m];
+        for (std::size_t i = modes_->modes; i < modes_->coordinates; ++i) momentum_rate[i] = -forces.total[i];
+    }
+
+    // `acceleration`, that of the head in `work`, and `drift`, after `find_rates`.
+    void find_accelerations_and_drift(const BentLaw& law)
+    {
+        for (std::size_t m = 0; m < modes_->modes; ++m) work.factor[law.first_mode + m][1] = rate[m];
+        for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k)
+            work.curvature_rate.store(k, law.law.combine_both(law.law.tables->node, work.factor, 1, k));
+        find_shape_accelerations(*swimmer_, law.law, work);
+        auto left = work.tail + work.drag - set_inertial_density(*swimmer_, work);
+        left.linear.x += nose_drag(*swimmer_, work.nose_through_water().x);
+        if (swimmer_->righting != 0.0) left.angular += work.righting;
+        for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {  // about the sections, weighed
+            Wrench<M, Lanes> taken = work.density[k];
+            taken.angular = taken.angular - cross(work.position[k], taken.linear);
+            load_.store(k, swimmer_->grid.weight[k] * taken);
+        }
+        const auto of_head = components_of(left), by_loads = components_of(by_loads_);
+        const std::size_t n = modes_->coordinates;
+        std::vector<double> by_momenta(head + n);
+        for (std::size_t i = 0; i < head; ++i) solution_[i] = of_head[i], by_momenta[i] = by_loads[i];
+        for (std::size_t i = 0; i < n; ++i) {
+            solution_[head + i] = -forces.total[i];
+            if (i < modes_->modes) solution_[head + i] += mode_load_[i] - columns.work_of(i, load_);
+            by_momenta[head + i] = momentum_rate[i];
+        }
+        factored_.solve(solution_.data());
+        factored_.solve(by_momenta.data());
+        work.head_acceleration = Components<Twist<M, double>>::make([&](std::size_t k) { return solution_[k]; });
+        for (std::size_t i = 0; i < n; ++i) {
+            acceleration[i] = solution_[head + i];
+            drift[i] = acceleration[i] - by_momenta[head + i];
+        }
+    }
+
+    // Power of what imposes the change of shape [W], - integral C . Kdot_imposed, after the accelerations.
+    double imposed_power() const
+    {
+        double power = -imposed_load_;
+        Lanes sum(0.0);
+        for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {
+            const Wrench<M, Lanes> taken = load_[k];
+            sum += dot(work.shape_omega[k], taken.angular) + dot(work.shape_velocity[k], taken.linear);
+        }
+        power += total(sum);
+        for (std::size_t i = 0; i < solution_.size(); ++i) power += solution_[i] * columns.momentum[i];
+        return power;
+    }
+    // Of motors and of what imposes a change of shape, wake, nose, drag, flow [W], after the accelerations.
+    Powers powers() const
+    {
+        const double v1 = work.twist.linear.x;
+        const double nose_force = nose_drag(*swimmer_, v1) - swimmer_->nose_mass * work.head_acceleration.linear.x;
+        return {forces.motor_power + imposed_power(), work.tail_speed * work.tail_energy, nose_force * v1,
+                work.drag_power, 0.0};
+    }
+
+  private:
+    // Velocities and loads for the head's part of `solution_` and `rate`.
+    void move(const double* x)
+    {
+        work.twist = Components<Twist<M, double>>::make([&](std::size_t k) { return solution_[k]; });
+        set_velocities(*swimmer_, work.twist, work);
+        for (std::size_t m = 0; m < modes_->modes; ++m) {
+            const Column<M>& own = columns.column[m];
+            for (std::size_t k = own.first_block; k < swimmer_->grid.blocks; ++k) {
+                work.omega.store(k, work.omega[k] + rate[m] * own.omega[k]);
+                work.velocity.store(k, work.velocity[k] + rate[m] * own.velocity[k]);
+            }
+        }
+        find_loads(*swimmer_, work);
+        if (swimmer_->righting != 0.0) set_righting_torque(*swimmer_, work);
+        set_mode_loads();
+        set_forces(*modes_, reference, x, rate.data(), forces);
+    }
+
+    // omega_a(l) . C_t + v_a(l) . N_t + integral (omega_a . c + v_a . n) dX, of the modes and of the imposed change.
+    void set_mode_loads()
+    {
+        for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {
+            Wrench<M, Lanes> load{};
+            const auto frame = work.frame[k];
+            if (swimmer_->resistive) {
+                const auto drag = resistive_load(swimmer_->sections.drag(k), work.friction_laminar[k],
+                                                 work.friction_excess[k], load_weights(*swimmer_, work, k),
+                                                 speeds_from(work, width * k), roll_from(work, width * k));
+                load = {frame.parent(drag.angular), frame.parent(drag.linear)};
+            }
+            if constexpr (!M::planar)
+                if (swimmer_->righting != 0.0) {
+                    const Lanes moment = swimmer_->righting * (swimmer_->grid.weight[k] * swimmer_->sections.mass[k]);
+                    load.angular += righting_torque(moment, frame.axis3, work.up);
+                }
+            load_.store(k, load);
+        }
+        const std::size_t tail = swimmer_->grid.nodes - 1;
+        const auto force = work.tail.linear;
+        const Angular<M, double> torque = work.tail.angular - cross(work.position.node(tail), force);
+        for (std::size_t m = 0; m < modes_->modes; ++m) {
+            const Column<M>& own = columns.column[m];
+            mode_load_[m] =
+                columns.work_of(m, load_) + dot(own.omega.node(tail), torque) + dot(own.velocity.node(tail), force);
+        }
+        Lanes sum(0.0);
+        for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {
+            const Wrench<M, Lanes> here = load_[k];
+            sum += dot(work.shape_omega[k], here.angular) + dot(work.shape_velocity[k], here.linear);
+        }
+        imposed_load_ =
+            total(sum) + dot(work.shape_omega.node(tail), torque) + dot(work.shape_velocity.node(tail), force);
+    }
+
+    // The momentum from the nose to each node, to `work.integral`.
+    void set_momentum_behind()
+    {
+        for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {
+            const auto section = swimmer_->sections[k];
+            const auto frame = work.frame[k];
+            const Vector<M, Lanes> linear = frame.parent(section.linear_momentum(frame.local(work.velocity[k])));
+            const Angular<M, Lanes> angular = frame.parent(section.angular_momentum(frame.local(work.omega[k])));
+            work.density.store(k, {angular + cross(work.position[k], linear), linear});
+        }
+        swimmer_->grid.from_nose.integrate(work.density, work.integral);
+        const Momentum<M, double> whole = work.integral.node(swimmer_->grid.nodes - 1);
+        for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {
+            const Momentum<M, Lanes> ahead = work.integral[k];
+            const Vector<M, Lanes> linear = whole.linear - ahead.linear, velocity = work.velocity[k];
+            const Angular<M, Lanes> angular = (whole.angular - ahead.angular) - cross(work.position[k], linear);
+            const Angular<M, Lanes> turned = cross(work.omega[k], angular) + cross(velocity, linear);
+            work.integrand.store(k, {work.frame[k].local(turned), Vector<M, Lanes>{}});
+        }
+    }
+
+    // dT/dq_m, from `work.integrand`.
+    double gradient_of_energy(const BentLaw& law, std::size_t m) const
+    {
+        const Column<M>& own = columns.column[m];
+        const std::size_t end = (own.last_node + width - 1) / width;
+        Lanes sum(0.0);
+        for (std::size_t k = own.first_node / width; k < end; ++k) {
+            const auto turned = work.integrand[k].angular;
+            Lanes along;
+            if constexpr (M::planar)
+                along = turned;
+            else
+                along = modes_->axis[m] == LawOnGrid::pitch ? turned.y : turned.z;
+            sum += swimmer_->grid.weight[k] * (Columns<M>::shape(law, m, k) * along);
+        }
+        return -total(sum);
+    }
+
+    const Swimmer* swimmer_;
+    const Modes* modes_;
+    Definite factored_;
+    Field<Wrench<M, double>> load_;  // about the sections, weighed by their length, in the axes of the head
+    std::vector<double> mode_load_, solution_;
+    std::vector<Jet> drive_;
+    Wrench<M, double> by_loads_{};
+    double imposed_load_ = 0.0;
+};
+
+}  // namespace eel_core

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: Apache-2.0
+// A swimmer with modes on its way: as `March`, with the coordinates, their rates, and what drives them besides.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <variant>
+
+#include "eel_core/bending/rosenbrock.hpp"
+#include "eel_core/march/march.hpp"
+
+namespace eel_core {
+
+// Where the numbers of an instant's coordinates lie: in one row of doubles.
+struct CoordinateRow {
+    enum Single : std::size_t { elastic, rotors, motor_power, damping_power, damping_work, singles };
+    std::size_t coordinates, modes, servos;
+
+    std::size_t x() const { return 0; }
+    std::size_t rate() const { return coordinates; }
+    std::size_t acceleration() const { return 2 * coordinates; }
+    std::size_t moment() const { return 3 * coordinates; }  // of the modes: integral of B . C
+    std::size_t torque() const { return moment() + modes; }
+    std::size_t pushing() const { return torque() + servos; }
+    std::size_t single() const { return pushing() + coordinates; }  // energies [J], powers [W] and a work [J]
+    std::size_t size() const { return single() + singles; }
+};
+
+class BentMarch {
+  public:
+    BentMarch(std::shared_ptr<const Swimmer> swimmer, std::shared_ptr<const Modes> modes, bool planar)
+        : swimmer_(std::move(swimmer)),
+          modes_(std::move(modes)),
+          stepper_(made(*swimmer_, *modes_, planar)),
+          here_(*swimmer_),
+          x_(modes_->coordinates),
+          rate_(modes_->coordinates)
+    {
+        state_[6] = 1.0;
+    }
+
+    double time() const { return time_; }
+    const State& state() const { return state_; }
+    const std::vector<double>& coordinates() const { return x_; }
+    const std::vector<double>& rates() const { return rate_; }
+    const BentPowers& works() const { return works_; }
+    Counts counts() const
+    {
+        return std::visit([](const auto& stepper) { return stepper.counts(); }, stepper_);
+    }
+    const Swimmer& swimmer() const { return *swimmer_; }
+    const Modes& modes() const { return *modes_; }
+    // As `March::memory`, without the law.
+    std::size_t memory() const
+    {
+        const std::size_t work = std::visit([](const auto& stepper) { return stepper.body().bytes(); }, stepper_);
+        return work + swimmer_->grid.from_nose.bytes();
+    }
+    CoordinateRow row() const { return {modes_->coordinates, modes_->modes, modes_->servos.size()}; }
+
+    // Goes on in another grid, with the same coordinates at the same rates; the next step begins anew.
+    void change(std::shared_ptr<const Swimmer> swimmer, std::shared_ptr<const Modes> modes, bool planar)
+    {
+        Steppers next = made(*swimmer, *modes, planar);
+        std::visit([&](auto& stepper) { stepper.take_over(std::get<std::decay_t<decltype(stepper)>>(stepper_)); },
+                   next);
+        stepper_ = std::move(next);
+        swimmer_ = std::move(swimmer), modes_ = std::move(modes);
+        here_ = StationWork(*swimmer_);
+        observing_.reset();
+    }
+
+    // As `March::follow`.
+    void follow(BentSettings settings, bool smoothly)
+    {
+        settings_ = std::move(settings);
+        if (!smoothly) begin();
+    }
+
+    // Stands at the start, at time 0, with these coordinates and rates and the momenta of the head's twist relative to
+    // the water. Returns all energy [J].
+    double start(const Vector3<double>& position, const Quaternion<double>& orientation,
+                 const Twist<Space, double>& twist, std::vector<double> x, std::vector<double> rate)
+    {
+        time_ = 0.0, works_ = {}, x_ = std::move(x), rate_ = std::move(rate);
+        const double energy = set_state(position, orientation, twist);
+        std::visit([&](auto& stepper) { stepper.forget(state_, settings_.bounds.spare_steps); }, stepper_);
+        begin();
+        return energy;
+    }
+
+    // The head's twist relative to the water, in the present state. Throws where the inertia is not positive definite.
+    Twist<Space, double> twist()
+    {
+        Workspace<Space>& work = workspace();
+        set_shape(nullptr, work);
+        if (!find_head_motion(*swimmer_, settings_.law.law, water(), time_, state_, work))
+            throw std::domain_error("inertia is not positive definite");
+        return work.twist;
+    }
+
+    // Puts the head elsewhere, with the momenta of its twist relative to the water and the present rates of the
+    // coordinates. Returns all energy [J].
+    double set_state(const Vector3<double>& position, const Quaternion<double>& orientation,
+                     const Twist<Space, double>& twist)
+    {
+        state_ = {position.x, position.y, position.z, orientation.x, orientation.y, orientation.z, orientation.w};
+        return set_twist(twist);
+    }
+    double set_twist(const Twist<Space, double>& twist)
+    {
+        Workspace<Space>& work = workspace();
+        set_shape(nullptr, work);
+        configure(*swimmer_, settings_.law.law, time_, work);
+        work.head = head_frame(state_, Space());
+        put_momentum(momentum_of(*swimmer_, twist, work), work.head, state_);
+        set_velocities(*swimmer_, twist, work);
+        if (swimmer_->righting != 0.0) set_righting_torque(*swimmer_, work);
+        const auto [body, fluid, potential] = energies_of(*swimmer_, work);
+        begin();
+        std::visit([&](auto& stepper) { find_instant(stepper); }, stepper_);
+        return body + fluid + potential + elastic_ + rotors();
+    }
+
+    void set_slice(std::int64_t nodes) { slice_ = nodes; }
+
+    // As `March::advance`.
+    Status advance(double time)
+    {
+        Slice slice{slice_};
+        return advance(time, slice);
+    }
+
+    // As `March::record`; `rows`: the coordinates' of each instant.
+    Status record(std::span<const double> times, std::size_t first, double until, const Profiles& profiles,
+                  double* whole, double* works, double* rows, std::size_t& done)
+    {
+        Slice slice{slice_};
+        for (done = first; done < times.size() && times[done] <= until; ++done) {
+            const Status status = slice.used_up() ? Status::unfinished : advance(times[done], slice);
+            if (status != Status::marched) return status;
+            if (!observe(profiles, whole, done, rows + done * row().size())) return Status::singular;
+            std::copy_n(works_.begin(), std::tuple_size_v<Powers>, works + std::tuple_size_v<Powers> * done);
+            slice.spend(6 * (swimmer_->grid.nodes + swimmer_->stations));
+        }
+        return Status::marched;
+    }
+
+    // Fills the `sample` of `whole` and the coordinates' `numbers` with what the present shows. The body's kinetic
+    // energy has the rotors', and the actuators are the motors and what imposes a change of shape. False where M is not
+    // positive definite.
+    bool observe(const Profiles& profiles, double* whole, std::size_t sample, double* numbers)
+    {
+        double actuators = 0.0;
+        const bool found = std::visit([&](auto& stepper) { return show(stepper, numbers, actuators); }, stepper_);
+        if (!found) return false;
+        Workspace<Space>& work = workspace();
+        set_shape(numbers + row().acceleration(), work);
+        const Observer observer(*swimmer_, profiles, whole);
+        if (!observer.observe(settings_.law.law, water(), time_, state_, sample, work, here_)) return false;
+        profiles.at(whole, Profiles::energies, sample)[0] += rotors();
+        profiles.at(whole, Profiles::powers, sample)[0] = actuators;
+        return true;
+    }
+
+    // The first of the modes that make M singular in the present state; none where it is positive definite.
+    std::optional<std::size_t> singular_mode()
+    {
+        return std::visit(
+            [&](auto& stepper) -> std::optional<std::size_t> {
+                using Body = std::decay_t<decltype(stepper.body())>;
+                if (stepper.body().configure_at(settings_.law, time_, state_, x_.data())) return {};
+                const std::size_t at = stepper.body().singular;
+                return at < Body::head ? 0 : at - Body::head;
+            },
+            stepper_);
+    }
+
+  private:
+    using Steppers = std::variant<BentStepper<Space>, BentStepper<Plane>>;
+
+    static Steppers made(const Swimmer& swimmer, const Modes& modes, bool planar)
+    {
+        if (planar) return BentStepper<Plane>(swimmer, modes);
+        return BentStepper<Space>(swimmer, modes);
+    }
+
+    Water water() const { return {settings_.current, nullptr}; }
+
+    double rotors() const
+    {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < rate_.size(); ++i) sum += 0.5 * modes_->inertia[i] * rate_[i] * rate_[i];
+        return sum;
+    }
+
+    // The modes' factors for the present coordinates and rates and these accelerations; none: zero.
+    void set_shape(const double* acceleration, Workspace<Space>& work) const
+    {
+        work.factor.resize(settings_.law.law.tables->rows());
+        for (std::size_t m = 0; m < modes_->modes; ++m)
+            work.factor[settings_.law.first_mode + m] = {x_[m], rate_[m], acceleration ? acceleration[m] : 0.0};
+    }
+
+    // Configures the stepper's body in the present state and finds its loads and forces.
+    bool find_instant(auto& stepper)
+    {
+        auto& body = stepper.body();
+        if (!body.configure_at(settings_.law, time_, state_, x_.data())) return false;
+        body.move_by_rates(rate_.data(), x_.data());
+        elastic_ = body.forces.elastic;
+        return true;
+    }
+
+    bool show(auto& stepper, double* numbers, double& actuators)
+    {
+        if (!find_instant(stepper)) return false;
+        auto& body = stepper.body();
+        body.find_rates(settings_.law, settings_.current, state_);
+        body.find_accelerations_and_drift(settings_.law);
+        actuators = body.powers()[0];
+        const CoordinateRow at = row();
+        std::ranges::copy(x_, numbers + at.x());
+        std::ranges::copy(rate_, numbers + at.rate());
+        std::ranges::copy(body.acceleration, numbers + at.acceleration());
+        for (std::size_t m = 0; m < modes_->modes; ++m)
+            numbers[at.moment() + m] = body.forces.total[m] + modes_->inertia[m] * body.acceleration[m];
+        std::ranges::copy(body.forces.torque, numbers + at.torque());
+        std::ranges::copy(body.forces.pushing, numbers + at.pushing());
+        double* const single = numbers + at.single();
+        single[CoordinateRow::elastic] = elastic_, single[CoordinateRow::rotors] = rotors();
+        single[CoordinateRow::motor_power] = body.forces.motor_power;
+        single[CoordinateRow::damping_power] = body.forces.damping_power;
+        single[CoordinateRow::damping_work] = works_.back();
+        return true;
+    }
+
+    // The next step begins in the present state.
+    void begin()
+    {
+        begin_ = false;
+        const double first_length = first_step * settings_.bounds.longest;
+        std::visit(
+            [&](auto& stepper) {
+                BentState y{state_, std::vector<double>(x_.size()), x_};
+                if (stepper.body().configure_at(settings_.law, time_, state_, x_.data())) {
+                    stepper.body().move_by_rates(rate_.data(), x_.data());
+                    stepper.body().momenta_of(stepper.body().work.twist, rate_.data(), y.momentum.data());
+                }
+                stepper.begin(time_, y, works_, first_length);
+            },
+            stepper_);
+    }
+
+    Status advance(double time, Slice& slice)
+    {
+        try {
+            return march_to(time, slice);
+        } catch (...) {  // of a torque that is a function
+            begin_ = true;
+            throw;
+        }
+    }
+
+    Status march_to(double time, Slice& slice)
+    {
+        if (begin_) begin();
+        return std::visit(
+            [&](auto& stepper) {
+                const Status status = stepper.march(settings_, time, slice);
+                if (status != Status::marched && status != Status::unfinished) {
+                    begin();
+                    return status;
+                }
+                time_ = status == Status::marched ? time : std::max(time_, stepper.end_time());
+                stepper.state_at(time_, state_, x_, rate_, works_);
+                return status;
+            },
+            stepper_);
+    }
+
+    // Of space, for what is observed: the stepper's own, unless that is for the plane.
+    Workspace<Space>& workspace()
+    {
+        if (auto* const stepper = std::get_if<BentStepper<Space>>(&stepper_)) return stepper->body().work;
+        if (!observing_) observing_.emplace(*swimmer_);
+        return *observing_;
+    }
+
+    static constexpr double first_step = 0.02;  // of the longest
+
+    std::shared_ptr<const Swimmer> swimmer_;
+    std::shared_ptr<const Modes> modes_;
+    BentSettings settings_;
+    Steppers stepper_;
+    StationWork here_;
+    std::optional<Workspace<Space>> observing_;
+    std::int64_t slice_ = Slice{}.left;
+    bool begin_ = false;  // is due
+    double time_ = 0.0;   // [s]
+    State state_{};
+    std::vector<double> x_, rate_;
+    double elastic_ = 0.0;  // [J], when last found
+    BentPowers works_{};
+};
+
+}  // namespace eel_core

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// Columns of the modes: how the sections move when one coordinate does; and the mass matrix of head and coordinates.
+//
+//     omega_m' = R B_m      v_m' = omega_m x t1
+//
+// in the axes of the head, zero at the nose and ahead of the support. Behind it a column is the motion of a rigid body.
+// M_ab = integral (omega_a . R J R^T omega_b + v_a . R M R^T v_b) dX, with the nose's m_o and the coordinates' inertia.
+#pragma once
+
+#include "eel_core/algorithm.hpp"
+#include "eel_core/bending/dense.hpp"
+#include "eel_core/bending/modes.hpp"
+
+namespace eel_core {
+
+template <class M>
+struct Column {
+    std::size_t first_stretch, last_stretch;  // of the support; the latter: the one behind
+    std::size_t first_block, first_node, last_node;
+    Field<Angular<M, double>> omega;  // per unit of rate
+    Field<Vector<M, double>> velocity;
+    Field<Wrench<M, double>> momentum;  // of the sections, about each and weighed by its length
+};
+
+template <class M>
+class Columns {
+  public:
+    static constexpr std::size_t head = M::freedoms;
+
+    Columns(const Swimmer& swimmer, const Modes& modes)
+        : mass(head + modes.coordinates), momentum(head + modes.coordinates)
+    {
+        const std::size_t n = swimmer.grid.blocks;
+        for (std::size_t m = 0; m < modes.modes; ++m) {
+            const std::size_t begin = modes.first[m] / filled, end = (modes.last[m] + filled - 1) / filled;
+            column.push_back({begin, end, begin * FromNose::parts, modes.first[m], modes.last[m],
+                              Field<Angular<M, double>>(n), Field<Vector<M, double>>(n), Field<Wrench<M, double>>(n)});
+        }
+    }
+
+    std::vector<Column<M>> column;
+    Definite mass;                 // of head and coordinates
+    std::vector<double> momentum;  // of the imposed change of shape alone, in the direction of each of them
+
+    // B_m of a block.
+    static Lanes shape(const BentLaw& law, std::size_t m, std::size_t k)
+    {
+        return law.law.tables->node.at(law.first_mode + m, k)[0];
+    }
+
+    // Sets all of it for a body that is configured with the velocities of the imposed change of shape.
+    void set(const Swimmer& swimmer, const Modes& modes, const BentLaw& law, Workspace<M>& work)
+    {
+        const auto of_shape = components_of(inertia_and_momentum(swimmer, work));
+        for (std::size_t i = 0; i < head; ++i) {
+            momentum[i] = of_shape[i];
+            for (std::size_t j = 0; j <= i; ++j) mass.at(i, j) = work.inertia.lower[work.inertia.at(i, j)];
+        }
+        for (std::size_t m = 0; m < modes.modes; ++m) {
+            set_column(swimmer, modes, law, m, work);
+            set_momentum(swimmer, m, work);
+            for (std::size_t other = 0; other <= m; ++other)
+                mass.at(head + m, head + other) = product(swimmer, m, other);
+        }
+        for (std::size_t i = modes.modes; i < modes.coordinates; ++i)
+            for (std::size_t j = 0; j < head + i; ++j) mass.at(head + i, j) = 0.0;
+        for (std::size_t i = 0; i < modes.coordinates; ++i) {
+            double& own = mass.at(head + i, head + i);
+            own = (i < modes.modes ? own : 0.0) + modes.inertia[i];
+        }
+    }
+
+    // sum of a column's fields times these, of blocks: integral (omega_m . c + v_m . n), where (c, n) are weighed,
+    // about the sections and in the axes of the head.
+    double work_of(std::size_t m, const Field<Wrench<M, double>>& load) const
+    {
+        const Column<M>& own = column[m];
+        Lanes sum(0.0);
+        for (std::size_t k = own.first_block; k < blocks_; ++k) {
+            const Wrench<M, Lanes> here = load[k];
+            sum += dot(own.omega[k], here.angular) + dot(own.velocity[k], here.linear);
+        }
+        return total(sum);
+    }
+
+  private:
+    void set_column(const Swimmer& swimmer, const Modes& modes, const BentLaw& law, std::size_t m, Workspace<M>& work)
+    {
+        Column<M>& own = column[m];
+        blocks_ = swimmer.grid.blocks;
+        const auto stretches = swimmer.grid.from_nose.stretches();
+        const std::size_t begin = stretches[own.first_stretch].begin / width,
+                          end = (stretches[own.last_stretch - 1].end + width - 1) / width;
+        const std::size_t behind = own.last_stretch * FromNose::parts;
+        if constexpr (M::planar) {
+            for (std::size_t k = own.first_block; k < blocks_; ++k)
+                own.omega.store(k, law.law.tables->angle.at(law.first_mode + m, k)[0]);
+        } else {
+            for (std::size_t k = begin; k < end; ++k) {
+                const auto frame = work.frame[k];
+                const Lanes b = shape(law, m, k);
+                const auto turned = modes.axis[m] == LawOnGrid::pitch ? b * frame.axis2 : b * frame.axis3;
+                work.integrand.store(k, {turned, Vector<M, Lanes>{}});
+            }
+            swimmer.grid.from_nose.integrate_within(work.integrand, 0, own.first_stretch, own.last_stretch, own.omega);
+        }
+        constexpr std::size_t linear = Components<Angular<M, Lanes>>::count;
+        for (std::size_t k = begin; k < end; ++k)
+            work.integrand.store(k, {own.omega[k], cross(own.omega[k], work.frame[k].t1())});
+        swimmer.grid.from_nose.integrate_within(work.integrand, linear, own.first_stretch, own.last_stretch,
+                                                own.velocity);
+        if (behind >= blocks_) return;
+        const std::size_t last = behind * width - 1;
+        const auto omega = own.omega.node(last);
+        const auto at_head = own.velocity.node(last) - cross(omega, work.position.node(last));
+        for (std::size_t k = behind; k < blocks_; ++k) {
+            if constexpr (!M::planar) own.omega.store(k, omega + Vector<M, Lanes>{});
+            own.velocity.store(k, at_head + cross(omega, work.position[k]));
+        }
+    }
+
+    // The column's momentum, in the direction of the head's motions and of the imposed change of shape too.
+    void set_momentum(const Swimmer& swimmer, std::size_t m, const Workspace<M>& work)
+    {
+        Column<M>& own = column[m];
+        Momentum<M, Lanes> whole{};
+        Lanes imposed(0.0);
+        for (std::size_t k = own.first_block; k < blocks_; ++k) {
+            const auto section = swimmer.sections[k].weighed(swimmer.grid.weight[k]);
+            const auto frame = work.frame[k];
+            const Vector<M, Lanes> linear = frame.parent(section.linear_momentum(frame.local(own.velocity[k])));
+            const Angular<M, Lanes> angular = frame.parent(section.angular_momentum(frame.local(own.omega[k])));
+            own.momentum.store(k, {angular, linear});
+            whole += {angular + cross(work.position[k], linear), linear};
+            imposed += dot(work.shape_omega[k], angular) + dot(work.shape_velocity[k], linear);
+        }
+        const auto by_head = components_of(total_of(whole));
+        for (std::size_t j = 0; j < head; ++j) mass.at(head + m, j) = by_head[j];
+        momentum[head + m] = total(imposed);
+    }
+
+    double product(const Swimmer&, std::size_t m, std::size_t other) const
+    {
+        const std::size_t later = column[m].first_block >= column[other].first_block ? m : other;
+        return work_of(later, column[later == m ? other : m].momentum);
+    }
+
+    std::size_t blocks_ = 0;
+};
+
+}  // namespace eel_core

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// What bends by itself: modes of the curvature, and what drives them. Ours, not the paper's.
+//
+//     K(t, X) = K_imposed(t, X) + sum_m q_m(t) B_m(X)
+//
+// Each B_m lies along axis 2 (pitch) or 3 (yaw), on a support of whole panels. The coordinates are the q_m and, behind
+// series springs, the angles of motors. What acts on a coordinate is a force in the sense of Lagrange: K (x - rest) +
+// D xdot + stops - drives.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "eel_core/law.hpp"
+
+namespace eel_core {
+
+// A motor that follows a reference: kp (ref - x) + kd (refdot - xdot), within its limits of torque and speed.
+struct Servo {
+    std::size_t coordinate;
+    double kp, kd;                     // [N m/rad], [N m s/rad]
+    double torque_limit, speed_limit;  // [N m], [rad/s]; infinite: none
+};
+
+// A spring and damper beyond the limits of a mode.
+struct Stop {
+    std::size_t mode;
+    double low, high;  // [rad], or rad/m
+    double stiffness, damping;
+};
+
+// A torque that is given over time: by a function, or by cubics between knots, whose ends are held.
+struct GivenTorque {
+    std::size_t coordinate;
+    std::vector<double> knots, cubics;  // [s]; (pieces, 4), from the highest power on
+    std::function<double(double)> function;
+
+    double at(double time) const
+    {
+        if (function) return function(time);
+        const double t = std::clamp(time, knots.front(), knots.back());
+        const auto behind = std::upper_bound(knots.begin() + 1, knots.end() - 1, t);
+        const auto piece = static_cast<std::size_t>(behind - knots.begin()) - 1;
+        const double* const c = cubics.data() + 4 * piece;
+        const double s = t - knots[piece];
+        return ((c[0] * s + c[1]) * s + c[2]) * s + c[3];
+    }
+};
+
+struct Modes {
+    std::size_t modes = 0, coordinates = 0;
+    std::vector<LawOnGrid::Axis> axis;       // of each mode, as the next three
+    std::vector<std::size_t> first, last;    // first node of the support, and the one behind its last
+    std::vector<double> span;                // integral of |B| [1, or m]
+    std::vector<double> inertia, rest;       // of each coordinate: armature or rotor, and where its springs rest
+    std::vector<double> stiffness, damping;  // (coordinates, coordinates)
+    std::vector<Servo> servos;
+    std::vector<Stop> stops;
+    std::vector<GivenTorque> torques;
+};
+
+// The law that drives a body with modes. The rows of the modes are the last ones of its tables.
+struct BentLaw {
+    LawOnGrid law;
+    std::size_t first_mode = 0;     // row of the first mode
+    std::vector<double> reference;  // (servos, first_mode): what a servo follows, by the factors of the law
+    // What muscles do to the coordinates: by the factors of another law.
+    std::shared_ptr<const LawOnGrid> drive;
+    std::vector<double> push;  // (coordinates, rows of `drive`)
+};
+
+// Forces at an instant, and what the ledger needs of them.
+struct Forces {
+    std::vector<double> total;    // (coordinates) [N m, or N m^2], as defined above
+    std::vector<double> torque;   // (servos) [N m]
+    std::vector<double> pushing;  // (coordinates), of muscles and given torques: functions of time alone
+    double elastic = 0.0;         // [J], in springs and stops
+    double motor_power = 0.0;     // [W], of servos, muscles and given torques
+    double damping_power = 0.0;   // [W], <= 0
+};
+
+// The jets that the servos follow.
+inline void set_references(const BentLaw& law, const std::vector<Jet>& factor, std::vector<Jet>& reference)
+{
+    for (std::size_t s = 0; s < reference.size(); ++s) {
+        reference[s] = {};
+        for (std::size_t row = 0; row < law.first_mode; ++row)
+            for (std::size_t d = 0; d < 3; ++d)
+                reference[s][d] += law.reference[s * law.first_mode + row] * factor[row][d];
+    }
+}
+
+// What muscles and given torques do to the coordinates at `time` [s]; `factor`: work space.
+inline void set_pushing(const Modes& modes, const BentLaw& law, double time, std::vector<Jet>& factor,
+                        std::vector<double>& pushing)
+{
+    std::fill(pushing.begin(), pushing.end(), 0.0);
+    if (law.drive) {
+        factor.resize(law.drive->tables->rows());
+        law.drive->set_factors(time, factor);
+        for (std::size_t i = 0; i < pushing.size(); ++i)
+            for (std::size_t row = 0; row < factor.size(); ++row)
+                pushing[i] += law.push[i * factor.size() + row] * factor[row][0];
+    }
+    for (const GivenTorque& torque : modes.torques) pushing[torque.coordinate] += torque.at(time);
+}
+
+struct TorqueRange {
+    double low, high;
+};
+// Torque that a servo can give at a speed: it falls in a straight line to the speed limit.
+inline TorqueRange torque_range(const Servo& servo, double rate)
+{
+    if (!std::isfinite(servo.torque_limit)) return {-servo.torque_limit, servo.torque_limit};
+    const double by = rate / servo.speed_limit;
+    return {-servo.torque_limit * std::clamp(1.0 + by, 0.0, 1.0), servo.torque_limit * std::clamp(1.0 - by, 0.0, 1.0)};
+}
+inline double wanted_torque(const Servo& servo, const Jet& reference, double x, double rate)
+{
+    return servo.kp * (reference[0] - x) + servo.kd * (reference[1] - rate);
+}
+
+// Forces for the coordinates x and their rates. `forces.pushing` and the references hold those of the instant.
+inline void set_forces(const Modes& modes, const std::vector<Jet>& reference, const double* x, const double* rate,
+                       Forces& forces)
+{
+    const std::size_t n = modes.coordinates;
+    forces.elastic = forces.motor_power = forces.damping_power = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+        double spring = 0.0, damper = 0.0;
+        for (std::size_t j = 0; j < n; ++j) {
+            spring += modes.stiffness[i * n + j] * (x[j] - modes.rest[j]);
+            damper += modes.damping[i * n + j] * rate[j];
+        }
+        forces.elastic += 0.5 * spring * (x[i] - modes.rest[i]);
+        forces.damping_power -= damper * rate[i];
+        forces.motor_power += forces.pushing[i] * rate[i];
+        forces.total[i] = spring + damper - forces.pushing[i];
+    }
+    for (const Stop& stop : modes.stops) {
+        const std::size_t m = stop.mode;
+        const double beyond = x[m] > stop.high ? x[m] - stop.high : x[m] < stop.low ? x[m] - stop.low : 0.0;
+        if (beyond == 0.0) continue;
+        forces.total[m] += stop.stiffness * beyond + stop.damping * rate[m];
+        forces.elastic += 0.5 * stop.stiffness * beyond * beyond;
+        forces.damping_power -= stop.damping * rate[m] * rate[m];
+    }
+    for (std::size_t s = 0; s < modes.servos.size(); ++s) {
+        const Servo& servo = modes.servos[s];
+        const std::size_t i = servo.coordinate;
+        const auto [low, high] = torque_range(servo, rate[i]);
+        forces.torque[s] = std::clamp(wanted_torque(servo, reference[s], x[i], rate[i]), low, high);
+        forces.total[i] -= forces.torque[s];
+        forces.motor_power += forces.torque[s] * rate[i];
+    }
+}
+
+// Derivatives of the forces by coordinates and rates, and of what a reference that moves adds to their rate.
+inline void linearise(const Modes& modes, const std::vector<Jet>& reference, const double* x, const double* rate,
+                      std::vector<double>& stiffness, std::vector<double>& damping, std::vector<double>& in_time)
+{
+    const std::size_t n = modes.coordinates;
+    stiffness = modes.stiffness, damping = modes.damping;
+    std::fill(in_time.begin(), in_time.end(), 0.0);
+    for (const Stop& stop : modes.stops)
+        if (const std::size_t m = stop.mode; x[m] > stop.high || x[m] < stop.low)
+            stiffness[m * n + m] += stop.stiffness, damping[m * n + m] += stop.damping;
+    for (std::size_t s = 0; s < modes.servos.size(); ++s) {
+        const Servo& servo = modes.servos[s];
+        const std::size_t i = servo.coordinate;
+        const double wanted = wanted_torque(servo, reference[s], x[i], rate[i]), by = rate[i] / servo.speed_limit;
+        const auto [low, high] = torque_range(servo, rate[i]);
+        if (low < wanted && wanted < high) {
+            stiffness[i * n + i] += servo.kp, damping[i * n + i] += servo.kd;
+            in_time[i] += servo.kp * reference[s][1] + servo.kd * reference[s][2];
+        } else if (const double slope = wanted >= high ? by : -by; 0.0 < slope && slope < 1.0) {
+            damping[i * n + i] += servo.torque_limit / servo.speed_limit;
+        }
+    }
+}
+
+}  // namespace eel_core

@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: Apache-2.0
+// Steps in time of a body with modes: ROS34PW2 of Rang and Angermann (BIT 45 (2005)), with dense output.
+//
+// It is of order 3 for any Jacobian, L-stable and stiffly accurate. The Jacobian has what is stiff: springs, dampers
+// and servos' gains, by the mass matrix at the start of the step,
+//
+//     qdot <- du,  pidot <- - K dq - D du,  du from dpi by M.
+//
+// Its column of time holds what a reference that moves adds, and the `drift` of qdot that comes from the change of M
+// and of the imposed shape. Without them the order falls with the gain.
+#pragma once
+
+#include "eel_core/bending/balance.hpp"
+#include "eel_core/steppers/stepper.hpp"
+
+namespace eel_core {
+
+struct BentState {
+    State head{};
+    std::vector<double> momentum, x;  // of the coordinates
+};
+
+struct BentSettings {
+    BentLaw law;
+    std::vector<double> breakpoints;  // [s], ascending
+    StepBounds bounds;
+    double torque_floor = 0.0;  // [N m], below which torques count as none
+    bool ledger = true;
+    Vector3<double> current{};  // [m/s]
+};
+
+inline constexpr std::size_t bent_works = std::tuple_size_v<Powers> + 1;
+using BentPowers = std::array<double, bent_works>;  // [W]: `Powers`, and that of the dampers
+
+struct Ros34Pw2 {
+    static constexpr std::size_t stages = 4;
+    using Rows = std::array<std::array<double, stages>, stages>;
+    static constexpr double diagonal = 0.435866521508459;
+    static constexpr Rows alpha{{{}, {0.871733043016918}, {0.844570600153694, -0.112990642364842}, {0.0, 0.0, 1.0}}};
+    static constexpr Rows gamma{{{},
+                                 {-0.871733043016918},
+                                 {-0.903380570130441, 0.0541806723880953},
+                                 {0.242123807060953, -1.22325058390455, 0.545260255335102}}};
+    static constexpr std::array<double, stages> weight{0.242123807060953, -1.22325058390455, 1.5452602553351,
+                                                       0.435866521508459};
+    static constexpr std::array<double, stages> embedded{0.378109031458194, -0.0960422922124232, 0.5,
+                                                         0.217933260754230};
+    static constexpr double sum(const Rows& rows, std::size_t i)
+    {
+        return rows[i][0] + rows[i][1] + rows[i][2] + rows[i][3];
+    }
+};
+
+// A state with all that is known there.
+template <class M>
+struct BentPoint {
+    double time = 0.0;
+    BentState y;
+    State head_rate{};
+    std::vector<double> momentum_rate, rate, acceleration, drift, force;
+    std::vector<double> stiffness, damping, in_time;  // of the forces
+    Frame<M, double> head{};                          // axes of the head
+    Definite mass;
+    BentPowers powers{};
+};
+
+template <class M>
+class BentStepper {
+    using Tableau = Ros34Pw2;
+
+  public:
+    BentStepper(const Swimmer& swimmer, const Modes& modes) : swimmer_(&swimmer), modes_(&modes), body_(swimmer, modes)
+    {
+        const std::size_t c = modes.coordinates;
+        for (std::size_t i = 0; i < Tableau::stages; ++i)
+            step_x_[i].resize(c), step_p_[i].resize(c), step_u_[i].resize(c);
+        for (BentPoint<M>* point : {&before_, &here_})
+            point->in_time.resize(c), point->y.momentum.resize(c), point->y.x.resize(c);
+        trial_ = before_.y;
+    }
+
+    BentBody<M>& body() { return body_; }
+    const BentBody<M>& body() const { return body_; }
+    const Counts& counts() const { return counts_; }
+    double end_time() const { return here_.time; }
+    const BentPoint<M>& end() const { return here_; }
+
+    void forget(const State& y, double spare_steps)
+    {
+        scale_ = {}, torque_scale_ = 0.0, counts_ = {}, budget_ = spare_steps, proposed_ = 0.0;
+        scale_.include(y);
+    }
+    void take_over(const BentStepper& other)
+    {
+        scale_ = other.scale_, torque_scale_ = other.torque_scale_, counts_ = other.counts_, budget_ = other.budget_,
+        proposed_ = other.proposed_;
+    }
+
+    void begin(double time, const BentState& y, const BentPowers& works, double first_length)
+    {
+        here_.time = before_.time = time, here_.y = y, works_ = works, anew_ = true;
+        if (proposed_ == 0.0) proposed_ = first_length;
+    }
+
+    Status march(const BentSettings& settings, double until, Slice& slice)
+    {
+        const double tiny = 1e-12 * std::max(1.0, std::abs(until));
+        if (anew_ && !find_point(settings, here_)) return Status::singular;
+        while (end_time() < until - tiny) {
+            if (budget_ < 0.0) return Status::too_many_steps;
+            if (slice.used_up()) return Status::unfinished;
+            const std::int64_t first = counts_.evaluations;
+            const Status status = take_step(settings, tiny);
+            if (status != Status::marched) return status;
+            slice.spend(static_cast<std::size_t>(counts_.evaluations - first) * 2 * swimmer_->grid.nodes);
+        }
+        return Status::marched;
+    }
+
+    // Head, coordinates, their rates and the works at `time` [s] within the step.
+    void state_at(double time, State& head, std::vector<double>& x, std::vector<double>& rate, BentPowers& works) const
+    {
+        const double length = here_.time - before_.time;
+        if (std::abs(here_.time - time) <= 1e-12 * std::max(1.0, std::abs(time)) || length == 0.0) {
+            head = here_.y.head, x = here_.y.x, rate = here_.rate, works = works_;
+            return;
+        }
+        const double theta = std::clamp((time - before_.time) / length, 0.0, 1.0);
+        interpolate(theta, head, x, rate);
+        for (std::size_t k = 0; k < bent_works; ++k)
+            works[k] = works_before_[k] + length * work_until(theta, before_.powers[k], middle_[k], here_.powers[k]);
+    }
+
+  private:
+    // Integral up to theta of the parabola through powers at 0, 1/2 and 1.
+    static double work_until(double theta, double a, double b, double c)
+    {
+        const double slope = 4.0 * b - 3.0 * a - c, bend = 2.0 * (a - 2.0 * b + c);
+        return theta * (a + theta * (slope / 2.0 + theta * bend / 3.0));
+    }
+
+    void interpolate(double theta, State& head, std::vector<double>& x, std::vector<double>& rate) const
+    {
+        const double length = here_.time - before_.time, left = 1.0 - theta;
+        const double b1 = theta * theta * (3.0 - 2.0 * theta), r0 = length * theta * left * left,
+                     r1 = -length * theta * theta * left;
+        for (std::size_t k = 0; k < state_space; ++k)
+            head[k] = before_.y.head[k] + b1 * (here_.y.head[k] - before_.y.head[k]) + r0 * before_.head_rate[k] +
+                      r1 * here_.head_rate[k];
+        normalise(head);
+        std::vector<Jet> factor(6);
+        set_quintic(factor, 0, theta, length, 1.0), set_quintic(factor, 3, left, length, -1.0);
+        x.resize(modes_->coordinates), rate.resize(modes_->coordinates);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const double values[6] = {before_.y.x[i], before_.rate[i], before_.acceleration[i],
+                                      here_.y.x[i],   here_.rate[i],   here_.acceleration[i]};
+            x[i] = rate[i] = 0.0;
+            for (std::size_t k = 0; k < 6; ++k) x[i] += factor[k][0] * values[k], rate[i] += factor[k][1] * values[k];
+        }
+    }
+
+    static void normalise(State& y)
+    {
+        const double length = std::sqrt(square_of(y, 3, 7));
+        for (std::size_t k = 3; k < 7; ++k) y[k] /= length;
+    }
+
+    bool evaluate(const BentSettings& settings, double time, const BentState& y)
+    {
+        ++counts_.evaluations;
+        if (!body_.configure_at(settings.law, time, y.head, y.x.data())) return false;
+        body_.move_by_momenta(y.momentum.data(), y.x.data());
+        body_.find_rates(settings.law, settings.current, y.head);
+        return true;
+    }
+
+    BentPowers all_powers() const
+    {
+        const Powers powers = body_.powers();
+        BentPowers all;
+        std::copy(powers.begin(), powers.end(), all.begin());
+        all.back() = body_.forces.damping_power;
+        return all;
+    }
+
+    // Rates, accelerations and linear forces at a point whose time and state are known.
+    bool find_point(const BentSettings& settings, BentPoint<M>& point)
+    {
+        if (!evaluate(settings, point.time, point.y)) return false;
+        body_.find_accelerations_and_drift(settings.law);
+        point.head_rate = body_.head_rate, point.momentum_rate = body_.momentum_rate, point.rate = body_.rate;
+        point.acceleration = body_.acceleration, point.drift = body_.drift, point.head = body_.work.head;
+        point.force = body_.forces.total;
+        point.mass = body_.columns.mass;
+        linearise(*modes_, body_.reference, point.y.x.data(), point.rate.data(), point.stiffness, point.damping,
+                  point.in_time);
+        if (settings.ledger) point.powers = all_powers();
+        return true;
+    }
+
+    // Tries a step of `length` [s] into `trial_`; `error`: over the tolerance.
+    Status attempt(const BentSettings& settings, double length, double& error)
+    {
+        constexpr std::size_t head = M::freedoms;
+        const std::size_t c = modes_->coordinates, n = head + c;
+        const double g = Tableau::diagonal * length;
+        error = std::numeric_limits<double>::infinity();
+        Definite matrix = here_.mass;
+        for (std::size_t i = 0; i < c; ++i)
+            for (std::size_t j = 0; j <= i; ++j)
+                matrix.at(head + i, head + j) += g * (here_.damping[i * c + j] + g * here_.stiffness[i * c + j]);
+        if (matrix.factor() != Definite::definite) return Status::singular;
+        std::vector<double> right(n), bx(c), sum_x(c), sum_u(c);
+        for (std::size_t stage = 0; stage < Tableau::stages; ++stage) {
+            const State* head_rate = &here_.head_rate;
+            const std::vector<double>*momentum_rate = &here_.momentum_rate, *rate = &here_.rate;
+            if (stage > 0) {
+                trial_ = here_.y;
+                for (std::size_t j = 0; j < stage; ++j) add_step(Tableau::alpha[stage][j], j);
+                if (!evaluate(settings, here_.time + Tableau::sum(Tableau::alpha, stage) * length, trial_))
+                    return Status::singular;
+                head_rate = &body_.head_rate, momentum_rate = &body_.momentum_rate, rate = &body_.rate;
+            }
+            const double g_time = length * length * (Tableau::diagonal + Tableau::sum(Tableau::gamma, stage));
+            std::fill(sum_x.begin(), sum_x.end(), 0.0), std::fill(sum_u.begin(), sum_u.end(), 0.0);
+            for (std::size_t j = 0; j < stage; ++j)
+                for (std::size_t i = 0; i < c; ++i) {
+                    sum_x[i] += Tableau::gamma[stage][j] * step_x_[j][i];
+                    sum_u[i] += Tableau::gamma[stage][j] * step_u_[j][i];
+                }
+            const auto of_head = components_of(momentum_in_head(*head_rate, here_.head));
+            for (std::size_t i = 0; i < head; ++i) right[i] = length * of_head[i];
+            for (std::size_t i = 0; i < c; ++i) bx[i] = length * ((*rate)[i] + sum_u[i]) + g_time * here_.drift[i];
+            for (std::size_t i = 0; i < c; ++i) {
+                double stiff = 0.0, slow = here_.in_time[i];
+                for (std::size_t j = 0; j < c; ++j) {
+                    const double k = here_.stiffness[i * c + j], d = here_.damping[i * c + j];
+                    stiff += length * (k * sum_x[j] + d * sum_u[j]) + g * k * bx[j];
+                    slow -= d * here_.drift[j];
+                }
+                right[head + i] = length * (*momentum_rate)[i] + g_time * slow - stiff;
+            }
+            matrix.solve(right.data());
+            for (std::size_t k = 0; k < state_space; ++k) step_head_[stage][k] = length * (*head_rate)[k];
+            for (std::size_t i = 0; i < c; ++i) {
+                step_u_[stage][i] = right[head + i];
+                step_x_[stage][i] = bx[i] + g * right[head + i];
+                double sum = 0.0;
+                for (std::size_t j = 0; j < n; ++j) sum += here_.mass.at(head + i, j) * right[j];
+                step_p_[stage][i] = sum;
+            }
+        }
+        trial_ = here_.y;
+        for (std::size_t j = 0; j < Tableau::stages; ++j) add_step(Tableau::weight[j], j);
+        normalise(trial_.head);
+        double sum = 0.0;
+        for (const double value : trial_.head) sum += std::abs(value);
+        for (std::size_t i = 0; i < c; ++i) sum += std::abs(trial_.x[i]) + std::abs(trial_.momentum[i]);
+        if (!(sum < 1e300)) return Status::not_finite;  // NaN too
+        error = error_of(settings, length);
+        return Status::marched;
+    }
+
+    void add_step(double factor, std::size_t stage)
+    {
+        if (factor == 0.0) return;
+        add_scaled(factor, step_head_[stage], trial_.head);
+        for (std::size_t i = 0; i < trial_.x.size(); ++i) {
+            trial_.x[i] += factor * step_x_[stage][i];
+            trial_.momentum[i] += factor * step_p_[stage][i];
+        }
+    }
+
+    // The difference of the two results over the tolerance: of the head as elsewhere; of the coordinates as angles, and
+    // as the torques of springs and dampers.
+    double error_of(const BentSettings& settings, double length) const
+    {
+        const std::size_t c = modes_->coordinates;
+        std::array<double, Tableau::stages> weight;
+        for (std::size_t j = 0; j < weight.size(); ++j) weight[j] = Tableau::weight[j] - Tableau::embedded[j];
+        State defect{};
+        for (std::size_t j = 0; j < weight.size(); ++j) add_scaled(weight[j] / length, step_head_[j], defect);
+        std::vector<double> dx(c), du(c);
+        for (std::size_t j = 0; j < weight.size(); ++j)
+            for (std::size_t i = 0; i < c; ++i) dx[i] += weight[j] * step_x_[j][i], du[i] += weight[j] * step_u_[j][i];
+        double worst = 0.0;
+        const double scale = std::max(torque_scale_, settings.torque_floor);
+        for (std::size_t i = 0; i < c; ++i) {
+            double torque = 0.0;
+            for (std::size_t j = 0; j < c; ++j)
+                torque += here_.stiffness[i * c + j] * dx[j] + here_.damping[i * c + j] * du[j];
+            const double span = i < modes_->modes ? modes_->span[i] : 1.0;
+            worst = std::max({worst, span * std::abs(dx[i]), std::abs(torque) / (span * scale)});
+        }
+        return std::max(worst / settings.bounds.tolerance,
+                        error_by_tolerance(settings.bounds, scale_, trial_.head, defect, length));
+    }
+
+    Status take_step(const BentSettings& settings, double tiny)
+    {
+        // For the choice of lengths: a step by itself, of a length of its own or of a fixed one.
+        static const Method adaptive = Method::dormand_prince(), equal = Method::classical();
+        const bool fixed = std::isinf(settings.bounds.tolerance);
+        const Method& like = fixed ? equal : adaptive;
+        constexpr double order = 3.0;
+        const StepBounds& bounds = settings.bounds;
+        const double start = here_.time;
+        const Span span(settings.breakpoints, start + tiny);
+        double proposed = proposed_, length = time_step_size(like, bounds, proposed, start, span, tiny), error = 0.0;
+        torque_scale_ = std::max(torque_scale_, greatest_torque(here_.force));
+        for (;;) {
+            Status status = attempt(settings, length, error);
+            if (status == Status::marched && error <= 1.0) {
+                std::swap(before_, here_);
+                here_.time = std::abs(start + length - span.next) <= tiny ? span.next : start + length;
+                here_.y = trial_;
+                if (find_point(settings, here_)) break;
+                std::swap(before_, here_), status = Status::singular;
+            }
+            ++counts_.rejected, budget_ -= 1.0;
+            length *= status != Status::marched ? 0.1 : shrink_factor(error, order);
+            proposed = length;
+            if (fixed || length < bounds.smallest) {
+                return status == Status::marched ? Status::step_too_small : status;
+            }
+        }
+        const double grown = length * rounded_down(growth_factor(error, order));
+        proposed_ = std::min(bounds.longest, length >= proposed ? grown : std::max(proposed, grown));
+        anew_ = false, ++counts_.steps;
+        budget_ = std::min(bounds.spare_steps, budget_ + bounds.most_steps * length) - 1.0;
+        scale_.include(here_.y.head);
+        works_before_ = works_;
+        return settings.ledger ? add_works(settings) : Status::marched;
+    }
+
+    double greatest_torque(const std::vector<double>& force) const
+    {
+        double greatest = 0.0;
+        for (std::size_t i = 0; i < force.size(); ++i)
+            greatest = std::max(greatest, std::abs(force[i]) / (i < modes_->modes ? modes_->span[i] : 1.0));
+        return greatest;
+    }
+
+    // By Simpson's rule.
+    Status add_works(const BentSettings& settings)
+    {
+        const double length = here_.time - before_.time, time = before_.time + 0.5 * length;
+        State head{};
+        std::vector<double> x, rate;
+        interpolate(0.5, head, x, rate);
+        ++counts_.evaluations;
+        if (!body_.configure_at(settings.law, time, head, x.data())) return Status::singular;
+        body_.move_by_rates(rate.data(), x.data());
+        body_.find_rates(settings.law, settings.current, head);
+        body_.find_accelerations_and_drift(settings.law);
+        middle_ = all_powers();
+        for (std::size_t k = 0; k < bent_works; ++k)
+            works_[k] += length * work_until(1.0, before_.powers[k], middle_[k], here_.powers[k]);
+        return Status::marched;
+    }
+
+    const Swimmer* swimmer_;
+    const Modes* modes_;
+    BentBody<M> body_;
+    BentPoint<M> before_, here_;  // start and end of the last step
+    BentState trial_;
+    std::array<State, Tableau::stages> step_head_{};
+    std::array<std::vector<double>, Tableau::stages> step_x_, step_p_, step_u_;
+    BentPowers works_{}, works_before_{}, middle_{};  // at the end and the start of the step; powers at its middle
+    MomentumScale scale_;
+    double torque_scale_ = 0.0, proposed_ = 0.0, budget_ = 0.0;
+    Counts counts_;
+    bool anew_ = true;
+};
+
+}  // namespace eel_core

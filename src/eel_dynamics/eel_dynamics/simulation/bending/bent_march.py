@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The march of a swimmer whose joints, tails and muscles bend by themselves: a robot."""
+
+from typing import Any
+
+import numpy as np
+
+import eel_core
+from eel_dynamics.accuracy.error_estimate import TORQUE_FLOOR
+from eel_dynamics.accuracy.grid_settings import GridSettings
+from eel_dynamics.simulation.bending.joint_motion import JointMotion
+from eel_dynamics.simulation.bending.modes_on_grid import RobotTables
+from eel_dynamics.simulation.discretisation import Discretisation, discretise
+from eel_dynamics.simulation.march import March
+from eel_dynamics.simulation.observations import Observations, Snapshot
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
+
+
+class BentMarch(March):
+    """A `March` of a robot. Its steps are those of eel_core/bending/rosenbrock.hpp, at any `Accuracy.method`."""
+
+    def __init__(self, *arguments):
+        self._rows: np.ndarray | None = None
+        super().__init__(*arguments)
+
+    def _discretise(self, settings: GridSettings) -> Discretisation:
+        setup, table = self.setup, self.setup.modes
+        assert table is not None
+        here = discretise(setup.body, setup.scene, settings, setup.x.tobytes(), table.points.tobytes())
+        self.robot = RobotTables.of(table, here.grid, here.tabulation)
+        return here
+
+    def _new_core(self) -> Any:
+        return eel_core.BentMarch(self.discretisation.swimmer, self.robot.modes, bool(self.setup.scene.planar))
+
+    def _start(self, *state) -> float:
+        rest, factors = self.robot.on_grid.rest.copy(), np.array(self.law_on_grid.factors(0.0))
+        rate = np.zeros(len(rest))
+        driven = zip(self.robot.on_grid.servos, self.robot.on_grid.servo_modes, self._reference, strict=True)
+        for (coordinate, *_), mode, row in driven:
+            rest[[coordinate, mode]], rate[[coordinate, mode]] = factors[:2, : len(row)] @ row
+        return float(self.core.start(*state, rest, rate))
+
+    def _step_bounds(self) -> eel_core.StepBounds:
+        bounds = super()._step_bounds()
+        return with_tolerance(bounds, np.inf) if self.setup.settings.method == "classical" else bounds
+
+    def _change_core(self) -> None:
+        self.core.change(self.discretisation.swimmer, self.robot.modes, bool(self.setup.scene.planar))
+
+    def _hand_over_law(self, smoothly: bool = False):
+        setup = self.setup
+        self.law_on_grid, self._bounds = self.follower.law_on_grid, self._step_bounds()
+        bent, self._reference = self.robot.law(self.follower, self.discretisation.tabulation)
+        scale = min(self.follower.time_scale, self._time_scale, 1.0)
+        floor = TORQUE_FLOOR * self.discretisation.mass * (setup.body.length / scale) ** 2
+        self.core.follow(
+            bent,
+            self._reference,
+            self.robot.drive,
+            self.robot.push,
+            self.follower.breakpoints,
+            self._bounds,
+            floor,
+            bool(setup.scene.ledger),
+            setup.current,
+            smoothly,
+        )
+
+    def record(self, times: np.ndarray, *arguments) -> tuple:
+        """As `March.record`; `joints` has the coordinates."""
+        self._rows = self._empty(len(times))
+        return super().record(times, *arguments)
+
+    def _record(self, times: np.ndarray, first: int, out: Observations, works: np.ndarray, *rest) -> tuple[int, int]:
+        return self.core.record(times, first, out.whole, works, self._rows, *rest)
+
+    def _observe(self, snapshot: Snapshot, wrench: bool, load: bool) -> bool:
+        row = self._empty(1)
+        snapshot.keep_joints(self._motion(row))
+        return bool(self.core.observe(snapshot.whole, row, wrench, load))
+
+    @property
+    def joints(self) -> JointMotion | None:
+        """The motion of the joints at the samples of the last `record`."""
+        return None if self._rows is None else self._motion(self._rows)
+
+    def _empty(self, samples: int) -> np.ndarray:
+        return np.zeros((samples, max(end for _, end in self.core.row.values())))
+
+    def _motion(self, rows: np.ndarray) -> JointMotion:
+        return JointMotion(self.robot.on_grid, self.core.row, rows)
+
+
+def with_tolerance(bounds: eel_core.StepBounds, tolerance: float) -> eel_core.StepBounds:
+    """The same `bounds` with another tolerance; infinite: steps of one length."""
+    names = ["longest", "smallest", "length", "momentum_floor", "part_of_span", "most_steps", "spare_steps"]
+    return eel_core.StepBounds(tolerance=tolerance, **{name: getattr(bounds, name) for name in names})
+
+
+def march_of(setup: SimulationSetup) -> type[March]:
+    """The kind of march that a `setup` needs."""
+    return March if setup.robot is None else BentMarch

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bodies that bend by themselves: the march of a robot against what must hold for it."""
+
+from copy import deepcopy
+
+import numpy as np
+import pytest
+from eel_dynamics.robot.actuators import Servo
+from eel_dynamics.robot.joint import Joint
+from eel_dynamics.robot.robot import Robot
+
+from eel_dynamics import Accuracy, Scene, Simulation, Uniform, simulate
+from eel_gaits import Law, Term, falling, straight
+
+READY = "eight_servos", "series_elastic", "passive_tail"
+SMOOTH = Scene(friction="laminar")
+
+
+def chain(**servo) -> Robot:
+    """Eight joints with such servos."""
+    return Robot([Joint(0.1 + 0.12 * k, actuator=Servo(**servo)) for k in range(8)])
+
+
+def greatest(values) -> float:
+    return float(np.max(np.abs(values)))
+
+
+@pytest.mark.parametrize("name", READY)
+def test_energy_is_kept_to_the_accuracy_of_the_run(name):
+    for accuracy, share in (("draft", 3e-4), (1e-3, 1e-4), ("standard", 1e-5)):
+        run = simulate(straight(), 2.0, robot=Robot.named(name), accuracy=accuracy, estimate=False)
+        assert greatest(run.energy.residual) < share * greatest(run.energy.actuator_work)
+        assert greatest(run.closure_torque) < 1e-12 and greatest(run.closure_force) < 1e-12
+
+
+def test_internal_torque_on_each_joint_is_that_of_spring_and_motor():
+    """integral B . C dX = - motor torque + armature times acceleration: section 2 of the derivation, at each joint."""
+    x = 0.1 + 0.12 * np.arange(8)
+    points, weights = np.polynomial.legendre.leggauss(6)
+    stations = (x[:, None] + 0.03 * points).ravel()
+    simulation = Simulation(robot=Robot.named("eight_servos"), law=straight(), stations=stations, accuracy="fine")
+    simulation.advance(1.3)
+    now = simulation.observe(load=False)
+    mean = 0.5 * (now.torque[:, 2].reshape(8, 6) @ weights)
+    row = np.zeros((1, max(end for _, end in simulation._march.core.row.values())))
+    assert simulation._march.core.observe(now.whole, row, True, False)
+    first, last = simulation._march.core.row["moment"]
+    assert greatest(mean - row[0, first:last]) < 1e-7 * greatest(mean)
+    assert greatest(mean + now.joints["joint_torque"] * -1.0) > 0.01  # the rotors' inertia is no small part
+
+
+@pytest.mark.parametrize(
+    ("kd", "least", "greatest_errors"), [(0.02, 2.7, (4e-5, 8e-6, 1e-6)), (1.0, 2.0, (2.3e-4, 2.7e-5, 3.5e-6))]
+)
+def test_time_method_is_of_third_order(kd, least, greatest_errors):
+    """At kd = 1 the errors stay below those of bending's derivation at 10, 5, 2.5 ms; the order rises to 3."""
+    robot = chain(kp=20.0, kd=kd)
+    reference = _with_steps(robot, 2.5e-3 / 8)
+    errors = [greatest(_with_steps(robot, step) - reference) for step in (1e-2, 5e-3, 2.5e-3)]
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert all(error < bound for error, bound in zip(errors, greatest_errors, strict=True)), errors
+    assert least < orders[-1] < 3.5, orders
+
+
+def _with_steps(robot: Robot, step: float) -> np.ndarray:
+    accuracy = Accuracy(name="steps", resolution=16.0, step=step)
+    scene = Scene(resistive=False, ledger=False)
+    run = simulate(straight(), 2.0, robot=robot, scene=scene, accuracy=accuracy, estimate=False, sample_period=1.0)
+    return run.position[-1]
+
+
+def test_stiffer_servos_follow_the_law_more_closely():
+    """The head's error falls with 1/kp, as where the law is imposed between the joints."""
+    ends = [
+        simulate(straight(), 2.0, robot=chain(kp=kp, kd=0.1), scene=SMOOTH, accuracy=1e-4, estimate=False)
+        for kp in (50.0, 200.0, 800.0, 12800.0)
+    ]
+    errors = [greatest(run.position[-1] - ends[-1].position[-1]) for run in ends[:-1]]
+    assert 3.2 < errors[0] / errors[1] < 4.8 and 3.2 < errors[1] / errors[2] < 4.8, errors
+
+
+@pytest.mark.parametrize("name", READY)
+def test_robot_at_rest_stays_at_rest_exactly(name):
+    run = simulate(Law(name="none"), 1.0, robot=Robot.named(name), estimate=False)
+    assert (
+        not run.position.any() and not run.twist.any() and not run.joint_angle.any() and not run.energy.residual.any()
+    )
+
+
+def test_planar_scene_gives_what_space_gives():
+    plane, space = (
+        simulate(straight(), 2.0, robot=Robot.named("series_elastic"), scene=Scene(planar=planar), estimate=False)
+        for planar in (True, False)
+    )
+    assert greatest(plane.position - space.position) < 1e-9 and greatest(plane.torque - space.torque) < 1e-6
+    assert greatest(plane.motor_angle - space.motor_angle) < 1e-8
+
+
+def test_copy_goes_on_to_the_last_bit():
+    robot, law = Robot.named("eight_servos"), straight()
+    one = Simulation(robot=robot, law=law)
+    one.advance(0.777)
+    other = deepcopy(one)
+    for simulation in (one, other):
+        simulation.advance(1.5)
+    assert one.state.tobytes() == other.state.tobytes()
+    assert one.observe().joints["joint_torque"].tobytes() == other.observe().joints["joint_torque"].tobytes()
+
+
+def test_pitch_joints_dive():
+    robot = Robot(
+        [
+            Joint(0.1 + 0.1 * k, axis=axis, name=f"{axis}_{k}", actuator=Servo(kp=50.0, kd=0.05))
+            for k in range(8)
+            for axis in ("yaw", "pitch")
+        ]
+    )
+    run = simulate(falling(), 4.0, robot=robot, accuracy=1e-3, estimate=False)
+    imposed = simulate(falling(), 4.0, accuracy=1e-3, estimate=False)
+    assert greatest(run.position[-1] - imposed.position[-1]) < 0.15 * imposed.path_length
+    assert run.position[-1, 2] < -0.05
+    assert greatest(run.energy.residual) < 1e-4
+
+
+def test_robot_in_moving_water_is_refused_by_name():
+    with pytest.raises(ValueError, match=r"robot .* flow"):
+        simulate(straight(), 1.0, robot=Robot.named("eight_servos"), flow=Uniform((0.1, 0.0, 0.0)))
+
+
+def test_law_of_a_robot_may_have_no_pitch_joints():
+    """In an axis without motors the law is imposed."""
+    law = Law(Term(axis="pitch", amplitude=(0.3,), period=0.0, phase=0.5 * np.pi), *straight().terms, name="both")
+    run = simulate(law, 1.0, robot=Robot.named("eight_servos"), estimate=False)
+    assert np.allclose(run.curvature[-1, :, 1], 0.3)
