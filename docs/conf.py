@@ -2,6 +2,7 @@
 """The site of these pages, built by Sphinx: `make docs` leaves it in out/docs."""
 
 import re
+from importlib.metadata import files
 from pathlib import Path
 
 project = "Eel simulator"
@@ -11,12 +12,14 @@ extensions = [
     "myst_nb",  # Markdown, and the notebook as it stands
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
+    "sphinx.ext.mathjax",
 ]
 root_doc = "index"
-exclude_patterns = ["requirements.*", "examples"]
+exclude_patterns = ["requirements.*", "examples", "site"]
 nb_execution_mode = "off"  # `make notebook` runs it
 nb_merge_streams = True
 myst_heading_anchors = 3
+myst_enable_extensions = ["dollarmath"]
 napoleon_use_ivar = True
 default_role = "code"
 autodoc_member_order = "bysource"
@@ -25,6 +28,11 @@ html_theme = "furo"
 html_title = project
 html_copy_source = False
 html_show_sphinx = False
+mathjax_path = "tex-svg.js"  # shipped by the package: one file with its fonts, nothing from the network
+(mathjax,) = (str(path.locate()) for path in files("sphinx-mathjax-offline") or () if path.name == mathjax_path)
+html_static_path = ["site", mathjax]
+html_css_files, html_js_files = ["site.css"], ["tables.js"]
+html_search_scorer = str(Path(__file__).with_name("site") / "search.js")
 LINK_OUT = re.compile(r"\[([^\]]+)\]\((\.\./[^)#]+)\)")
 
 

@@ -150,7 +150,8 @@ class Flow(_Shared):
         ("spline", knots (n,), coefficients (n - 1, 4, 3) of cubics from the constant on); ("shear", velocity (3,) far
         to one side, unit normal (3,) of the layer, place of its middle along that, width, whether it is linear);
         ("vortices", rows (n, 3) of x, y and circulation, radius of the cores, drift (3,)); ("wave", amplitude,
-        wavenumber, angular frequency, height of the surface, phase, horizontal unit direction (3,)); ("function",
+        wavenumber, angular frequency, height of the surface, phase, horizontal unit direction (3,)); ("grid",
+        axes t, x, y and z, velocities (t, x, y, z, 3)); ("function",
         function(time, rows (n, 18))), which fills in rows as those of `at`. `ValueError` for another kind."""
 
     def at(self, time: float, rows: Buffer) -> None:
@@ -329,6 +330,8 @@ class BentMarch:
     @property
     def works(self) -> list[float]: ...
     @property
+    def outside(self) -> None: ...
+    @property
     def row(self) -> dict[str, tuple[int, int]]:
         """Where the numbers of an instant lie in a row, from and up to: x, rate, acceleration (C,) each; moment (M,),
         the internal moment on each mode; torque (S,) of the servos; pushing (C,) of muscles and given torques; elastic
@@ -414,6 +417,9 @@ class March:
     @property
     def works(self) -> list[float]:
         """(5,) [J] of actuators, wake, nose, drag and flow since the start."""
+    @property
+    def outside(self) -> tuple[float, float, float, float] | None:
+        """Time [s] and place [m], world, outside the grid of the flow, where the last evaluation was there."""
     @property
     def counts(self) -> tuple[int, int, int]:
         """Steps, rejected steps and evaluations of the head's dynamics so far."""

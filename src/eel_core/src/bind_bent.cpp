@@ -298,6 +298,7 @@ void bind_bent_marches(py::module_& module)
                                [](const PyBentMarch& march) {
                                    return list_of(std::span(march.march().works()).first(std::tuple_size_v<Works>));
                                })
+        .def_property_readonly("outside", [](const PyBentMarch&) { return py::none(); })
         .def_property_readonly("row", &row_layout)
         .def_property_readonly("counts", [](const PyBentMarch& march) {
             const Counts counts = march.march().counts();

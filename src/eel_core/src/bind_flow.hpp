@@ -63,6 +63,37 @@ inline VortexFlow vortices_from(const py::object& rows, double core, const py::o
     return flow;
 }
 
+// Axes t, x, y and z, and the velocities (t, x, y, z, 3) at their points.
+inline GriddedFlow grid_from(const py::tuple& axes, const py::object& velocity)
+{
+    GriddedFlow flow;
+    std::array<std::size_t, 4> size{};
+    for (std::size_t k = 0; k < size.size(); ++k) {
+        const Numbers points(axes[k], "axis");
+        size[k] = points.size();
+        auto& own = flow.axes[k].points;
+        own.assign(points.data(), points.data() + size[k]);
+        if (own.empty() || !std::ranges::is_sorted(own, std::less_equal())) throw py::value_error("axes must rise");
+        if (k != 1 && k != 2) continue;
+        std::ranges::reverse(own);
+        for (double& point : own) point = 0.0 - point;
+    }
+    const auto [times, columns, rows, layers] = size;
+    const Numbers from(velocity, "velocity");
+    from.check_size(3 * times * columns * rows * layers, "velocity");
+    std::vector<GriddedFlow::Point> points;
+    points.reserve(from.size() / 3);
+    for (std::size_t t = 0; t < times; ++t)
+        for (std::size_t x = columns; x-- > 0;)
+            for (std::size_t y = rows; y-- > 0;)
+                for (std::size_t z = 0; z < layers; ++z) {
+                    const double* const v = from.data() + 3 * (((t * columns + x) * rows + y) * layers + z);
+                    points.push_back({0.0 - v[0], 0.0 - v[1], v[2], 0.0});
+                }
+    flow.points = std::make_shared<const std::vector<GriddedFlow::Point>>(std::move(points));
+    return flow;
+}
+
 inline std::shared_ptr<Flow> flow_from(const py::list& sources)
 {
     auto flow = std::make_shared<Flow>();
@@ -86,6 +117,8 @@ inline std::shared_ptr<Flow> flow_from(const py::list& sources)
         } else if (kind == "wave") {
             flow->sources.emplace_back(
                 WaveFlow{number(1), number(2), number(3), number(4), number(5), vector(6, "direction")});
+        } else if (kind == "grid") {
+            flow->sources.emplace_back(grid_from(source[1], source[2]));
         } else if (kind == "function") {
             flow->sources.emplace_back(function_from(source[1]));
         } else {

@@ -230,6 +230,13 @@ class PyMarch {
     double time() const { return march_.time(); }
     py::list state() const { return list_of_state(march_.state()); }
     py::list works() const { return list_of(march_.works()); }
+    py::object outside() const
+    {
+        const auto found = march_.outside();
+        if (!found) return py::none();
+        const auto [time, x, y, z] = *found;
+        return py::make_tuple(time, 0.0 - x, 0.0 - y, z);
+    }
     py::tuple counts() const
     {
         const Counts counts = march_.counts();
@@ -414,6 +421,7 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
         .def_property_readonly("time", &PyMarch::time)
         .def_property_readonly("state", &PyMarch::state)
         .def_property_readonly("works", &PyMarch::works)
+        .def_property_readonly("outside", &PyMarch::outside)
         .def_property_readonly("counts", &PyMarch::counts);
 
     bind_sampled_marches(module);

@@ -12,6 +12,7 @@ from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.settling import Unsettled
 from eel_dynamics.flow.flow import Flow, FlowSample
 from eel_dynamics.flow.functions import FlowField
+from eel_dynamics.flow.gridded import GriddedFlow
 from eel_dynamics.flow.sources import Gust, Shear, Uniform, Vortex, VortexStreet, Wave
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
@@ -21,6 +22,8 @@ from eel_dynamics.robot.joint import Joint
 from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.batch import Batch, simulate_batch
 from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.runs.scene_file import load_scene, save_scene
+from eel_dynamics.runs.swim import Swim
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.prescribed import HydrodynamicWrench, hydrodynamic_wrench
@@ -35,6 +38,7 @@ __all__ = [
     "Flow",
     "FlowField",
     "FlowSample",
+    "GriddedFlow",
     "Gust",
     "HydrodynamicWrench",
     "Joint",
@@ -48,6 +52,7 @@ __all__ = [
     "Simulation",
     "SimulationStopped",
     "Snapshot",
+    "Swim",
     "Torque",
     "Uniform",
     "Unsettled",
@@ -55,6 +60,8 @@ __all__ = [
     "VortexStreet",
     "Wave",
     "hydrodynamic_wrench",
+    "load_scene",
+    "save_scene",
     "simulate",
     "simulate_batch",
 ]
@@ -66,11 +73,13 @@ STUDIES = (
     "MeasuredPath",
     "MeasuredSpeed",
     "PeriodicLinearisation",
+    "Terms",
     "gradient",
     "identify",
     "optimise",
     "periodic_linearisation",
     "sweep",
+    "terms",
 )
 
 

@@ -43,5 +43,5 @@ def test_out_of_memory_is_one_line(monkeypatch, capsys):
     def swum(*_, **__):
         raise MemoryError("72 GiB")
 
-    monkeypatch.setattr(command, "simulate", swum)
+    monkeypatch.setattr("eel_dynamics.runs.swim.simulate", swum)
     assert said_of("straight", capsys) == "eel simulate: it does not fit into memory: 72 GiB\n"

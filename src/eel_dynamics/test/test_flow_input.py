@@ -14,6 +14,7 @@ from eel_dynamics import (
     Scene,
     Shear,
     Simulation,
+    SimulationStopped,
     Uniform,
     Vortex,
     VortexStreet,
@@ -101,6 +102,12 @@ def test_a_march_stands_where_it_was_after_a_function_has_failed():
     through = Simulation(law=straight(), flow=FlowField(function), accuracy=1e-4)
     through.advance(1.0)
     assert np.allclose(simulation.state, through.state, atol=1e-5)
+
+
+def test_a_swimmer_that_a_wave_throws_out_of_the_water_is_told_so():
+    wave = Wave(wavelength=1.5, surface=0.3)
+    with pytest.raises(SimulationStopped, match="the head is above the surface of the flow, z"):
+        simulate(straight(), 8.0, flow=wave, **QUICK)
 
 
 def test_a_run_is_saved_with_its_flow(tmp_path):

@@ -11,8 +11,9 @@ from eel_dynamics.analysis.model_limits import ModelLimits, cross_axes, ledger_t
 from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.term import Term
+from random_scenes import pointed
 
-from eel_dynamics import Body, Scene, Simulation, simulate
+from eel_dynamics import Body, FlowField, Scene, Shear, Simulation, Vortex, simulate
 from eel_gaits import backward, falling, gait, still, straight
 
 ROBOT = Body.boyer2010()
@@ -121,6 +122,31 @@ def test_the_tail_leads_in_a_body_that_starts_backwards():
     assert any("the tail leads" in text for text in run.warnings)
     assert not swum(still(), 1.0, twist=(0.0, 0.0, 0.0, 0.5, 0.1, 0.0)).warnings
     assert any("the tail leads" in text for text in simulate(backward(), 6.0).warnings)
+
+
+@pytest.mark.parametrize(
+    ("flow", "found"),
+    [
+        (Vortex(core=0.2, centre=(-0.5, 0.0, 0.0)), True),
+        (Vortex(core=2.0), False),
+        (Shear(width=0.2), False),
+        (Shear(width=0.05), True),
+    ],
+)
+def test_a_flow_is_held_against_the_size_of_the_sections(flow, found):
+    run = swum(still(), 0.5, flow=flow)
+    assert any("flow is too fine for the body" in text for text in run.warnings) == found
+    assert run.in_axes("paper").warnings == run.warnings
+
+
+def test_the_change_of_a_gradient_is_that_of_the_formula():
+    """u = (0, q y^2 / 2, 0): across a section of half-width b at y = d it changes by 2 b q, of q (d + b)."""
+    body, far = pointed(0.04, 0.01), 0.1
+    flow = FlowField(lambda x, t: 0.05 * (x[:, 1:2] ** 2) * [0.0, 1.0, 0.0])
+    limits = ModelLimits(body, Scene(), np.array([0.25, 0.5, 0.75]))
+    backbone = np.array([[[-0.25, far, 0.0], [-0.5, far, 0.0], [-0.75, far, 0.0]]])
+    text = limits.of_flow(flow, np.array([1.5]), backbone, np.tile([0.0, 0.0, 0.0, 1.0], (1, 3, 1)))
+    assert f"changes by {0.08 / 0.14:.2g} of its greatest across the section at X = 0.5 m, t = 1.5 s" in text
 
 
 def test_warnings_stand_in_the_summary():

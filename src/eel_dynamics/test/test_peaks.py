@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from eel_dynamics.analysis.peaks import peak_along, peaks
 
-from eel_dynamics import Scene, simulate
+from eel_dynamics import Scene, Wave, simulate
 from eel_gaits import gait
 
 
@@ -69,6 +69,16 @@ def test_splines_through_the_messages_of_a_node_give_the_same_peak():
     assert from_messages[0] == pytest.approx(run.greatest_torque()[0], rel=run.error_estimate.torque)
     recorded = replace(run, steps=0)  # as a run from a bag, whose physics is not told
     assert recorded.greatest_torque() == pytest.approx(from_messages)
+
+
+def test_the_greatest_torque_in_waves_is_that_of_a_swim_in_the_same_waves():
+    """At the time of the peak the water moves as it did there in the run. In still water the peak is 8 % elsewhere."""
+    run = simulate(gait("straight"), 3.0, flow=Wave(amplitude=0.2, wavelength=2.0))
+    size, _, time = run.greatest_torque()
+    near = simulate(gait("straight"), 3.0, flow=run.flow, sample_period=5e-4, estimate=False)
+    torque = np.linalg.norm(near.torque, axis=2).max(axis=1)
+    assert size == pytest.approx(torque.max(), rel=3e-4)  # of 51 stations, none need lie at the peak
+    assert time == pytest.approx(near.time[np.argmax(torque)], abs=1e-3)
 
 
 def test_a_run_of_one_sample_has_its_torque():

@@ -45,8 +45,8 @@ class SwimmerEnv(Task):
     Args:
         body, scene, accuracy: as of `Simulation`.
         action: a `LawAction` or a `KnotAction`; by default that of the task.
-        render_mode: "rgb_array": `render` returns a picture of the present, from above and from the side. "rerun": each
-            episode is written to the folder `recordings`, as the visualiser would show it.
+        render_mode: by "rgb_array" `render` returns a picture of the present, from above and from the side; by "rerun"
+            each episode is written to the folder `recordings`, as the visualiser would show it.
         swimmers, threads: N swimmers side by side, and the threads that march them: for `ThreadedVectorEnv`.
         numbers: those of the task, see `Numbers`.
     """

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a task defines: its numbers, what the policy sees, reward and end; and the state that it does so from."""
 
+import inspect
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar, NamedTuple
 
@@ -156,7 +157,7 @@ def described_task(task: type[Task]) -> str:
     """The docstring of a task, with what it observes and its numbers."""
     seen = "\n".join(f"    {each.name} [{each.unit or '1'}], at most {each.bound:g}" for each in task.observed)
     observed = f"Observed, before the state of the action:\n{seen}"
-    text = (task.__doc__ or "A task.").rstrip()
+    text = inspect.cleandoc(task.__doc__ or "A task.")
     return f"{text}\n\n{observed}\n\nNumbers:\n{described_fields(task.Numbers)}\n"
 
 

@@ -12,6 +12,8 @@ from eel_studies.identification.measurements import MeasuredPath as MeasuredPath
 from eel_studies.identification.measurements import MeasuredSpeed as MeasuredSpeed
 from eel_studies.optimisation.front import Front as Front
 from eel_studies.optimisation.optimise import optimise as optimise
+from eel_studies.scene_terms.study import Terms as Terms
+from eel_studies.scene_terms.study import terms as terms
 from eel_studies.steering.linearisation import PeriodicLinearisation as PeriodicLinearisation
 from eel_studies.steering.linearisation import periodic_linearisation as periodic_linearisation
 from eel_studies.sweeps.sweep import sweep as sweep

@@ -26,7 +26,8 @@ from eel_dynamics.model.body import NUMBERS, Body, checked_body
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import Batch, simulate_batch
-from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.swim import Swim
 from eel_gaits.gaits.registry import find
 from eel_gaits.laws.law import Law
 
@@ -38,31 +39,6 @@ Stations = int | np.ndarray
 Progress = Callable[[int, int], object] | bool | None  # as in `sweep`
 POSITIONS = ("position_x", "position_y", "position_z")
 VELOCITIES = ("omega_x", "omega_y", "omega_z", "v_x", "v_y", "v_z")
-AT_REST = InitialState(np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), np.zeros(6))
-
-
-class Point(NamedTuple):
-    """One run of a study."""
-
-    law: Any  # Law; None in what the points of a study share
-    body: Body
-    scene: Scene
-    accuracy: Accuracy
-    start: InitialState = AT_REST
-
-    def swim(self, duration: float, **how: Any) -> Run:
-        """The run of `duration` [s]. how: further arguments of `simulate`. `SimulationStopped`: it cannot go on."""
-        return simulate(
-            self.law,
-            duration,
-            **how,
-            body=self.body,
-            scene=self.scene,
-            accuracy=self.accuracy,
-            position=self.start.position,
-            orientation=self.start.orientation,
-            twist=self.start.twist,
-        )
 
 
 class SwimSettings(NamedTuple):
@@ -81,7 +57,7 @@ class SwimSettings(NamedTuple):
 
 
 def batch_of_points(
-    points: list[Point],
+    points: list[Swim],
     how: SwimSettings,
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
@@ -98,6 +74,7 @@ def batch_of_points(
         positions=np.array([point.start.position for point in points]),
         orientations=np.array([point.start.orientation for point in points]),
         twists=np.array([point.start.twist for point in points]),
+        flows=[point.flow for point in points],
         estimate=how.estimate,
         threads=threads,
         progress=progress,
@@ -105,14 +82,14 @@ def batch_of_points(
     )
 
 
-def base_point(body: Body | None, scene: Scene | None, accuracy: Accuracy, friction: str = "printed") -> Point:
+def base_point(body: Body | None, scene: Scene | None, accuracy: Accuracy, friction: str = "printed") -> Swim:
     """What the points of a study share. friction: of the default scene. `ValueError` names what does not fit."""
     scene = Scene(friction=friction) if scene is None else checked_instance("scene", scene, Scene)
-    return Point(None, checked_body(body), scene, accuracy)
+    return Swim(None, checked_body(body), scene, accuracy)
 
 
-def point_at(values: Numbers, gait: Gait, numbers: Numbers, base: Point) -> Point:
-    """The point of these `values` by name; all else is as in `numbers`, by the same names, and in `base`.
+def point_at(values: Numbers, gait: Gait, numbers: Numbers, base: Swim) -> Swim:
+    """The swim of these `values` by name; all else is as in `numbers`, by the same names, and in `base`.
 
     gait: its name, or a function of numbers that returns a law. `ValueError` tells the point and what does not fit.
     """
@@ -143,7 +120,7 @@ def _named(value: object) -> bool:
     return isinstance(value, (Body, Accuracy))
 
 
-def _point(values: Numbers, gait: Gait, base: Point) -> Point:
+def _point(values: Numbers, gait: Gait, base: Swim) -> Swim:
     body, accuracy = base.body, base.accuracy
     own: dict[str, Any] = {}
     groups: dict[str, dict[str, Any]] = {"scene": {}, "body": {}, "initial": {}}
@@ -161,7 +138,8 @@ def _point(values: Numbers, gait: Gait, base: Point) -> Point:
     _check_names("body", groups["body"], NUMBERS)
     law = (find(gait) if isinstance(gait, str) else gait)(**own)
     body = body.changed(**groups["body"]) if groups["body"] else body
-    return Point(law, body, replace(base.scene, **groups["scene"]), accuracy, _start(base.start, groups["initial"]))
+    scene, start = replace(base.scene, **groups["scene"]), _start(base.start, groups["initial"])
+    return base._replace(law=law, body=body, scene=scene, accuracy=accuracy, start=start)
 
 
 def _start(start: InitialState, changes: Numbers) -> InitialState:

@@ -6,9 +6,10 @@ import warnings
 import numpy as np
 import pytest
 import scipy.optimize
+from eel_dynamics.runs.swim import Swim
 from eel_studies.gradients.fixed_discretisation import common_step, on_one_grid, step_of
 from eel_studies.gradients.gradient import share_across_jump
-from eel_studies.points import Point, point_at
+from eel_studies.points import point_at
 
 from eel_dynamics import Accuracy, Body, Scene, SimulationStopped, simulate
 from eel_gaits import falling, sampled, straight
@@ -61,7 +62,7 @@ def test_derivatives_that_are_known_exactly():
 
 
 def test_neighbouring_swims_share_grid_and_steps():
-    base = Point(None, Body.boyer2010(), SMOOTH, Accuracy.of("1e-3, fixed steps").in_scene(SMOOTH))
+    base = Swim(None, Body.boyer2010(), SMOOTH, Accuracy.of("1e-3, fixed steps").in_scene(SMOOTH))
     values = [{"period": 1.0, "wavelength": 0.5}] + [
         {"period": 1.0 + a, "wavelength": 0.5 + b} for a, b in ((1e-4, 0), (-1e-4, 0), (0, 1e-4), (0, -1e-4))
     ]

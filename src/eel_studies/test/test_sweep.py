@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 from eel_base.wording import shown
 from eel_dynamics.analysis.measures import measures_of
-from eel_studies.points import Point, SwimSettings
+from eel_dynamics.runs.swim import Swim
+from eel_studies.points import SwimSettings
 from eel_studies.sweeps import command as sweep_command
 from eel_studies.sweeps.command import main
 from eel_studies.sweeps.sweep_key import key_of
@@ -228,7 +229,7 @@ def test_the_key_changes_with_whatever_the_results_depend_on():
 
     def key(measure=measures_of, body=bodies[0]):
         how = SwimSettings(1.0, 0.1, 11, measure)
-        return key_of([Point(straight(), body, Scene(), Accuracy.of("draft"))], how)
+        return key_of([Swim(straight(), body, Scene(), Accuracy.of("draft"))], how)
 
     keys = [key(body=body) for body in bodies]
     keys += [key(measure) for measure in (measure_of(1.0), measure_of(2.0), lambda run: {"far": 1.0})]
@@ -243,9 +244,10 @@ def test_the_key_is_the_same_in_another_process(tmp_path):
     script = tmp_path / "script.py"
     script.write_text(
         "from eel_dynamics import Accuracy, Body, Scene\nfrom eel_studies.sweeps.sweep_key import key_of\n"
-        "from eel_studies.points import Point, SwimSettings\nfrom eel_gaits import straight\nLIMIT = 0.3\n"
+        "from eel_dynamics.runs.swim import Swim\nfrom eel_studies.points import SwimSettings\n"
+        "from eel_gaits import straight\nLIMIT = 0.3\n"
         "def measure(run):\n    return {'far': run.path_length > LIMIT, 'near': run.path_length < LIMIT}\n"
-        "point = Point(straight(), Body.kern2006(), Scene(), Accuracy.of('draft'))\n"
+        "point = Swim(straight(), Body.kern2006(), Scene(), Accuracy.of('draft'))\n"
         "print(key_of([point], SwimSettings(1.0, 0.1, 11, measure)))\n"
     )
 

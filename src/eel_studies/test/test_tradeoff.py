@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
-from eel_studies.points import Point
+from eel_dynamics.runs.swim import Swim
 from eel_studies.tradeoff import measuring, models, table
 from eel_studies.tradeoff.command import main
 from eel_studies.tradeoff.delivered import Trial, delivered_table
@@ -27,7 +27,7 @@ FIXED = Accuracy(name="fixed", resolution=36.0, step=0.02)
 
 
 def swim_of(law, scene=None):
-    return Point(law, BODY, scene or Scene(), REFERENCE)
+    return Swim(law, BODY, scene or Scene(), REFERENCE)
 
 
 @pytest.fixture(scope="module")

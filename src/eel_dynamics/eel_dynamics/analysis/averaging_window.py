@@ -115,8 +115,10 @@ class AveragingWindow:
         """Mean power [W] over the window of `work` (T,) [J], whose derivative is `power` (T,) [W]."""
         from scipy.interpolate import CubicHermiteSpline
 
-        curve = CubicHermiteSpline(self.run.time, work, power)
-        return float(curve(self.end) - curve(self.start)) / self.duration
+        first = max(0, int(np.searchsorted(self.run.time, self.start, side="right")) - 1)
+        near = slice(first, first + 2)
+        at_start = CubicHermiteSpline(self.run.time[near], work[near], power[near])(self.start)
+        return float(work[-1] - at_start) / self.duration
 
     def spline(self, values: np.ndarray):
         """Cubic spline in time through samples (T, ...)."""

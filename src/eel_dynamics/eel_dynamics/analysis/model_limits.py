@@ -8,6 +8,7 @@
 | slenderness l/(2 max(a, b)) < 5 | the water moves in planes across a slender body (section 4.1 of the paper) |
 | U l/nu < 1000 | added mass and a thin boundary layer need inertia to rule |
 | the tail leads, V1(l) > 0, for a good part of the time | the wake then feeds energy in (the last term of eq. 60) |
+| the flow's gradient changes by more than a tenth of itself across a section | it is taken as the same there |
 | the energy ledger is open by more than its tolerance | no limit of the model: steps or points are too few |
 
 The tolerance of the ledger is ten times the target, within 1e-4 and 1e-2, of all energy that passed, or 1e-3 where
@@ -21,11 +22,14 @@ by t1 (1 + K2 z - K3 y) per length, which must stay positive out to the skin.
 import numpy as np
 
 from eel_dynamics.analysis.analysis import Analysis
+from eel_dynamics.model.axes import REP103
 
 LEAST_SLENDERNESS = 5.0
 LEAST_REYNOLDS = 1e3
 OPEN_BY_TARGET, LEAST_OPEN, MOST_OPEN = 10.0, 1e-4, 1e-2  # share of the energy: by the target, and its bounds
 OPEN_OF_SETTINGS = 1e-3  # the same where resolution and step were chosen by hand
+GRADIENT_CHANGES = 0.1  # across a section, of the greatest gradient along the body
+LOOKS, PLACES = 32, 13  # instants and stations at which that is looked at
 TAIL_LEADS = 0.25  # share of the time
 APART = 4.0  # half-axes along the body, beyond which two sections are not neighbours
 COINCIDENT = 1e-9  # of the body's length: centres of sections at one place
@@ -126,6 +130,34 @@ class ModelLimits:
         often = f"{share:.0%} of the time{span}"
         return f"the tail leads, V1(l) > 0, for {often}: the wake feeds energy in, as the theory has it"
 
+    def of_flow(self, flow, time, backbone, section_orientation) -> str:
+        """A warning if the gradient of the `flow` changes much across a section at one of the times (T,) [s].
+
+        backbone (T, M, 3) [m] and section_orientation (T, M, 4) in the world. Some instants and stations are looked at.
+        """
+        stations = np.unique(np.linspace(0, len(self.x) - 1, PLACES).astype(int))
+        samples = np.unique(np.linspace(0, len(time) - 1, LOOKS).astype(int))
+        side, up = cross_axes(section_orientation[np.ix_(samples, stations)])
+        arms = self._width[stations, None] * side, self._height[stations, None] * up
+        middle = backbone[np.ix_(samples, stations)]
+        places = np.stack([middle, *(middle + sign * arm for arm in arms for sign in (-1.0, 1.0))], axis=1)
+        try:
+            gradients = np.stack([flow.sample(*each).jacobian for each in zip(places, time[samples], strict=True)])
+        except ValueError:  # beside a grid, or of a function that a file does not hold
+            return ""
+        pairs = ((1, 2), (3, 4), (0, 1), (0, 2), (0, 3), (0, 4))  # of the centre and the edges
+        changes = [np.linalg.norm(gradients[:, a] - gradients[:, b], axis=(-2, -1)) for a, b in pairs]
+        changes = np.max(changes, axis=0)
+        greatest = np.linalg.norm(gradients, axis=(-2, -1)).max()
+        if greatest == 0.0 or changes.max() <= GRADIENT_CHANGES * greatest:
+            return ""
+        sample, station = np.unravel_index(np.argmax(changes), changes.shape)
+        return (
+            f"the flow is too fine for the body: its gradient changes by {changes.max() / greatest:.2g} of its "
+            f"greatest across the section at X = {self.x[stations[station]]:.3g} m, t = {time[samples[sample]]:.4g} s, "
+            f"more than {GRADIENT_CHANGES:g}"
+        )
+
     def of_ledger(self, energy, most: float, floor: float) -> str:
         """A warning if the residual of an `EnergyLedger` of (T,) arrays exceeds the share `most` of the energy.
 
@@ -133,7 +165,8 @@ class ModelLimits:
         The energy is the greatest sum of energies and works at the samples; it misses what comes and goes
         between two samples, as in a sudden ramp.
         """
-        signed = energy.potential, energy.actuator_work, energy.wake_work, energy.nose_work, energy.drag_work
+        works = energy.actuator_work, energy.wake_work, energy.nose_work, energy.drag_work, energy.flow_work
+        signed = energy.potential, *works
         passed = np.max(energy.kinetic_body + energy.kinetic_fluid + sum(np.abs(each) for each in signed), initial=0.0)
         residual = np.max(np.abs(energy.residual), initial=0.0)
         if passed <= floor or residual <= most * passed:
@@ -151,12 +184,14 @@ def warnings_of(run) -> tuple[str, ...]:
     """
     limits = ModelLimits(run.body, run.scene, run.x)
     later, speed = _later_half(run)
+    placed = run if run.flow is None else run.in_axes(REP103)
     floor = run.body_mass * (AT_REST * run.body.length / max(run.time[-1] - run.time[0], TINY)) ** 2
     found = [
         limits.of_body(),
         limits.of_bending(run.time, run.curvature),
         limits.of_contact(run.time, run.curvature, run.backbone, run.section_orientation),
         limits.of_speed(speed),
+        "" if run.flow is None else limits.of_flow(run.flow, run.time, placed.backbone, placed.section_orientation),
         limits.of_tail(run.energy.wake_power[later]) if run.energy is not None else "",
         limits.of_ledger(run.energy, ledger_tolerance(run.accuracy.target), floor) if run.energy is not None else "",
     ]

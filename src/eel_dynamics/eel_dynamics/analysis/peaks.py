@@ -3,11 +3,11 @@
 
 With 20 samples in a period the greatest sample of the torque lies below its peak by 2 % (median of all gaits; at most
 3 %). A spline of degree 5 misses it by 3e-4 (at most 4e-3: ramps and drag have kinks), with 100 samples by some 1e-5.
-So the greatest torque of all is that of a swim anew: from the state at a sample, through the three sample periods
-around the peak of the spline. The peaks of a window, of single stations, of joints and of power are those of splines
-through ten times the samples (`Run.finely_sampled`): to 4e-5 or better, as exact as the run. A run of more than a
-thousand samples has fewer than ten times as many, and one that was recorded elsewhere its own: those of power may then
-be 2 % off at 20 samples in a period.
+So the greatest torque of all is that of a swim anew: from the state at a sample (in a flow, from the start), through
+the three sample periods around the peak of the spline. The peaks of a window, of single stations, of joints and of
+power are those of splines through ten times the samples (`Run.finely_sampled`): to 4e-5 or better, as exact as the
+run. A run of more than a thousand samples has fewer than ten times as many, and one that was recorded elsewhere its
+own: those of power may then be 2 % off at 20 samples in a period.
 """
 
 import numpy as np
@@ -21,7 +21,8 @@ FINER, MOST_SAMPLES = 10, 10_000  # samples in a sample period, and in all, of a
 AT_ONCE = 64  # sample periods that are looked at together
 NEAR = 0.7  # of the greatest sample: a station whose samples stay below does not hold the peak between samples
 AROUND = 1  # sample periods, and distances of stations, to either side of the peak that are swum anew
-FINE = 24  # instants and stations in each of these
+FINE = 12  # instants and stations in each of these
+BESIDE = 6  # of them, to either side of the greatest, through which splines give the peak
 
 
 def torque_size(torque: np.ndarray) -> np.ndarray:
@@ -53,16 +54,23 @@ def peaks(x: np.ndarray, values: np.ndarray, size=np.abs, start=-np.inf, end=np.
 def greatest_torque_of(run) -> tuple[float, float, float]:
     """Greatest magnitude [N m] of the internal torque of `run`, with its X [m] and its time [s].
 
-    A run that was recorded elsewhere, or with a single sample, is not swum anew.
+    A run is not swum anew if it was recorded elsewhere, has a single sample, or is a later part of one in a flow.
     """
     greatest = torque_size(run.torque).max(axis=0)
     near = np.flatnonzero(greatest >= NEAR * greatest.max())
     sizes, times = peaks(run.time, run.torque[:, near], torque_size)
     station, time = near[np.argmax(sizes)], times[np.argmax(sizes)]
-    found = (run.time, run.x, run.torque)
-    if run.steps and len(run.time) > 1:
-        found = _swum_anew(run, time, int(station))
-    return peak_along(*found)
+    if not run.steps or len(run.time) < 2 or (run.flow is not None and run.time[0] != 0.0):
+        return peak_along(run.time, run.x, run.torque)
+    times, x, torque = _swum_anew(run, time, int(station))
+    size = torque_size(torque)
+    instant, place = np.unravel_index(np.argmax(size), size.shape)
+    near_time, near_x = _around(int(instant), len(times)), _around(int(place), len(x))
+    return peak_along(times[near_time], x[near_x], torque[near_time, near_x])
+
+
+def _around(place: int, count: int) -> slice:
+    return slice(max(0, place - BESIDE), min(count, place + BESIDE + 1))
 
 
 def peak_along(time: np.ndarray, x: np.ndarray, torque: np.ndarray) -> tuple[float, float, float]:
@@ -77,10 +85,11 @@ def _swum_anew(run, time: float, station: int) -> tuple[np.ndarray, np.ndarray, 
     run = run.in_axes(REP103)
     sample = int(np.searchsorted(run.time, time, side="right")) - 1
     first, last = max(0, sample - AROUND), min(len(run.time) - 1, sample + 1 + AROUND)
-    start, end = run.time[first], run.time[last]
+    times = np.linspace(run.time[first], run.time[last], (last - first) * FINE + 1)
     near = run.x[max(0, station - AROUND) : station + AROUND + 1]
     x = np.linspace(near[0], near[-1], (len(near) - 1) * FINE + 1)
-    times = np.linspace(0.0, end - start, (last - first) * FINE + 1)
+    first = first if run.flow is None else 0  # a flow has its own time
+    start = run.time[first]
     swimmer = Simulation(
         body=run.body,
         scene=run.scene,
@@ -90,12 +99,13 @@ def _swum_anew(run, time: float, station: int) -> tuple[np.ndarray, np.ndarray, 
         orientation=run.orientation[first] / np.linalg.norm(run.orientation[first]),
         twist=run.twist[first],
         most_evaluations=np.finfo(float).max,
+        flow=run.flow,
     )
     swimmer.adopt(run.law, origin=-start)
-    out, _, _, stopped = swimmer.record(times, True, False)
+    out, _, _, stopped = swimmer.record(times - start, True, False)
     if stopped is not None:
         raise stopped
-    return start + times, x, out.torque
+    return times, x, out.torque
 
 
 def _greatest(x: np.ndarray, sizes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -59,6 +59,15 @@ class Flow:
         """Height z [m] of the water's surface; infinite without one."""
         return np.inf
 
+    @property
+    def span(self) -> tuple[float, float]:
+        """First and last time [s] at which it is known."""
+        return -np.inf, np.inf
+
+    def outside(self, time: float, place: ArrayLike) -> tuple[str, float] | None:
+        """Where u is not known at a `place` (3,) [m]: the axis and its bounds in words, and the place along it."""
+        return None
+
     def sample(self, places: ArrayLike, time: float = 0.0) -> FlowSample:
         """The water at `places` (n, 3) [m], or at one (3,), at `time` [s]."""
         x = numbers("places", places)
@@ -69,6 +78,9 @@ class Flow:
         rows = np.zeros((*x.shape[:-1], ROWS))
         rows[..., :3] = x
         core_flow(self, False).at(float(time), rows)
+        for place in rows[np.isnan(rows[..., 3]), :3]:
+            if found := self.outside(time, place):
+                raise ValueError(f"places must lie in the grid of the flow, {found[0]}, got {shown(place.tolist())}")
         return FlowSample(rows[..., 3:6], rows[..., 6:9], rows[..., 9:].reshape(*x.shape, 3))
 
     def __add__(self, other: "Flow") -> "Flow":
@@ -106,6 +118,14 @@ class FlowSum(Flow):
     def surface_height(self) -> float:
         return min(part.surface_height for part in self.parts)
 
+    @property
+    def span(self) -> tuple[float, float]:
+        starts, ends = zip(*(part.span for part in self.parts), strict=True)
+        return max(starts), min(ends)
+
+    def outside(self, time: float, place: ArrayLike) -> tuple[str, float] | None:
+        return next(filter(None, (part.outside(time, place) for part in self.parts)), None)
+
 
 def parts_of(flow: Flow) -> tuple[Flow, ...]:
     """The flows that add up to `flow`."""
@@ -127,3 +147,10 @@ def checked_flow(flow: Any, planar: bool) -> Flow | None:
         if planar and not part.in_plane:
             raise ValueError(f"flow must stay in the plane z = 0 of a planar scene, and be alike along z, got {part!r}")
     return given
+
+
+def check_covers(flow: Flow | None, duration: float) -> None:
+    """`ValueError` unless `flow` is known from 0 to `duration` [s]."""
+    if flow is not None and not flow.span[0] <= 0.0 <= duration <= flow.span[1]:
+        start, end = flow.span
+        raise ValueError(f"flow time must cover the run, 0 to {duration:g} s, got {start:g} to {end:g} s")

@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Flows as values that JSON can hold, and back."""
 
+from base64 import b64decode, b64encode
 from dataclasses import fields
 from typing import Any
 
-from eel_base.wording import not_one_of
+import numpy as np
+from eel_base.wording import did_you_mean, not_one_of, shown
 
 from eel_dynamics.flow.flow import Flow, FlowSum, parts_of
 from eel_dynamics.flow.functions import FlowField, LostFunction
+from eel_dynamics.flow.gridded import AXES, GriddedFlow
 from eel_dynamics.flow.sources import Gust, Shear, Uniform, Vortex, VortexStreet, Wave
 
 KINDS: dict[str, Any] = {kind.__name__: kind for kind in (Uniform, Gust, Shear, Vortex, VortexStreet, Wave)}
@@ -32,6 +35,9 @@ def flow_of(plain: list[dict[str, Any]] | None) -> Flow | None:
 def _plain(flow: Flow) -> dict[str, Any]:
     if isinstance(flow, FlowField):
         return {"kind": "FlowField"} | {name: getattr(flow, name) for name in OF_FUNCTION}
+    if isinstance(flow, GriddedFlow):
+        arrays = {name: b64encode(getattr(flow, name).astype("<f8")).decode() for name in ("velocity", *AXES)}
+        return {"kind": "GriddedFlow", "arrays": arrays, "period": flow.period, "wave": flow.wave}
     return {"kind": type(flow).__name__} | {item.name: getattr(flow, item.name) for item in fields(flow)}  # type: ignore[arg-type]
 
 
@@ -39,7 +45,16 @@ def _made(plain: dict[str, Any]) -> Flow:
     kind = plain.pop("kind", None)
     if kind == "FlowField":
         return FlowField(LostFunction(name=plain["name"]), **plain)
+    if kind == "GriddedFlow":
+        arrays = {name: np.frombuffer(b64decode(text), "<f8") for name, text in plain.pop("arrays").items()}
+        shape = [len(arrays[name]) for name in AXES]
+        return GriddedFlow(**arrays | {"velocity": arrays["velocity"].reshape(*shape, 3)}, **plain)
     if kind not in KINDS:
-        raise ValueError(not_one_of("flow kind", kind, (*KINDS, "FlowField")))
+        raise ValueError(not_one_of("flow kind", kind, (*KINDS, "FlowField", "GriddedFlow")))
+    known = [item.name for item in fields(KINDS[kind])]
+    for name in plain:
+        if name not in known:
+            hint = did_you_mean(name, known)
+            raise ValueError(f"flow {kind} has no field {shown(name)}{hint}, it has: {', '.join(known)}")
     flow: Flow = KINDS[kind](**plain)
     return flow

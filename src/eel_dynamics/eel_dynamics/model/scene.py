@@ -45,6 +45,7 @@ class Scene(Quantities):
         True, "", "momentum that the water carries along the body and off at the tail; off: a section keeps its water"
     )
     resistive: bool = quantity(True, "", "drag of the water: k_o, k1 (friction), k2, k3 (cross flow), k4 (roll)")
+    cross_flow: bool = quantity(True, "", "drag across the body and in roll: k2, k3, k4")
     friction: str = quantity("printed", "", "law of the axial friction c_f(Re)", choices=FRICTION)
     nose: bool = quantity(True, "", "loads on the rounded nose: added mass m_o and drag k_o")
     perimeter: str = quantity(

@@ -187,6 +187,7 @@ def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionData:
     behind = np.maximum(x, 1e-9 * body.length)
     c, d = (a, b) if np.array_equal(behind, x) else (body.half_height(behind), body.half_width(behind))
     perimeter = np.pi * (1.5 * (c + d) - np.sqrt(c * d)) * (0.5 if scene.perimeter == "printed" else 1.0)
+    across = half_rho if scene.cross_flow else 0.0
     rubbed = 0.0 if scene.friction == "none" else half_rho
     critical_speed = CRITICAL_REYNOLDS * scene.viscosity / behind  # m/s, |V1| at which Re = 8e4
     with np.errstate(divide="ignore"):
@@ -200,9 +201,9 @@ def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionData:
         inertia3=inertia3,
         added_roll=added_roll,
         displaced=scene.fluid_density * area,
-        drag2=half_rho * 2.0 * body.lateral_drag * a,
-        drag3=half_rho * 2.0 * body.vertical_drag * b,
-        drag_roll=half_rho * body.roll_drag * np.pi * (a**2 - b**2) ** 2,
+        drag2=across * 2.0 * body.lateral_drag * a,
+        drag3=across * 2.0 * body.vertical_drag * b,
+        drag_roll=across * body.roll_drag * np.pi * (a**2 - b**2) ** 2,
         laminar=rubbed * perimeter * 0.664 * np.sqrt(scene.viscosity / behind),
         turbulent=rubbed * perimeter * 0.059 * (scene.viscosity / behind) * CRITICAL_REYNOLDS**0.8,
         by_critical_speed=by_critical_speed,

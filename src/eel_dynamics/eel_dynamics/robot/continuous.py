@@ -10,15 +10,38 @@ EI: `bending_stiffness`, eta: `damping`, K: the curvature in section axes (posit
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from eel_base.quantity import checked_instance, documented, quantity
+import numpy as np
+from eel_base.quantity import checked_instance, checked_row, documented, quantity
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
+from scipy.interpolate import pchip_interpolate
 
 from eel_dynamics.robot.part import MOST_MODES, Part, checked_axis, required
 
 Profile = float | Callable[..., object]
+
+
+@dataclass(frozen=True)
+class ProfileTable:
+    """Values (n,) at `x` (n,) [m], rising, two or more, as a function of X: monotone cubics through them."""
+
+    x: tuple[float, ...]
+    values: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        x, values = checked_row("table x", self.x, None), checked_row("table values", self.values, None)
+        if len(x) < 2 or not (np.diff(x) > 0.0).all():
+            raise ValueError(f"table x must be two numbers or more that rise, got {shown(x.tolist())}")
+        if len(values) != len(x):
+            raise ValueError(f"table values must be as many as x, {len(x)}, got {len(values)}")
+        object.__setattr__(self, "x", tuple(x.tolist()))
+        object.__setattr__(self, "values", tuple(values.tolist()))
+
+    def __call__(self, x: Any) -> np.ndarray:
+        """At `x` [m]; the first and the last value are held."""
+        return np.asarray(pchip_interpolate(self.x, self.values, np.clip(x, self.x[0], self.x[-1])))
 
 
 @documented

@@ -8,7 +8,7 @@ joint becomes a hinge, and the motion converges to that of rigid links. The torq
 
 tau of the motor, and beyond a limit also the stop's stop_stiffness (angle - limit) + stop_damping rate. All angles are
 positive where the body bends to the left (yaw) or up (pitch), as the gaits' `left_bend`; with the axis "-yaw" or
-"-pitch" to the right or down: as a joint about +z, or +y, that turns the part behind.
+"-pitch" to the right or down. A positive turn of the part behind about z is "-yaw", one about y is "pitch".
 """
 
 from dataclasses import dataclass

@@ -30,6 +30,7 @@ XM430_W210 = Servo(
     gear=212.6,
     rotor_inertia=0.045 / 353.5**2,
 )
+SERVOS = {"xm430_w210": XM430_W210}
 FIRST, SPACING, COUNT = 0.10, 0.12, 8  # m, of the joints on a body of 1 m
 SPRING = 50.0  # N m/rad
 """Of `series_elastic`, chosen: the stall torque winds it by 0.06 rad; with the reflected rotor it swings at 9 Hz."""

@@ -9,16 +9,21 @@ continuously. In an axis without motors the law is imposed, but for the supports
 
 import os
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
+from eel_base.files.input_file import reading
 from eel_base.quantity import checked_instance
 from eel_base.wording import not_one_of, shown
 
 from eel_dynamics.model.body import Body
+from eel_dynamics.robot.actuators import Servo
 from eel_dynamics.robot.continuous import Muscle, PassiveTail
 from eel_dynamics.robot.joint import LONGEST_NAME, Joint
 from eel_dynamics.robot.ready import READY
+from eel_dynamics.robot.robot_file import robot_in_yaml
+from eel_dynamics.robot.urdf import robot_in_urdf
 
 MOST_PARTS = 64
 
@@ -33,14 +38,21 @@ class Robot:
         parts: joints, passive tails and muscles, by their positions. Joints without a name are called joint_1, ...
         name: what messages call the robot.
         body: the body that it comes with, such as from a file; None: any.
+        notes: what its file holds and the robot does not, in words.
     """
 
     parts: tuple[Joint | PassiveTail | Muscle, ...]
     name: str
     body: Body | None
+    notes: tuple[str, ...] = field(compare=False)
 
     def __init__(
-        self, parts: Iterable[Joint | PassiveTail | Muscle], *, name: str = "robot", body: Body | None = None
+        self,
+        parts: Iterable[Joint | PassiveTail | Muscle],
+        *,
+        name: str = "robot",
+        body: Body | None = None,
+        notes: Iterable[str] = (),
     ) -> None:
         given = [parts] if isinstance(parts, (Joint, PassiveTail, Muscle)) else parts
         if isinstance(given, (str, bytes)) or not isinstance(given, Iterable):
@@ -53,6 +65,7 @@ class Robot:
         object.__setattr__(self, "parts", _named(listed))
         object.__setattr__(self, "name", name)
         object.__setattr__(self, "body", None if body is None else checked_instance("robot body", body, Body))
+        object.__setattr__(self, "notes", tuple(notes))
 
     @property
     def joints(self) -> tuple[Joint, ...]:
@@ -82,6 +95,7 @@ class Robot:
             ),
             name=self.name,
             body=self.body,
+            notes=self.notes,
         )
 
     def __repr__(self) -> str:
@@ -95,6 +109,21 @@ class Robot:
         if name not in READY:
             raise ValueError(not_one_of("robot", name, (*READY, "a file")))
         return Robot(READY[name](), name=name)
+
+    @staticmethod
+    def from_file(path: str | os.PathLike[str], servo: Servo | None = None) -> "Robot":
+        """The robot in a .yaml file (`robot_file` has the keys) or in a URDF, with its body.
+
+        servo: gains of the motors of a URDF, which does not hold them. `ValueError` in one line names file and place.
+        """
+        if not isinstance(path, (str, os.PathLike)):
+            raise ValueError(f"robot file must be a path, got {shown(path)}")
+        with reading(f"robot file {shown(str(path))}"):
+            if Path(path).suffix in (".urdf", ".xml"):
+                return Robot(**robot_in_urdf(path, servo))
+            if Path(path).suffix in (".yaml", ".yml"):
+                return Robot(**robot_in_yaml(path))
+        raise ValueError(f"robot file must be .yaml, .yml, .urdf or .xml, got {shown(str(path))}")
 
 
 KINDS = (Joint, PassiveTail, Muscle)

@@ -27,7 +27,7 @@ from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import MEASURES, measures_of
 from eel_dynamics.analysis.settling import tell_unsettled
-from eel_dynamics.flow.flow import Flow
+from eel_dynamics.flow.flow import Flow, check_covers
 from eel_dynamics.flow.plain import flow_of
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
@@ -223,8 +223,9 @@ def simulate_batch(
     if sample_period is None:
         sample_period = default_sample_period({law for law, _ in swimmers}, seconds)
     times = checked_times(seconds, sample_period)
-    for law, _ in swimmers:
+    for law, setup in swimmers:
         check_duration(law, seconds)
+        check_covers(setup.flow, float(times[-1]))
     wrench = [setup.scene.internal_wrench and stations is not None for _, setup in swimmers]
     count, load, points = len(swimmers), bool(load) and stations is not None, len(swimmers[0][1].x)
     check_memory(count, len(times), points, any(wrench), load)

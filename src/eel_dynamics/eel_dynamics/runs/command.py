@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel simulate`: swim a gait, a sequence or a measured motion; print its figures.
+"""`eel simulate`: swim a gait, a scene of a file, a sequence or a measured motion; print its figures.
 
 eel simulate falling
+eel simulate scene.yaml --out run.nc
 eel simulate falling --duration 20 --periods 4 --actuators 8
 eel simulate --sequence patrol.yaml --duration 20
 eel simulate --file midlines.csv
@@ -34,14 +35,17 @@ from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.command_options import add_options, body_of, scene_of, set_numbers
 from eel_dynamics.runs.filmed import EEL, add_film_options, beat_from, body_for, effect_of_fit
-from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.scene_file import SUFFIXES as SCENES
+from eel_dynamics.runs.scene_file import load_scene
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, until_settled
 from eel_dynamics.runs.storage.run_contents import contents_of_run
 from eel_dynamics.runs.storage.tables import columns_of, write_columns
+from eel_dynamics.runs.swim import Swim
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 NAME = "eel simulate"
-DURATION = 10.0  # s, by default
+DURATION, STATIONS = 10.0, 51  # s, and points along the body, by default
 SUFFIXES = (".nc", ".npz", ".csv", ".rrd")
 
 
@@ -54,26 +58,13 @@ def _swim(options) -> int:
     """Simulate, print the summary and write the run; returns the exit status: 0, or 3 for a run that stopped."""
     out = _checked_out(options.out)
     beat = None if options.midlines is None else beat_from(options.midlines, options)
-    body = body_of(options.body or "boyer2010") if beat is None else body_for(options.body, beat.film)
-    law, scene = _law(options, body, beat), scene_of(options.scene)
-    duration = options.duration
-    if duration is None and beat is not None:
-        duration = UNTIL_SETTLED
-    elif duration is None:
-        duration = law.duration if isinstance(law, SampledLaw) else DURATION
+    swim = _scene_of_file(options) if (options.gait or "").endswith(SCENES) else _swim_of(options, beat)
     if options.actuators is not None:
-        _check_actuators(options, scene)
+        _check_actuators(options, swim.scene)
     start, progress = time.perf_counter(), Progress(NAME, "simulated s")
-    end = None if until_settled(duration) else duration
+    end = None if until_settled(swim.duration) else float(swim.duration)
     try:
-        run = simulate(
-            law,
-            duration,
-            body=body,
-            scene=scene,
-            accuracy=options.accuracy,
-            sample_period=options.sample_period,
-            stations=options.stations,
+        run = swim.run(
             load=options.load or Path(options.out or "").suffix == ".rrd",
             estimate=not options.bare,
             most_evaluations=options.most_evaluations,
@@ -89,7 +80,7 @@ def _swim(options) -> int:
         _print_lines(beat.about())
     print(run.summary(options.periods))
     if beat is not None:
-        _print_lines(effect_of_fit(beat, body, scene))
+        _print_lines(effect_of_fit(beat, swim.body, swim.scene))
     if options.file is not None:
         _print_smoothing(run)
     print(f"wall time           {seconds:.3f} s, set-up included")
@@ -99,6 +90,27 @@ def _swim(options) -> int:
         _write(run, out)
         print(f"written to          {written_as(out)}")
     return 0
+
+
+def _swim_of(options, beat: Beat | None) -> Swim:
+    """The swim that the options tell: of a gait, a file of a motion, or the `beat` of a film."""
+    body = body_of(options.body or "boyer2010") if beat is None else body_for(options.body, beat.film)
+    law, duration = _law(options, body, beat), options.duration
+    if duration is None and beat is not None:
+        duration = UNTIL_SETTLED
+    elif duration is None:
+        duration = law.duration if isinstance(law, SampledLaw) else DURATION
+    more = {"duration": duration, "sample_period": options.sample_period, "stations": options.stations or STATIONS}
+    return Swim(law, body, scene_of(options.scene), options.accuracy or "standard", **more)
+
+
+def _scene_of_file(options) -> Swim:
+    """The swim of a scene's file, with the duration, accuracy and samples of the options where they are given."""
+    others = [*options.set, *options.scene, options.body, options.file, options.midlines, options.sequence]
+    for given in filter(None, others):
+        raise ValueError(f"{options.gait} has gait, body and scene of its own, got {shown(given)} too")
+    found = {name: getattr(options, name) for name in ("duration", "accuracy", "sample_period", "stations")}
+    return load_scene(options.gait)._replace(**{name: value for name, value in found.items() if value is not None})
 
 
 def _law(options, body: Body, beat: Beat | None) -> Law | SampledLaw:
@@ -141,7 +153,7 @@ def _parser() -> Parser:
         description="Simulate a gait, a sequence of gaits or a measured motion without ROS, and print a summary.",
         epilog=f"fields of the scene, with default, meaning, unit, and bounds or choices:\n{described_fields(Scene)}",
     )
-    add_options(parser, "gait", "--set", gait=(None, "falling"))
+    add_options(parser, "gait", "--set", gait=(None, "falling; or the .yaml file of a scene"))
     parser.add_argument(
         "--sequence",
         metavar="FILE",
@@ -165,9 +177,10 @@ def _parser() -> Parser:
     duration = None, f"{DURATION:g}; of a file: all of it; of midlines: {UNTIL_SETTLED}"
     add_options(
         parser, "--scale", "--duration", "--accuracy", "--bare", "--body", "--scene", "--sample-period",
-        duration=duration, body=(None, f"boyer2010; with --midlines {EEL}, as long as the swimmer in the film"),
+        duration=duration, accuracy=(None, "standard"),
+        body=(None, f"boyer2010; with --midlines {EEL}, as long as the swimmer in the film"),
     )  # fmt: skip
-    parser.add_argument("--stations", type=int, default=51, help="points along the body (51)")
+    parser.add_argument("--stations", type=int, help=f"points along the body ({STATIONS})")
     parser.add_argument(
         "--most-evaluations",
         type=float,
@@ -198,7 +211,7 @@ def _check_actuators(options, scene: Scene):
         raise ValueError(f"--actuators must be 1 to {MOST_JOINTS}, got {shown(options.actuators)}")
     if not scene.internal_wrench:
         raise ValueError("--actuators needs --scene internal_wrench=on, got off")
-    if options.stations < 4:
+    if (options.stations or STATIONS) < 4:
         raise ValueError(f"--actuators needs 4 --stations or more, got {options.stations}")
 
 

@@ -7,7 +7,7 @@ A value of NAME=VALUE is a number, true or false (on or off), or a word.
 import argparse
 import inspect
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -108,13 +108,13 @@ def body_of(text: str) -> Body:
     return Body.from_file(text) if Path(text).suffix else Body.named(text)
 
 
-def scene_of(texts: list[str], **defaults) -> Scene:
+def scene_of(texts: list[str], base: Scene | None = None) -> Scene:
     """The scene that --scene gives. `ValueError` names the field that there is not, or whose value does not fit.
 
-    defaults: fields that the command sets where --scene does not.
+    base: the scene that they change.
     """
     known = {item.name: item for item in fields(Scene)}
-    found = dict(defaults)
+    found: dict[str, Any] = {}
     for name, text in named_texts("--scene", texts):
         if name not in known:
             hint = did_you_mean(name, known)
@@ -126,7 +126,7 @@ def scene_of(texts: list[str], **defaults) -> Scene:
         else:
             values = [value_of(part) for part in text.split(",")]
             found[name] = values[0] if len(values) == 1 else tuple(values)
-    return Scene(**found)
+    return replace(base or Scene(), **found)
 
 
 def varied_values(text: str, check_count: Callable[[int], None]) -> list:

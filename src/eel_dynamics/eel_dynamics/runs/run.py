@@ -24,7 +24,7 @@ from eel_dynamics.analysis.model_limits import warnings_of
 from eel_dynamics.analysis.peaks import FINER, MOST_SAMPLES, greatest_torque_of
 from eel_dynamics.analysis.run_summary import describe
 from eel_dynamics.analysis.settling import Unsettled
-from eel_dynamics.flow.flow import Flow
+from eel_dynamics.flow.flow import Flow, check_covers
 from eel_dynamics.model.axes import CONVENTIONS, REP103, SIGNS, turn_vector, turned
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
@@ -402,6 +402,7 @@ def simulate(
     if setup.scene.planar:
         check_planar_law(law)
     times = checked_times(duration, default_sample_period([law], duration) if sample_period is None else sample_period)
+    check_covers(flow, float(times[-1]))
     check_memory(1, len(times), len(setup.x), wrench, bool(load), runs=2 if estimate else 1)
     if estimate:
         setup = replace(setup, accuracy=Accuracy.to_refine(setup.accuracy))
@@ -454,7 +455,7 @@ def _simulated_again(
     return again.in_axes(axes)
 
 
-class Swim(NamedTuple):
+class SwimResult(NamedTuple):
     """A run, what it was made from, and why it stopped before its end, if it did."""
 
     run: Run
@@ -487,7 +488,7 @@ class SwimRequest(NamedTuple):
         simulation: Simulation,
         look: Callable[[float], None] | None = None,
         out: Observations | None = None,
-    ) -> Swim:
+    ) -> SwimResult:
         """Swim it with a `simulation` of its own, at its start. look, out: as in `Simulation.record`."""
         out, works, done, stopped = simulation.record(self.times, self.wrench, self.load, look, out)
         start, (steps, _, evaluations) = simulation.energy_at_start, simulation.evaluations
@@ -506,7 +507,7 @@ class SwimRequest(NamedTuple):
             nodes=len(simulation.grid.x),
             joints=simulation.joints,
         )
-        return Swim(run, out, works, start, stopped)
+        return SwimResult(run, out, works, start, stopped)
 
 
 def run_of(

@@ -19,7 +19,7 @@ from eel_dynamics.simulation.discretisation import Discretisation, discretise
 from eel_dynamics.simulation.observations import Observations, Snapshot
 from eel_dynamics.simulation.sample_check import first_bad_sample
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
-from eel_dynamics.simulation.stopping import SimulationStopped, not_begun, remedy, stopped_by
+from eel_dynamics.simulation.stopping import SimulationStopped, left_grid, not_begun, remedy, stopped_by
 
 MARCHED, SINGULAR, UNFINISHED = (eel_core.STATUSES.index(name) for name in ("marched", "singular", "unfinished"))
 
@@ -51,6 +51,8 @@ class March:
         position, orientation, _ = setup.initial_state
         self.energy_at_start = self._start(position, orientation, setup.initial_twist)
         if not np.isfinite(self.energy_at_start):
+            if self.core.outside is not None:
+                raise self._left_grid(self.core.outside)
             raise SimulationStopped(0.0, "kinetic energy", self.energy_at_start, "start slower")
 
     @property
@@ -208,6 +210,9 @@ class March:
         if done:
             self.time = float(times[done - 1])
         if failure:
+            for place in out.backbone[done]:
+                if self.setup.flow is not None and self.setup.flow.outside(times[done], place):
+                    return done, self._left_grid((times[done], *place))
             return done, SimulationStopped(self.time, quantity, value, remedy(self.setup.settings))
         return done, None if status == MARCHED else self._stopped(status)
 
@@ -215,7 +220,18 @@ class March:
         return self.core.record(times, first, out.whole, works, *rest)
 
     def _stopped(self, status: int) -> SimulationStopped:
+        if status != MARCHED and self.core.outside is not None:
+            return self._left_grid(self.core.outside)
+        height, flow = self.core.state[2], self.setup.flow
+        if flow is not None and height > flow.surface_height:
+            return SimulationStopped(self.time, "the head is above the surface of the flow, z", height, "dive deeper")
         return stopped_by(status, self.time, self._bounds, self.setup.settings)
+
+    def _left_grid(self, where: tuple[float, ...]) -> SimulationStopped:
+        """The error for a swimmer with a point at a time [s] and a place [m] where the flow is not known."""
+        time, *place = map(float, where)
+        found = self.setup.flow and self.setup.flow.outside(time, place)
+        return left_grid(time, place, *(found or ("", np.nan)))
 
     joints: Any = None  # of a robot: `JointMotion` of the last `record`
 
@@ -228,6 +244,8 @@ class March:
         snapshot = Snapshot(self.time, self.setup.x, wrench, load)
         if not self._observe(snapshot, wrench, load):
             raise self._stopped(SINGULAR)
+        if self.setup.flow is not None and self.core.outside is not None:
+            raise self._left_grid(self.core.outside)
         if scene.ledger:
             snapshot.keep_ledger(np.array(self.core.works), self.energy_at_start)
         return snapshot

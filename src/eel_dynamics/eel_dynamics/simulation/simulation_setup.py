@@ -18,7 +18,7 @@ from eel_dynamics.accuracy.law_waves import check_law, knots_of_law, waves_of_ro
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS, check_cost
 from eel_dynamics.curvature.curvature_samples import check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
-from eel_dynamics.flow.flow import Flow, checked_flow, core_flow
+from eel_dynamics.flow.flow import Flow, check_covers, checked_flow, core_flow
 from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.initial_state import InitialState, check_planar, checked_quaternion, time_scale
 from eel_dynamics.model.scene import Scene
@@ -41,8 +41,11 @@ def checked_state(scene: Scene, position, orientation, twist) -> InitialState:
 
 
 def check_flow(flow: Flow | None, scene: Scene, start: InitialState) -> None:
-    """`ValueError` for a flow that `scene` does not allow, or whose surface is below the head at the `start`."""
+    """`ValueError` for a flow that `scene` does not allow, or that is not one of water at the head's `start`."""
     flow = checked_flow(flow, scene.planar)
+    check_covers(flow, 0.0)
+    if flow is not None and (out := flow.outside(0.0, start.position)):
+        raise ValueError(f"position must lie in the grid of the flow, {out[0]}, got {shown(start.position.tolist())}")
     if flow is not None and start.position[2] > flow.surface_height:
         raise ValueError(f"flow surface must be above the head, at z = {start.position[2]:g} m, got {flow!r}")
 

@@ -46,6 +46,16 @@ def stopped_by(status: int, time: float, bounds: eel_core.StepBounds, accuracy: 
     return SimulationStopped(time, quantity, bounds.smallest, "take a coarser accuracy, or a slower law")
 
 
+def left_grid(time: float, place: list[float], axis: str, value: float) -> SimulationStopped:
+    """The error at `time` [s] for a swimmer with a point at a `place` [m] where the flow is not known.
+
+    axis, value: as `Flow.outside` gives them.
+    """
+    x, y, z = place
+    quantity = f"the swimmer has left the grid of the flow at ({x:.4g}, {y:.4g}, {z:.4g}) m, beyond {axis}"
+    return SimulationStopped(time, quantity, value, "give a larger grid, or a shorter run")
+
+
 def remedy(accuracy: Accuracy) -> str:
     """What to change where the numbers of a run have diverged."""
     if accuracy.step is not None:

@@ -14,8 +14,7 @@ from eel_dynamics.accuracy.accuracy import FIXED, SPARED, WAVES_POWER, Accuracy
 from eel_dynamics.accuracy.budget import Budget
 from eel_dynamics.accuracy.law_waves import check_law
 from eel_dynamics.model.initial_state import time_scale
-
-from eel_studies.points import Point
+from eel_dynamics.runs.swim import Swim
 
 SHORTER = 0.002  # part of a step by which the next one that is tried is shorter
 TRIALS = 500
@@ -33,18 +32,18 @@ def fixed_steps(accuracy: "str | float | Accuracy") -> Accuracy:
     return Accuracy.of(f"{settings.name}, {FIXED}")
 
 
-def step_of(point: Point) -> float:
+def step_of(point: Swim) -> float:
     """The length [s] of the fixed steps of the `point`, whose accuracy is that of its scene."""
-    settings = point.accuracy
+    settings: Accuracy = point.accuracy
     if settings.step is not None:
         return settings.step
     period = min((term.period for term in point.law.waves), default=np.inf)
     flow = time_scale(point.start.in_water(np.array(point.scene.current)), point.body.length)
     assert settings.fixed is not None
-    return min(period, flow, 1.0) / settings.fixed
+    return float(min(period, flow, 1.0) / settings.fixed)
 
 
-def on_one_grid(points: list[Point], step: float) -> list[Point]:
+def on_one_grid(points: list[Swim], step: float) -> list[Swim]:
     """The `points` with settings that give them one grid and one number of steps, no longer than `step` [s].
 
     The first point decides for the grid.
@@ -60,7 +59,7 @@ def on_one_grid(points: list[Point], step: float) -> list[Point]:
     ]
 
 
-def breakpoints_of(point: Point) -> list[float]:
+def breakpoints_of(point: Swim) -> list[float]:
     """Times [s] from the start at which a derivative of the law's curvature jumps, ascending."""
     ends = {time for term in point.law.terms for ramp in term.envelope for time in (ramp.start, ramp.end) if time > 0.0}
     return [0.0, *sorted(ends)]

@@ -35,6 +35,7 @@ from eel_dynamics.runs.batch import Batch
 from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.sampling import default_sample_period
+from eel_dynamics.runs.swim import Swim
 
 from eel_studies.gradients.fixed_discretisation import fixed_steps, on_one_grid, step_of
 from eel_studies.points import (
@@ -42,7 +43,6 @@ from eel_studies.points import (
     Gait,
     Measure,
     Numbers,
-    Point,
     Progress,
     Stations,
     SwimSettings,
@@ -195,7 +195,7 @@ def _periods(run: Run) -> int | None:
         return None
 
 
-def _point(values: Numbers, gait: Gait, numbers: Numbers | None, base: Point) -> Point:
+def _point(values: Numbers, gait: Gait, numbers: Numbers | None, base: Swim) -> Swim:
     try:
         point = point_at(values, gait, numbers or {}, base)
         law_of_terms(point.law)

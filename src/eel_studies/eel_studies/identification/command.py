@@ -95,7 +95,7 @@ def _scene(options: argparse.Namespace, files: list[MeasuredFile]) -> Scene:
     """The scene that was asked for, or that of the files. The friction is blended unless --scene says otherwise."""
     scene: Scene | None = None if options.scene else _common("scene", files)
     if scene is None:
-        return scene_of(options.scene, friction="blended")
+        return scene_of(options.scene, Scene(friction="blended"))
     return replace(scene, friction="blended") if scene.friction == "printed" else scene
 
 

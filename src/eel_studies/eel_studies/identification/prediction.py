@@ -12,11 +12,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.swim import Swim
 from eel_gaits.laws.law import Law
 
 from eel_studies.gradients.gradient import gradient
 from eel_studies.identification.measurements import MeasuredPath
-from eel_studies.points import Gait, Numbers, Point, law_of_terms, point_at
+from eel_studies.points import Gait, Numbers, law_of_terms, point_at
 from eel_studies.steady_swim import at_speed, swim_times
 
 PERIODS = 12  # of a swim at a measured speed
@@ -38,7 +39,7 @@ class Swims(NamedTuple):
 
     gait: Gait
     numbers: Numbers
-    base: Point
+    base: Swim
     threads: int | None
 
     def predicted(self, measured: Any, at: dict[str, float]) -> Predicted:

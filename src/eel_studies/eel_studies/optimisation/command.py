@@ -14,6 +14,7 @@ from eel_base.command.run_command import checked_out, run_command
 from eel_base.files.output_file import written_as
 from eel_base.wording import shown
 from eel_dynamics.analysis.measures import MEASURES
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.command_options import (
     add_options,
     add_repeated,
@@ -49,7 +50,7 @@ def _optimise(options: argparse.Namespace) -> int:
         gait=options.gait,
         numbers=set_numbers(options.set),
         body=body_of(options.body),
-        scene=scene_of(options.scene, friction="blended"),
+        scene=scene_of(options.scene, Scene(friction="blended")),
         cost=options.cost,
         periods=options.periods,
         accuracy=options.accuracy,

@@ -11,11 +11,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from eel_dynamics.analysis.measures import measures_of
 from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.swim import Swim
 from eel_dynamics.simulation.stopping import SimulationStopped
 from eel_gaits.laws.law import Law
 
 from eel_studies.gradients.gradient import gradient
-from eel_studies.points import Gait, Numbers, Point, law_of_terms, point_at
+from eel_studies.points import Gait, Numbers, law_of_terms, point_at
 from eel_studies.steady_swim import at_speed, swim_times
 from eel_studies.workers import in_threads
 
@@ -42,7 +43,7 @@ class GaitProblem:
     high: np.ndarray
     gait: Gait
     numbers: Numbers
-    base: Point
+    base: Swim
     cost: str
     periods: int
     threads: int | None
@@ -131,4 +132,4 @@ class GaitProblem:
     def _swim(self, place: np.ndarray, speed: float, periods: int, stations: int, estimate: bool) -> Run:
         point = point_at(self.values(place), self.gait, at_speed(self.numbers, speed), self.base)
         times = swim_times(point.law, point.body.length, periods)
-        return point.swim(**times, stations=stations, estimate=estimate)
+        return point.run(**times, stations=stations, estimate=estimate)

@@ -7,11 +7,11 @@ import numpy as np
 from eel_dynamics.accuracy.accuracy import ORDERS, PRESETS, Accuracy
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.swim import AT_REST, Swim
 from eel_gaits.laws.law import Law
 
 from eel_gaits import straight
-from eel_studies.points import AT_REST, Point
-from eel_studies.stability.maps import TARGET, Axis, Map, Swim
+from eel_studies.stability.maps import TARGET, Axis, Cell, Map
 
 LEAST_VISCOSITY = 1e-10  # m^2/s
 METHODS = (*(("adams", order) for order in ORDERS["adams"]), ("dormand_prince", 5))
@@ -19,7 +19,7 @@ FIXED_RESOLUTION = 36.0  # points per body length with a fixed step: the error i
 PERIOD = Axis("period (s)", 0.02, 50.0)
 DENSITY = Axis("density of the body, by water's", 1e-3, 1e3)
 SLENDERNESS = Axis("slenderness l / (2 max(a, b))", 5.0, 500.0)
-ROBOT = Point(None, Body.boyer2010(), Scene(), Accuracy.of(TARGET))
+ROBOT = Swim(None, Body.boyer2010(), Scene(), Accuracy.of(TARGET))
 
 
 def sized(low: float, high: float) -> Axis:
@@ -83,5 +83,5 @@ def _method(row: int, tolerance: float) -> Accuracy:
     return Accuracy(name=name, resolution=FIXED_RESOLUTION, method=method, order=order, tolerance=tolerance)
 
 
-def _swim(law: Law, duration: float, target: float = TARGET, **changes: Any) -> Swim:
-    return Swim(ROBOT._replace(law=law, **changes), duration, target)
+def _swim(law: Law, duration: float, target: float = TARGET, **changes: Any) -> Cell:
+    return Cell(ROBOT._replace(law=law, **changes), duration, target)

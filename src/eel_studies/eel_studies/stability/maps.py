@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.runs.swim import Swim
 from eel_dynamics.simulation.stopping import SimulationStopped
 
-from eel_studies.points import Point
 from eel_studies.workers import in_threads
 
 TARGET, FINER = 1e-3, 1e-6
@@ -34,10 +34,10 @@ class Axis(NamedTuple):
     high: float
 
 
-class Swim(NamedTuple):
+class Cell(NamedTuple):
     """One cell of a map: what swims, for how long [s], and the target of its relative error."""
 
-    point: Point
+    swim: Swim
     duration: float
     target: float = TARGET
 
@@ -46,7 +46,7 @@ class Swim(NamedTuple):
 class Map:
     """A grid over two axes, with `points` values of each in geometric sequence.
 
-    at(x, y): what is there, a `Swim` or a number. names: labels of the rows where y is not a number, but the row.
+    at(x, y): what is there, a `Cell` or a number. names: labels of the rows where y is not a number, but the row.
     """
 
     name: str
@@ -114,22 +114,22 @@ def measure(item: Map) -> Measured:
     return Measured(item, found)
 
 
-def cell_of(swim: Swim) -> np.ndarray:
+def cell_of(cell: Cell) -> np.ndarray:
     """The cell (`CELL`) of one run."""
-    how: dict[str, Any] = {"sample_period": swim.duration / SAMPLES, "stations": STATIONS}
-    finest = Accuracy.of(FINER) if swim.target >= TARGET else FINEST
+    how: dict[str, Any] = {"duration": cell.duration, "sample_period": cell.duration / SAMPLES, "stations": STATIONS}
+    finest = Accuracy.of(FINER) if cell.target >= TARGET else FINEST
     steps = 0
     try:
-        run = swim.point.swim(swim.duration, **how)
+        run = cell.swim.run(**how)
         steps = run.steps
-        finer = swim.point._replace(accuracy=finest).swim(swim.duration, **how, estimate=False)
+        finer = cell.swim._replace(accuracy=finest).run(**how, estimate=False)
     except (SimulationStopped, ValueError) as stop:
         ended = getattr(stop, "run", None)
         return np.array((np.nan, str(stop), steps or (ended.steps if ended else 0), False, False, np.nan), CELL)
     apart = np.linalg.norm(run.position - finer.position, axis=1).max()
-    size = apart / max(finer.path_length, run.body.length) / swim.target
+    size = apart / max(finer.path_length, run.body.length) / cell.target
     ledger = [text for text in run.warnings if "ledger" in text]
     limits, poor = len(run.warnings) > len(ledger), size > 1.0
     assert run.error_estimate is not None
-    estimate = run.error_estimate.worst / swim.target if poor else np.nan
+    estimate = run.error_estimate.worst / cell.target if poor else np.nan
     return np.array((size, "", run.steps, limits, poor and bool(ledger), estimate), CELL)

@@ -33,13 +33,13 @@ from eel_dynamics.runs.batch import available_cores
 from eel_dynamics.runs.sampling import checked_times, default_sample_period
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, period_of, until_settled
 from eel_dynamics.runs.storage.tables import needed
+from eel_dynamics.runs.swim import Swim
 
 from eel_studies.points import (
     AccuracyLike,
     Gait,
     Measure,
     Numbers,
-    Point,
     Progress,
     Stations,
     SwimSettings,
@@ -175,7 +175,7 @@ def _warned(data: Any) -> Any:
     return data
 
 
-def swim_points(points: list[tuple[int, Point]], how: SwimSettings) -> Results:
+def swim_points(points: list[tuple[int, Swim]], how: SwimSettings) -> Results:
     """The task of a worker: simulate the points, given with their indices, and measure each.
 
     Returns the measures of each point by its index, with "error": the message of a point that stopped, else empty.
@@ -224,7 +224,7 @@ def _dataset(
     xarray: Any,
     names: list[str],
     axes: list[list[Any]],
-    points: list[Point],
+    points: list[Swim],
     done: Results,
     how: SwimSettings,
     gait: Gait,

@@ -13,17 +13,18 @@ from eel_dynamics.model.body import Body
 from eel_dynamics.model.shapes import NamedHalfAxis
 from eel_dynamics.runs.storage.plain import plain_of
 from eel_dynamics.runs.storage.tables import needed
+from eel_dynamics.runs.swim import Swim
 
 import eel_core
 import eel_dynamics
 import eel_gaits
 import eel_studies
-from eel_studies.points import Point, SwimSettings
+from eel_studies.points import SwimSettings
 
 PACKAGES = (Path(eel_gaits.__file__).parent, Path(eel_dynamics.__file__).parent, Path(eel_studies.__file__).parent)
 
 
-def key_of(points: list[Point], how: SwimSettings) -> str:
+def key_of(points: list[Swim], how: SwimSettings) -> str:
     """The key, 32 hexadecimal digits.
 
     It is a hash of the points, their `SwimSettings`, the measure's code and closure, and this software, including its

@@ -18,10 +18,10 @@ from eel_base.files.output_file import written_as
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.command_options import add_options, body_of, set_numbers
+from eel_dynamics.runs.swim import Swim
 from eel_gaits.gaits.registry import gait
 
 from eel_studies.outputs import Outputs, add_output_options
-from eel_studies.points import Point
 from eel_studies.tradeoff import measuring, models
 from eel_studies.tradeoff.delivered import COUNT, SEED, deliver, delivered_table, draw_delivered
 from eel_studies.tradeoff.drawing import SIZE, draw_trade
@@ -46,7 +46,7 @@ def main(arguments: list[str] | None = None) -> int:
 def _trade(options: argparse.Namespace) -> int:
     progress, numbers = Progress(NAME, "settings"), set_numbers(options.set)
     laws = [gait(name, **numbers) for name in options.gaits or ["falling"]]
-    swims = [Point(law, body_of(options.body), Scene(), Accuracy.of("standard")) for law in laws]
+    swims = [Swim(law, body_of(options.body), Scene(), Accuracy.of("standard")) for law in laws]
     least = measuring.SAMPLE_PERIOD  # a single sample has no error
     if not least <= options.duration < float("inf"):
         raise ValueError(f"--duration must be finite and >= {least} s, got {options.duration}")

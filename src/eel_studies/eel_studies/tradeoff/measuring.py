@@ -19,9 +19,9 @@ import numpy as np
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.swim import Swim
 from eel_dynamics.simulation.simulation import Simulation, SimulationStopped
 
-from eel_studies.points import Point
 from eel_studies.tradeoff.settings import CHECK, REFERENCE
 
 SAMPLE_PERIOD = 0.05  # s
@@ -52,7 +52,7 @@ class Measured:
 class Trade:
     """All that was measured for a gait."""
 
-    swim: Point  # with the accuracy of the reference
+    swim: Swim  # with the accuracy of the reference
     duration: float  # s
     reference: Run
     reference_error: tuple[float, float]  # of pose and torque, compared with a coarser run
@@ -75,17 +75,17 @@ def errors_of(run: Run, reference: Run) -> tuple[float, float]:
     return pose, float(np.max(np.linalg.norm(run.torque - reference.torque, axis=2))) / size if size else 0.0
 
 
-def swim_with(swim: Point, duration: float, accuracy: Accuracy, **scene: object) -> Run:
+def swim_with(swim: Swim, duration: float, accuracy: Accuracy, **scene: object) -> Run:
     """The `swim` of `duration` [s] with torque and without the ledger, for the measurement of errors.
 
     scene: fields of `Scene` that differ. `SimulationStopped` where the run cannot go on.
     """
     swim = swim._replace(scene=_measured_in(replace(swim.scene, **scene)), accuracy=accuracy)  # type: ignore[arg-type]
-    return swim.swim(duration, sample_period=SAMPLE_PERIOD, stations=STATIONS, estimate=False)
+    return swim.run(duration=duration, sample_period=SAMPLE_PERIOD, stations=STATIONS, estimate=False)
 
 
 def measure(
-    swim: Point,
+    swim: Swim,
     settings: list[Accuracy],
     duration: float = 10.0,
     repeats: int = 5,
@@ -138,7 +138,7 @@ def front(
     return result
 
 
-def ready(swim: Point, accuracy: Accuracy) -> Simulation:
+def ready(swim: Swim, accuracy: Accuracy) -> Simulation:
     """The `swim` before its first step, without samples."""
     return Simulation(swim.body, _measured_in(swim.scene), accuracy, 2, law=swim.law)
 

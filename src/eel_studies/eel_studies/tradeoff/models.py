@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.swim import Swim
 from eel_dynamics.simulation.simulation import SimulationStopped
 from eel_gaits.laws.law import Law
 
-from eel_studies.points import Point
 from eel_studies.tradeoff.measuring import errors_of, swim_with
 from eel_studies.tradeoff.settings import REFERENCE
 
@@ -41,7 +41,7 @@ class Model:
 
 
 def compare(
-    swim: Point, reference: Run, duration: float, say: Callable[[str], object] = lambda text: None
+    swim: Swim, reference: Run, duration: float, say: Callable[[str], object] = lambda text: None
 ) -> list[Model]:
     """Compare every variant that changes the scene of the `swim` with its `reference`, over `duration` [s].
 

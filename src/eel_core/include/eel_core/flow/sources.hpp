@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "eel_core/flow/gridded.hpp"
 #include "eel_core/flow/sample.hpp"
 #include "eel_core/law.hpp"
 
@@ -186,7 +187,8 @@ struct FunctionFlow {
 };
 
 struct Flow {
-    std::vector<std::variant<RampedFlow, SplineFlow, ShearFlow, VortexFlow, WaveFlow, FunctionFlow>> sources;
+    std::vector<std::variant<RampedFlow, SplineFlow, ShearFlow, VortexFlow, WaveFlow, GriddedFlow, FunctionFlow>>
+        sources;
 };
 
 // Writes u, u_t and the Jacobian at the places of `rows` (count, 18), as those of `FunctionFlow`, into them.

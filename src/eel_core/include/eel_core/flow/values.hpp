@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 
 #include "eel_core/algebra/field.hpp"
 #include "eel_core/flow/sources.hpp"
@@ -15,6 +16,8 @@ class FlowValues {
     FlowSample<M, Lanes> operator[](std::size_t block) const { return here_[block]; }
     FlowSample<M, double> node(std::size_t i) const { return here_.node(i); }
     const FlowSample<M, double>& nose() const { return nose_; }
+    // Time [s] and place [m] in the world where the flow was asked for last and is not known: outside a grid.
+    const std::optional<std::array<double, 4>>& outside() const { return outside_; }
     std::size_t bytes() const { return place_.bytes() + in_world_.bytes() + here_.bytes(); }
 
     // Sets the values at the first `count` of the points at `position` [m], about the head and in its axes, which are
@@ -30,12 +33,14 @@ class FlowValues {
         for (std::size_t k = 0; k < blocks; ++k) place_.store(k, placed(nose, head.parent(position[k])));
         WaterAt<double> at_nose{};
         bool first = true;
+        known_ = true;
         for (const auto& source : water.flow->sources) {
             std::visit([&](const auto& each) { add(each, time, nose, count, first, at_nose); }, source);
             first = false;
         }
         for (std::size_t k = 0; k < blocks; ++k) here_.store(k, turned(in_world_[k], water.current, head));
         nose_ = turned(at_nose, water.current, head);
+        if (known_) outside_.reset();
     }
 
   private:
@@ -69,6 +74,22 @@ class FlowValues {
         }
         at_nose += now(nose);
     }
+    void add(const GriddedFlow& source, double time, const Vector3<double>& nose, std::size_t count, bool first,
+             WaterAt<double>& at_nose)
+    {
+        const auto now = source.at(time);
+        const auto at = [&](const Vector3<double>& place) {
+            const WaterAt<double> water = now(place);
+            if (std::isnan(water.u.x)) {
+                const bool first_unknown = known_ && !std::isnan(place.x + place.y + place.z);  // else it has diverged
+                if (first_unknown) outside_ = {time, place.x, place.y, place.z};
+                known_ = false;
+            }
+            return water;
+        };
+        add_each([&](std::size_t i) { return at(place_.node(i)); }, count, first);
+        at_nose += at(nose);
+    }
     void add(const FunctionFlow& source, double time, const Vector3<double>& nose, std::size_t count, bool first,
              WaterAt<double>& at_nose)
     {
@@ -81,12 +102,19 @@ class FlowValues {
         const auto row = [&](std::size_t i) {
             return Components<WaterAt<double>>::make([&](std::size_t c) { return rows_[columns * i + 3 + c]; });
         };
-        for (std::size_t i = 0; i + width < place_.stride(); ++i)  // behind the last point as there
+        add_each(row, count, first);
+        at_nose += row(count);
+    }
+
+    // Adds the water that `row` gives at each of the `count` points, one by one; behind the last point as there.
+    template <class Row>
+    void add_each(const Row& row, std::size_t count, bool first)
+    {
+        for (std::size_t i = 0; i + width < place_.stride(); ++i)
             Components<WaterAt<double>>::each(row(std::min(i, count - 1)), [&](std::size_t c, double value) {
                 double& sum = in_world_.row(c)[i];
                 sum = first ? value : sum + value;
             });
-        at_nose += row(count);
     }
 
     Field<Vector3<double>> place_;  // [m], in the world
@@ -94,6 +122,8 @@ class FlowValues {
     Field<FlowSample<M, double>> here_;
     FlowSample<M, double> nose_{};
     std::vector<double> rows_;
+    std::optional<std::array<double, 4>> outside_;
+    bool known_ = true;
 };
 
 }  // namespace eel_core

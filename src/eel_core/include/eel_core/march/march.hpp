@@ -80,6 +80,14 @@ class March {
         return work.twist;
     }
 
+    // Time [s] and place [m] in the world outside the grid of the flow, where the last evaluation was there.
+    std::optional<std::array<double, 4>> outside() const
+    {
+        const auto found = std::visit([](const auto& stepper) { return stepper.work().flow.outside(); }, stepper_);
+        if (found) return found;
+        return observing_ && observing_->flow.outside() ? observing_->flow.outside() : here_.flow.outside();
+    }
+
     // Position [m], orientation x y z w and twist over ground [rad/s, m/s] of the head in the present state; none where
     // the inertia is not positive definite.
     std::optional<HeadMotion> head()

@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A swim in a file: `load_scene` and `save_scene`. Nodes take the same file (`--params-file`).
+
+Its words are the names of the nodes' parameters, below `/**: ros__parameters:` or alone:
+
+    gait: straight            # as of the node gait_generator; its numbers stand beside it, and file: of a sequence
+    period: 0.8
+    body: boyer2010           # or a file
+    scene: {planar: true}     # fields of `Scene`
+    accuracy: 1e-4
+    duration: 10.0            # s; of the library "settled" too
+    initial_linear_velocity: [0.3, 0, 0]
+    flow: {kind: Shear, ...}  # fields of a flow, or several such flows by names of their own, which are added
+
+A further word is a line of `WORDS`.
+"""
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import yaml
+from eel_base.files.input_file import reading
+from eel_base.files.output_file import replacing
+from eel_base.files.yaml_tree import read_yaml
+from eel_base.quantity import checked_instance, checked_row, positive
+from eel_base.wording import did_you_mean, shown
+from eel_gaits.gaits.settings import SEQUENCES, Settings
+
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.flow.plain import KINDS, flow_of, plain_of_flow
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.settled_duration import until_settled
+from eel_dynamics.runs.swim import AT_REST, Swim
+
+SUFFIXES = SEQUENCES  # of such files; one with steps is a sequence
+FOR_ALL, PARAMETERS = "/**", "ros__parameters"
+ABOUT = "# A scene for eel simulate, terms, tradeoff and stability, and for --params-file of the nodes.\n"
+
+
+class Word(NamedTuple):
+    """A word of a file. given(swim, value): the fields of `Swim` that it sets. plain(swim): its value, or None."""
+
+    given: Callable[[Swim, Any], dict[str, Any]]
+    plain: Callable[[Swim], Any]
+
+
+def load_scene(path: str | os.PathLike[str]) -> Swim:
+    """The swim of a file. `ValueError` in one line names the file, the word, and what it got."""
+    with reading(f"scene {shown(str(path))}"):
+        return swim_of(read_yaml(path))
+
+
+def save_scene(swim: Swim, path: str | os.PathLike[str]) -> None:
+    """Write `swim` to a file. `ValueError` for what none can hold; `NotWritten`: it cannot be completed."""
+    text = yaml.safe_dump({FOR_ALL: {PARAMETERS: words_of(swim)}}, sort_keys=False, default_flow_style=None)
+    with replacing(Path(path)) as draft:
+        draft.write_text(ABOUT + text, encoding="utf-8")
+
+
+def swim_of(words: Any) -> Swim:
+    """The swim of these `words`. `ValueError` names the one that does not fit."""
+    words = checked_instance("its content", words, Mapping)
+    for level in (FOR_ALL, PARAMETERS):
+        words = checked_instance(level, words.get(level, words), Mapping)
+    known, gait = Settings.known_names(), {word: value for word, value in words.items() if word not in WORDS}
+    for word in gait:
+        if word not in known:
+            hint = did_you_mean(word, (*WORDS, *known))
+            raise ValueError(f"unknown word {shown(word)}{hint}, must be gait, its numbers, or {', '.join(WORDS)}")
+    settings = Settings().changed(gait)
+    swim = Swim(settings.law(), Body.boyer2010(), Scene(), Accuracy.of("standard"), gait=settings)
+    for word, value in words.items():
+        swim = swim._replace(**WORDS[word].given(swim, value)) if word in WORDS else swim
+    return swim
+
+
+def words_of(swim: Swim) -> dict[str, Any]:
+    """The words of a file of this `swim`; what has its default is left out. `ValueError` for what no file can hold."""
+    if swim.gait is None or swim.gait.law() != swim.law:
+        raise ValueError(f"law {shown(swim.law.name)} cannot be written: no gait by name gave it")
+    own: dict[str, Any] = {"gait": swim.gait.gait, "file": swim.gait.file, **swim.gait.chosen}
+    own |= {word: about.plain(swim) for word, about in WORDS.items()}
+    return {word: value for word, value in own.items() if value not in (None, "", {})}
+
+
+def _body(swim: Swim, value: Any) -> dict[str, Any]:
+    from_file = bool(Path(checked_instance("body", value, str)).suffix)
+    body = Body.from_file(value) if from_file else Body.named(value)
+    return {"body": body, "body_file": value if from_file else ""}
+
+
+def _plain_body(swim: Swim) -> str:
+    name = swim.body_file or swim.body.name
+    if _body(swim, name)["body"] != swim.body:
+        raise ValueError(f"body {shown(name)} cannot be written: its numbers are no longer those of that name")
+    return name
+
+
+def _scene(swim: Swim, value: Any) -> dict[str, Any]:
+    known, given = [item.name for item in fields(Scene)], checked_instance("scene", value, Mapping)
+    for name in given:
+        if name not in known:
+            raise ValueError(f"scene has no field {shown(name)}{did_you_mean(name, known)}, it has: {', '.join(known)}")
+    return {"scene": Scene(**given)}
+
+
+def _plain_scene(swim: Swim) -> dict[str, Any]:
+    return _listed({item.name: getattr(swim.scene, item.name) for item in fields(Scene)}, vars(Scene()))
+
+
+def _plain_accuracy(swim: Swim) -> Any:
+    name = swim.accuracy.name
+    if Accuracy.of(name) != swim.accuracy:
+        raise ValueError(f"accuracy {shown(name)} cannot be written: it must be a preset, a target or a budget")
+    return float(name) if name[0].isdigit() and "," not in name else name
+
+
+def _duration(swim: Swim, value: Any) -> dict[str, Any]:
+    return {"duration": value if until_settled(value) else positive("duration", value, "s")}
+
+
+def _flow(swim: Swim, value: Any) -> dict[str, Any]:
+    given = checked_instance("flow", value, Mapping)
+    parts = [given] if "kind" in given else list(given.values())
+    return {"flow": flow_of([dict(checked_instance("flow", each, Mapping)) for each in parts])}
+
+
+def _plain_flow(swim: Swim) -> Any:
+    parts = [_listed(each, {}) for each in plain_of_flow(swim.flow) or []]
+    if any(each["kind"] not in KINDS for each in parts):
+        raise ValueError(f"flow {shown(swim.flow)} cannot be written: a scene holds no functions and no grids")
+    return parts[0] if len(parts) == 1 else {f"part_{number}": each for number, each in enumerate(parts, 1)}
+
+
+def _listed(values: Mapping[str, Any], defaults: Mapping[str, Any]) -> dict[str, Any]:
+    """The `values` by name, rows as lists, without those that are None or the default."""
+    others = {name: value for name, value in values.items() if value is not None and value != defaults.get(name)}
+    return {name: np.array(value).tolist() if isinstance(value, tuple) else value for name, value in others.items()}
+
+
+def _of_start(field: str, part: slice = slice(None)) -> Word:
+    """A word for a `part` of a row of the initial state."""
+
+    def given(swim: Swim, value: Any) -> dict[str, Any]:
+        row = getattr(swim.start, field).copy()
+        row[part] = checked_row(f"initial {field}", value, len(row[part]))
+        return {"start": swim.start._replace(**{field: row})}
+
+    def plain(swim: Swim) -> Any:
+        row = getattr(swim.start, field)[part]
+        return None if np.array_equal(row, getattr(AT_REST, field)[part]) else row.tolist()
+
+    return Word(given, plain)
+
+
+def _number(name: str, default: Any) -> Word:
+    """A word that is a field of its own."""
+    return Word(
+        lambda swim, value: {name: value},
+        lambda swim: None if getattr(swim, name) == default else getattr(swim, name),
+    )
+
+
+WORDS: dict[str, Word] = {
+    "body": Word(_body, _plain_body),
+    "scene": Word(_scene, _plain_scene),
+    "accuracy": Word(lambda swim, value: {"accuracy": Accuracy.of(value)}, _plain_accuracy),
+    "duration": Word(_duration, lambda swim: swim.duration),
+    "sample_period": _number("sample_period", None),
+    "stations": _number("stations", 51),
+    "initial_position": _of_start("position"),
+    "initial_orientation": _of_start("orientation"),
+    "initial_angular_velocity": _of_start("twist", slice(3)),
+    "initial_linear_velocity": _of_start("twist", slice(3, 6)),
+    "flow": Word(_flow, _plain_flow),
+}

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A swim as a value: what swims, by which law, in which scene and water, and for how long."""
+
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+from eel_base.wording import shown
+from eel_gaits.gaits.settings import Settings
+
+from eel_dynamics.flow.flow import Flow
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.initial_state import InitialState
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.simulation.simulation import Simulation
+
+AT_REST = InitialState(np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), np.zeros(6))
+OF_SWIMMER = ("body", "scene", "accuracy", "stations", "flow")  # fields that are arguments of `Simulation`
+
+
+class Swim(NamedTuple):
+    """What `simulate` takes, as one value. Every field but the first four has a default."""
+
+    law: Any  # Law or SampledLaw; None in what several swims share
+    body: Body
+    scene: Scene
+    accuracy: Any  # as in `simulate`
+    start: InitialState = AT_REST
+    flow: Flow | None = None
+    duration: float | str = 10.0  # s, or "settled"
+    sample_period: float | None = None  # s
+    stations: Any = 51  # how many, or their X [m]
+    gait: Settings | None = None  # what gave the law, where a gait did
+    body_file: str = ""  # where the body is from, if from a file
+
+    def run(self, **how: Any) -> Run:
+        """The run. how: further arguments of `simulate`, or other ones. `SimulationStopped`: it cannot go on."""
+        own = {"duration": self.duration, "sample_period": self.sample_period} | self._swimmer
+        return simulate(self.law, **own | how)
+
+    def simulation(self, **how: Any) -> Simulation:
+        """The swimmer at its start. how: further arguments of `Simulation`, or other ones."""
+        return Simulation(**self._swimmer | {"law": self.law} | how)
+
+    def with_gait(self, **numbers: Any) -> Self:
+        """The same with other `numbers` of the gait. `ValueError` for a law that no gait gave."""
+        if self.gait is None:
+            raise ValueError(f"law {shown(self.law.name)} has no numbers: no gait gave it")
+        gait = self.gait.changed(numbers)
+        return self._replace(law=gait.law(), gait=gait)
+
+    @property
+    def _swimmer(self) -> dict[str, Any]:
+        return {name: getattr(self, name) for name in OF_SWIMMER} | self.start._asdict()

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A scene in a file: what is read is what is swum, what is written comes back equal, nodes take it, bad input."""
+
+import numpy as np
+import pytest
+import yaml
+from eel_dynamics.ros.parameters import DynamicsParameters
+from eel_dynamics.runs import command
+from eel_dynamics.runs.scene_file import WORDS, swim_of, words_of
+from eel_gaits.gaits.settings import Settings
+from swim_client import LIMIT
+
+from eel_dynamics import Accuracy, Body, Gust, Scene, Shear, Swim, load_scene, save_scene, simulate
+from eel_gaits import straight
+
+SCENE = """
+gait: straight
+period: 0.8
+body: kern2006
+scene: {planar: true, fluid_density: 900, current: [-0.1, 0, 0]}
+accuracy: 1e-3
+duration: 2
+initial_linear_velocity: [0.2, 0.1, 0]
+initial_position: [1, 2, 3]
+stations: 11
+flow:
+  wind: {kind: Gust, velocity: [0.1, 0, 0], start: 0.5}
+  sheared: {kind: Shear, velocity: [0.2, 0, 0], width: 2}
+"""
+
+
+def scene_in(folder, text=SCENE, name="scene.yaml"):
+    path = folder / name
+    path.write_text(text)
+    return path
+
+
+def test_what_is_read_is_what_is_swum(tmp_path):
+    swim = load_scene(scene_in(tmp_path))
+    run = simulate(
+        straight(period=0.8), 2.0, body=Body.kern2006(), accuracy=1e-3, stations=11, position=(1, 2, 3),
+        scene=Scene(planar=True, fluid_density=900.0, current=(-0.1, 0.0, 0.0)), twist=(0, 0, 0, 0.2, 0.1, 0),
+        flow=swim.flow,
+    )  # fmt: skip
+    assert swim.run() == run and len(swim.flow.parts) == 2
+    assert swim.simulation().setup.flow == swim.flow
+
+
+def test_what_is_written_comes_back_equal(tmp_path):
+    swim = load_scene(scene_in(tmp_path))
+    for each in (swim, swim.with_gait(period=0.5), swim._replace(flow=None, scene=Scene(), duration="settled")):
+        save_scene(each, tmp_path / "again.yaml")
+        again = load_scene(tmp_path / "again.yaml")
+        assert words_of(again) == words_of(each)
+        assert again.law == each.law and again.body == each.body and again.accuracy == each.accuracy
+        assert all(np.array_equal(ours, theirs) for ours, theirs in zip(again.start, each.start, strict=True))
+
+
+def test_the_words_are_parameters_of_the_nodes(tmp_path):
+    """All but the period of samples and the flow, which the nodes have otherwise or not."""
+    save_scene(load_scene(scene_in(tmp_path)), tmp_path / "again.yaml")
+    words = yaml.safe_load((tmp_path / "again.yaml").read_text())["/**"]["ros__parameters"]
+    named = {name for name in WORDS if name not in ("scene", "sample_period", "flow")}
+    assert named <= {*vars(DynamicsParameters()), *Settings.known_names()}
+    values = DynamicsParameters.among(words)
+    assert (values.accuracy, values.duration, values.body) == (1e-3, 2.0, "kern2006")
+    assert Settings.start(words).law() == straight(period=0.8)
+    assert not set(words["scene"]) - set(vars(Scene()))
+
+
+def test_scene_drives_the_nodes_too(tmp_path, start, client):
+    path = tmp_path / "scene.yaml"
+    save_scene(swim_of({"gait": "straight", "period": 0.5, "duration": 0.3, "scene": {"planar": True}}), path)
+    files = ("--ros-args", "--params-file", str(path))
+    swim = client(topics=("head_pose",))
+    start("gait_generator", *files)
+    node = start("dynamics", *files, "-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=1")
+    assert node.wait(LIMIT) == 0, node.output()
+    swim.until(lambda: len(swim.received["head_pose"]) == 31, "31 samples")
+    assert "not parameters of this node" not in node.output()
+
+
+def test_cross_flow_is_a_switch_of_the_scene():
+    robot = Body.boyer2010()
+    bare = robot.changed(lateral_drag=0.0, vertical_drag=0.0, roll_drag=0.0)
+    off = simulate(straight(), 1.0, scene=Scene(cross_flow=False), accuracy=1e-3)
+    assert np.array_equal(off.position, simulate(straight(), 1.0, body=bare, accuracy=1e-3).position)
+    assert off.position[-1, 0] != simulate(straight(), 1.0, accuracy=1e-3).position[-1, 0]
+
+
+@pytest.mark.parametrize(
+    "text, named",
+    [
+        ("gait: straightt", "did you mean 'straight'?"),
+        ("gait: straight\nperiode: 1", "unknown word 'periode' (did you mean 'period'?)"),
+        ("gait: straight\nperiod: -1", "period must be >= 0.001 s"),
+        ("scene: {plane: true}", "scene has no field 'plane' (did you mean 'planar'?)"),
+        ("scene: {viscosity: -1}", "scene viscosity must be >= 0 m^2/s, got -1"),
+        ("scene: planar", "scene must be a Mapping, got 'planar'"),
+        ("body: eel", "body must be one of boyer2010, kern2006, a file, got 'eel'"),
+        ("body: missing.csv", "missing.csv"),
+        ("accuracy: exact", "accuracy"),
+        ("duration: 0", "duration must be > 0 s, got 0"),
+        ("duration: long", "duration must be a number, got 'long'"),
+        ("flow: {kind: Gusty}", "flow kind must be one of"),
+        ("flow: {kind: Gust, begin: 1}", "flow Gust has no field 'begin'"),
+        ("flow: {a: 3}", "flow must be a Mapping, got 3"),
+        ("initial_position: [1, 2]", "initial position must be 3 numbers, got 2"),
+        ("- a list", "its content must be a Mapping"),
+        ("gait: [", "line 1"),
+    ],
+)
+def test_bad_input_is_one_line_that_names_it(tmp_path, text, named, capsys):
+    assert command.main([str(scene_in(tmp_path, text))]) == 2
+    said = capsys.readouterr().err
+    assert named in said and said.startswith("eel simulate: scene '") and said.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    "words, named",
+    [("--set period=1", "period=1"), ("--scene planar=on", "planar=on"), ("--body kern2006", "kern2006")],
+)
+def test_what_a_scene_has_itself_is_not_given_beside_it(tmp_path, words, named, capsys):
+    assert command.main([str(scene_in(tmp_path)), *words.split()]) == 2
+    assert f"has gait, body and scene of its own, got '{named}' too" in capsys.readouterr().err
+
+
+def test_duration_and_accuracy_of_the_command_come_first(tmp_path, capsys):
+    out = tmp_path / "run.npz"
+    assert command.main([str(scene_in(tmp_path)), "--duration", "1", "--stations", "5", "--out", str(out)]) == 0
+    arrays = np.load(out)
+    assert arrays["time"][-1] == 1.0 and arrays["torque"].shape[1] == 5
+
+
+@pytest.mark.parametrize(
+    "changes, named",
+    [
+        ({"law": straight(period=0.7)}, "law 'straight' cannot be written"),
+        ({"gait": None}, "law 'straight' cannot be written"),
+        ({"body": Body.boyer2010().changed(lateral_drag=1.0)}, "body 'boyer2010' cannot be written"),
+        ({"accuracy": Accuracy(name="fine", resolution=30.0)}, "accuracy 'fine' cannot be written"),
+    ],
+)
+def test_what_no_file_can_hold_is_refused(changes, named, tmp_path):
+    swim = swim_of({"gait": "straight"})
+    assert isinstance(swim, Swim)
+    with pytest.raises(ValueError, match=named):
+        save_scene(swim._replace(**changes), tmp_path / "scene.yaml")
+    assert not (tmp_path / "scene.yaml").exists()
+
+
+def test_flows_come_back():
+    for flow in (Gust(hold=2.0), Shear(width=2.0)):
+        swim = swim_of({"gait": "straight"})._replace(flow=flow)
+        assert swim_of(words_of(swim)).flow == flow

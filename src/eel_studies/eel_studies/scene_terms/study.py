@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What each term does to a swim, and the smallest scene that stays within a tolerance of the whole one.
+
+Each effect is a relative difference from the swim with all terms: of the head's path (as `accuracy` has it), of the
+mean speed, of the greatest torque and of the cost of transport. All swims are a hundred times as exact as the tolerance
+where the motion allows, and each measures its own error: what lies below it is not told apart. Times are CPU times of
+one core; the swims take turns, and medians count.
+"""
+
+import statistics
+import time
+import warnings
+from dataclasses import dataclass, replace
+
+import numpy as np
+from eel_base.quantity import checked_instance, number
+from eel_base.wording import one_line
+from eel_dynamics.accuracy.accuracy import COARSEST, Accuracy
+from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
+from eel_dynamics.analysis.measures import measures_of
+from eel_dynamics.runs.companion import relative_errors
+from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.swim import Swim
+from eel_dynamics.simulation.stopping import SimulationStopped
+
+from eel_studies.scene_terms.terms import TERMS, WITHIN, terms_of, without
+from eel_studies.table import Table
+from eel_studies.workers import in_threads
+
+MEASURES = {"mean_speed": "speed", "greatest_torque": "torque", "cost_of_transport": "cost of transport"}
+EFFECTS = ("path", *MEASURES.values())
+FINER = 1e-2  # of the tolerance: the error of the swims that are compared
+EXACT_ENOUGH = 0.1  # of the tolerance, which the discretisation of the recommended scene may take
+COARSEST_COMPARED = 1e-4  # of these swims, whatever the tolerance
+LEAST_TOLERANCE = 1e-7
+SENSITIVE = np.log(100.0)  # growth of errors over a swim from which on it is said
+ROUNDS = 5  # of timing
+# A swim without a term may take so many times the whole scene's evaluations per second, and at least so many.
+DEARER, LEAST_EVALUATIONS = 100.0, 1e4
+
+
+@dataclass(frozen=True)
+class Effect:
+    """What leaving out a term does. Relative; NaN where a measure is not defined, infinite where the swim `stopped`."""
+
+    path: float
+    speed: float
+    torque: float
+    cost_of_transport: float
+    seconds: float  # CPU time
+    error: float  # estimated error of the swim itself
+    stopped: str = ""
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """Those of `EFFECTS`."""
+        return self.path, self.speed, self.torque, self.cost_of_transport
+
+    @property
+    def worst(self) -> float:
+        """The greatest of those that are defined."""
+        return max(abs(value) for value in self.values if not np.isnan(value))
+
+
+@dataclass(frozen=True)
+class Terms:
+    """The effects of all terms on a `swim`, and the recommended scene.
+
+    effects: by name of the term. dropped: the terms that `recommended` does without; together they have the effect
+    `together`, its coarser accuracy included. within: whether that is within the `tolerance`.
+    """
+
+    swim: Swim
+    duration: float  # s
+    tolerance: float
+    whole: Effect
+    effects: dict[str, Effect]
+    dropped: list[str]
+    recommended: Swim
+    together: Effect
+    restored: list[str]  # terms with little effect of their own, which the others need
+    growth_rate: float  # 1/s, of errors
+
+    @property
+    def left_out(self) -> list[str]:
+        """The terms that the recommended scene does without; parts of another one that goes are not named."""
+        parts = {part for name in self.dropped for part in WITHIN.get(name, ())}
+        return [name for name in self.dropped if name not in parts]
+
+    @property
+    def within(self) -> bool:
+        """Whether the recommended scene is within the tolerance."""
+        return self.together.worst <= self.tolerance
+
+    def table(self) -> Table:
+        """A row for each term, and those of the whole and the recommended scene."""
+        rows = [("nothing", *("",) * len(EFFECTS), f"{1e3 * self.whole.seconds:.3g}", "")]
+        for name, effect in sorted(self.effects.items(), key=lambda item: -item[1].worst):
+            rows.append((name, *self._cells(effect), self._verdict(name)))
+        rows.append(("recommended scene", *self._cells(self.together), "within" if self.within else "NOT within"))
+        return Table(("left out", *EFFECTS, "CPU ms", f"tolerance {self.tolerance:g}"), rows, (0, 6))
+
+    def _cells(self, effect: Effect) -> tuple[str, ...]:
+        if effect.stopped:
+            return ("stops", *("",) * (len(EFFECTS) - 1), "")
+        floor = max(effect.error, self.whole.error)
+        path = f"< {floor:.1e}" if effect.path <= floor else f"{effect.path:.1e}"
+        return (path, *map(_percent, effect.values[1:]), f"{1e3 * effect.seconds:.3g}")
+
+    def _verdict(self, name: str) -> str:
+        return "can go" if name in self.dropped else "needed with others" if name in self.restored else "matters"
+
+    def about(self) -> str:
+        """The recommendation in words."""
+        names = f"without {', '.join(self.left_out)}" if self.left_out else "all terms"
+        speed = self.whole.seconds / self.together.seconds if self.together.seconds else np.nan
+        lines = [
+            f"Recommended: {names}; accuracy {self.recommended.accuracy.name}. It differs by at most "
+            f"{self.together.worst:.1e} and takes 1/{speed:.3g} of the CPU time."
+        ]
+        if self.growth_rate * self.duration > SENSITIVE:
+            lines.append(
+                f"The path is sensitive: errors grow by a factor of e in {1.0 / self.growth_rate:.2g} s, so that any "
+                "term changes a long path. Judge such a scene by a shorter duration."
+            )
+        return "\n".join(lines)
+
+
+def terms(swim: Swim, tolerance: float = 0.02) -> Terms:
+    """What each term of the model does to `swim`, and the smallest scene that differs by at most `tolerance`.
+
+    Terms with a small effect go together; where their sum is too great, the greatest of them come back. The scene that
+    is left is swum once more, at an accuracy of a tenth of the tolerance, against the whole one. `ValueError` for what
+    does not fit; `SimulationStopped` where the whole scene cannot be swum.
+    """
+    checked_instance("swim", swim, Swim)
+    tolerance = number("tolerance", tolerance, minimum=LEAST_TOLERANCE, maximum=1.0)
+    fine = Accuracy.of(min(FINER * tolerance, COARSEST_COMPARED))
+    exact = Accuracy.of(float(f"{min(EXACT_ENOUGH * tolerance, COARSEST):.3g}"))
+    scene = replace(swim.scene, internal_wrench=True, ledger=True)
+    whole = _swum(swim._replace(scene=scene, accuracy=fine))
+    if isinstance(whole, Exception):
+        raise whole
+    compared = swim._replace(scene=scene, duration=float(whole.time[-1]), sample_period=float(np.diff(whole.time)[0]))
+    parts = terms_of(compared)
+    most = max(LEAST_EVALUATIONS, DEARER * whole.evaluations / float(whole.time[-1]))
+    swum = in_threads(lambda each: _swum(each._replace(accuracy=fine), most), parts.values())
+    effects = {name: _effect(run, whole) for name, run in zip(parts, swum, strict=True)}
+    small = [name for name in parts if effects[name].worst <= tolerance and parts[name].law is swim.law]
+    dropped, restored = sorted(small, key=lambda name: effects[name].worst), []
+    while True:
+        together = _effect(_swum(without(compared, dropped)._replace(accuracy=exact)), whole)
+        if together.worst <= tolerance or not dropped:
+            break
+        restored.append(dropped.pop())
+    recommended = without(swim, dropped)._replace(accuracy=exact)
+    own = [off(swim) for off in (TERMS[name] for name in parts)]
+    first, *others, last = _seconds([swim, *own, recommended], float(whole.time[-1]))
+    effects = {name: replace(effects[name], seconds=took) for name, took in zip(parts, others, strict=True)}
+    nothing, together = replace(_effect(whole, whole), seconds=first), replace(together, seconds=last)
+    rate = whole.error_estimate.growth_rate if whole.error_estimate else 0.0
+    duration = float(whole.time[-1])
+    return Terms(swim, duration, tolerance, nothing, effects, dropped, recommended, together, restored, rate)
+
+
+def _swum(swim: Swim, most_evaluations: float = MOST_EVALUATIONS) -> Run | Exception:
+    """The run, or why there is none."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # the error of each run is told
+            return swim.run(most_evaluations=most_evaluations, progress=lambda reached, left: None)
+    except (SimulationStopped, ValueError) as error:
+        return error
+
+
+def _effect(run: Run | Exception, whole: Run) -> Effect:
+    if isinstance(run, Exception):
+        return Effect(np.inf, np.inf, np.inf, np.inf, np.nan, np.inf, one_line(run))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        found, base = (measures_of(each, tuple(MEASURES)) for each in (run, whole))
+    speed, torque, cost = ((found[name] - base[name]) / abs(base[name]) if base[name] else np.nan for name in MEASURES)
+    error = np.inf if run.error_estimate is None else run.error_estimate.worst
+    return Effect(relative_errors(run, whole).position, speed, torque, cost, np.nan, error)
+
+
+def _seconds(swims: list[Swim], duration: float) -> list[float]:
+    """The CPU time [s] of `duration` [s] of each of the `swims`; infinite where one stops."""
+
+    def timed(swim: Swim) -> float:
+        try:
+            begin = time.thread_time()
+            swim.simulation().advance(duration)
+            return time.thread_time() - begin
+        except (SimulationStopped, ValueError):
+            return np.inf
+
+    return [statistics.median(times) for times in zip(*([*map(timed, swims)] for _ in range(ROUNDS)), strict=True)]
+
+
+def _percent(value: float) -> str:
+    return "-" if np.isnan(value) else f"{value:+.2%}"
