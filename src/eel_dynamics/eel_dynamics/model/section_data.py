@@ -39,7 +39,8 @@ def added_masses(body: Body, scene: Scene, a_squared, b_squared):
     """
     rho = scene.fluid_density if scene.reactive else 0.0
     along2, along3 = (a_squared, b_squared) if scene.added_mass == "corrected" else (b_squared, a_squared)
-    return rho * np.pi * along2 * body.lateral_added_mass, rho * np.pi * along3, rho * np.pi / 8.0 * (a_squared - b_squared) ** 2
+    lateral = rho * np.pi * along2 * body.lateral_added_mass
+    return lateral, rho * np.pi * along3, rho * np.pi / 8.0 * (a_squared - b_squared) ** 2
 
 
 class SectionData(NamedTuple):

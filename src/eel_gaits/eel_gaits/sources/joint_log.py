@@ -13,6 +13,7 @@ So each angle is kept exactly, and at equal distances the angles add up smoothly
 import csv
 import fnmatch
 import io
+import itertools
 import re
 from pathlib import Path
 from typing import NamedTuple
@@ -28,13 +29,15 @@ from eel_gaits.sources.smoothing import smoothed_in_time
 from eel_gaits.sources.tables import MOST_BYTES, MOST_NUMBERS, lines_of
 
 KNOWN = (  # names of columns of joints, the best first; a number in the name orders them
-    r"yaw_(\d+)", r"(\d+)FbckPosition.*", r".*position[\[._/](\d+)\]?", r"pos(?:ition)?_?(\d+)", r"(?:joint|q)_?(\d+).*",
+    r"yaw_(\d+)", r"(\d+)FbckPosition.*", r".*position[\[._/](\d+)\]?", r"pos(?:ition)?_?(\d+)",
+    r"(?:joint|q)_?(\d+).*",
 )  # fmt: skip
 TIME = re.compile(r".*(?:time|stamp|_ts|^t$|^t[_\[]|^t \[).*", re.IGNORECASE)
 PARTS = {"[us]": 1e-6, "[ms]": 1e-3, "[ns]": 1e-9}  # of a second, in a second column of time
 DEGREES = re.compile(r".*(?:\[deg\]|_deg)$", re.IGNORECASE)
 FEWEST_JOINTS, FEWEST_ROWS = 2, 16
-WINDOW, SPREADS = 7, 6.0  # readings around one, and their robust spreads beyond which it has jumped
+SPREADS, FINEST = 6.0, 2e-3  # robust spreads beyond which a reading has jumped, and the least spread [rad]
+PASSES = 3
 LARGEST = 3.2  # rad, of a joint: beyond it the file is in degrees
 BY_WIDTH = 8  # points of the law in a joint's width
 GAP = 0.25  # of the fastest motion's period
@@ -89,9 +92,9 @@ def joint_log(
         angles = np.radians(angles)
     elif np.max(np.abs(angles)) > LARGEST:
         raise ValueError(f"an angle must be at most {LARGEST} rad, got {np.max(np.abs(angles)):.4g}: give --units deg")
-    angles, jumps = _without_jumps(angles)
+    angles, jumps = _without_jumps(time, angles)
     if jumps:
-        notes = (*notes, f"{jumps} of {angles.size} readings have jumped: replaced by the median of their neighbours")
+        notes = (*notes, f"{jumps} of {angles.size} readings have jumped: replaced by their neighbours")
     if tail_first:
         angles, joints = angles[:, ::-1], joints[::-1]
     return JointLog(name, time - time[0], angles, joints, notes)
@@ -160,7 +163,9 @@ def _joint_columns(head: list[str], columns: str) -> list[int]:
         if span := re.fullmatch(r"(\d+)-(\d+)", columns):
             found = list(range(int(span[1]) - 1, int(span[2])))
         else:
-            found = [index for part in columns.split(",") for index, name in enumerate(head) if _fits(part, name, index)]
+            found = [
+                index for part in columns.split(",") for index, name in enumerate(head) if _fits(part, name, index)
+            ]
         if not found or max(found) >= len(head) or min(found) < 0 or len(set(found)) < len(found):
             raise ValueError(f"columns must name joints among the {len(head)} of the file, got {shown(columns)}")
         return found
@@ -187,13 +192,22 @@ def _time(head: list[str], rows: np.ndarray) -> np.ndarray:
     return np.asarray((time - time[0]) * unit)
 
 
-def _without_jumps(angles: np.ndarray) -> tuple[np.ndarray, int]:
-    """Readings far from the median of their neighbours, replaced by it, and their number (Hampel's filter)."""
-    from scipy.ndimage import median_filter
-
-    middle = median_filter(angles, size=(WINDOW, 1), mode="nearest")
-    apart = np.abs(angles - middle)
-    usual = 1.4826 * median_filter(apart, size=(4 * WINDOW + 1, 1), mode="nearest")
-    scale = np.percentile(apart, 75, axis=0)  # of the whole log: a quiet stretch has no spread of its own
-    bad = apart > SPREADS * np.maximum(usual, np.maximum(scale, 1e-9))
-    return np.where(bad, middle, angles), int(np.count_nonzero(bad))
+def _without_jumps(time: np.ndarray, angles: np.ndarray) -> tuple[np.ndarray, int]:
+    """Single readings far from the cubic through their four neighbours, replaced by it, and their number."""
+    others = np.stack([time[shift : len(time) - 4 + shift] for shift in (0, 1, 3, 4)])  # (4, N - 4)
+    weights = np.ones_like(others)
+    for one, other in itertools.permutations(range(4), 2):  # Lagrange
+        weights[one] *= (time[2:-2] - others[other]) / (others[one] - others[other])
+    found, count = angles.copy(), 0
+    for _ in range(PASSES):
+        inner = sum(
+            weight[:, None] * found[shift : len(time) - 4 + shift]
+            for weight, shift in zip(weights, (0, 1, 3, 4), strict=True)
+        )
+        apart = np.abs(found[2:-2] - inner)
+        limit = SPREADS * np.maximum(1.4826 * np.median(apart, axis=0), FINEST)
+        around = np.max([np.roll(apart, shift, axis=0) for shift in (-2, -1, 1, 2)], axis=0)  # a jump shows there too
+        bad = (apart > limit) & (apart > around)
+        found[2:-2] = np.where(bad, inner, found[2:-2])
+        count += int(np.count_nonzero(bad))
+    return found, count

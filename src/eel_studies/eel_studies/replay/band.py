@@ -64,10 +64,11 @@ class Replayed:
         run, torque = self.run, self.torque
         later = run.time >= 0.5 * run.time[-1]
         way = run.center_of_mass[-1] - run.center_of_mass[0]
+        along = run.center_of_mass[-1] - run.center_of_mass[np.argmax(later)]
         return {
             "mean speed, later half [m/s]": self.speed,
             "way of the centre of mass, start to end [m]": float(np.linalg.norm(way)),
-            "heading, end less start [deg]": float(np.degrees(_turn(run))),
+            "direction of the way, later half [deg]": float(np.degrees(np.arctan2(along[1], along[0]))),
             "greatest torque of a joint, later half [N m]": float(np.max(np.abs(torque[later]))),
             "RMS torque of the joints, later half [N m]": float(np.sqrt(np.mean(torque[later] ** 2))),
         }
@@ -78,7 +79,9 @@ def robot_body(length: float, half_height: float, half_width: float) -> Body:
     for name, value in (("half_height", half_height), ("half_width", half_width)):
         positive(f"section's {name}", value, "m")
     nose = min(ROUND * half_height, 0.1 * length)
-    x = np.concatenate((nose * (1.0 - np.cos(np.linspace(0.0, 0.5 * np.pi, 13))), np.linspace(nose, length, POINTS)[1:]))
+    x = np.concatenate(
+        (nose * (1.0 - np.cos(np.linspace(0.0, 0.5 * np.pi, 13))), np.linspace(nose, length, POINTS)[1:])
+    )
     end = np.sqrt(np.clip(1.0 - np.clip(1.0 - x / nose, 0.0, None) ** 2, 0.0, None))
     return Body(x=x, half_height=half_height * end, half_width=half_width * end, kinks=(nose,), name="links")
 
@@ -110,7 +113,8 @@ def replay(
 ) -> tuple[Replayed, dict[str, tuple[Replayed | None, Replayed | None]], list[Replayed]]:
     """The swim on the `body`; with each uncertain number at its ends; and `samples` swims with all numbers drawn.
 
-    A swim that stops is None, and is left out of the samples. `ValueError` where the first one stops, or a number is not known.
+    A swim that stops is None, and is left out of the samples. `ValueError` where the first one stops, or a number is
+    not known.
     """
     from scipy.stats import qmc
 
@@ -141,10 +145,3 @@ def replay(
     assert first is not None
     alone = {name: (rest[2 * place], rest[2 * place + 1]) for place, name in enumerate(ranges)}
     return first, alone, [each for each in rest[len(ends) :] if each is not None]
-
-
-def _turn(run: Run) -> float:
-    """Angle [rad] from the head's direction at the start to that at the end, in the plane."""
-    w, _, _, z = run.orientation[-1]
-    v, _, _, y = run.orientation[0]
-    return float(2.0 * (np.arctan2(z, w) - np.arctan2(y, v)))

@@ -81,7 +81,9 @@ def _links(text: str, joints: int) -> np.ndarray:
         try:
             found += [float(length)] * int(count or 1)
         except ValueError:
-            raise ValueError(f"--links must be lengths such as 0.18x9 or 0.2,0.1x5,0.2 [m], got {shown(text)}") from None
+            raise ValueError(
+                f"--links must be lengths such as 0.18x9 or 0.2,0.1x5,0.2 [m], got {shown(text)}"
+            ) from None
     if len(found) != joints + 1:
         raise ValueError(f"--links must be {joints + 1} lengths for {joints} joints, got {len(found)}")
     return np.array([positive("link", each, "m") for each in found])
