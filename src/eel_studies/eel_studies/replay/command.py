@@ -16,6 +16,7 @@ from eel_base.files.output_file import written_as
 from eel_base.quantity import positive
 from eel_base.wording import shown
 from eel_dynamics.model.body import Body
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.command_options import add_options, add_repeated, body_of, named_texts, scene_of
 from eel_dynamics.runs.exchange.eel_viz_functions import joints_of_bag
 from eel_dynamics.runs.storage.tables import write_columns
@@ -42,7 +43,7 @@ def _replay(options: argparse.Namespace) -> int:
     body = _body(options, float(links.sum()))
     joints = np.cumsum(links)[:-1]
     law = law_of_links(log, joints, body.length)
-    scene = scene_of(options.scene, planar=True, friction="blended")
+    scene = scene_of(options.scene, Scene(planar=True, friction="blended"))
     first, alone, drawn = replay(
         law, body, joints, scene, uncertain=_uncertain(options.vary), samples=options.samples,
         duration=options.duration, accuracy=options.accuracy,
