@@ -33,6 +33,6 @@ library() { "${CXX:-c++}" -print-file-name="$1"; }
 export LD_PRELOAD="$(library libasan.so) $(library libstdc++.so)" ASAN_OPTIONS=detect_leaks=0
 export UBSAN_OPTIONS=print_stacktrace=1 PYTHONPATH="$PWD/$folder/install:$PYTHONPATH"
 python -c 'import eel_core; assert eel_core.build_info()["sanitizers"], "the module is not sanitized"'
-python -m pytest src/eel_dynamics/test/test_{closure,conservation,kinks,planar,righting}.py \
+python -m pytest src/eel_dynamics/test/test_{closure,conservation,kinks,planar,metacentric_height,weight}.py \
     src/eel_dynamics/test/test_body_data.py::test_{torque_within_a_panel,drag_between_kinks}_is_that_of_the_spline \
     src/eel_core/test --ignore=src/eel_core/test/test_levels.py   # these build and copy

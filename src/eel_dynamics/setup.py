@@ -25,6 +25,9 @@ setup(
             "dynamics = eel_command:main_of.eel_dynamics.ros.node",
             "simulate = eel_command:main_of.eel_dynamics.runs.command",
         ],
-        "eel.commands.swim": ["simulate = eel_dynamics.runs.command"],
+        "eel.commands.swim": [
+            "simulate = eel_dynamics.runs.command",
+            "ballast = eel_dynamics.runs.ballast_command",
+        ],
     },
 )

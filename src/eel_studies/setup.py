@@ -46,7 +46,6 @@ setup(
             "stability = eel_studies.stability.command",
             "midlines = eel_studies.midlines.command",
             "life = eel_studies.life.command",
-            "replay-joints = eel_studies.replay.command",
             "figures = eel_studies.figures.command",
         ],
     },

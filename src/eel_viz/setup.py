@@ -33,9 +33,6 @@ setup(
             "render = eel_viz.pictures.render",
         ],
         "eel_dynamics.drawing": ["rerun = eel_viz.recording.library:to_rerun"],
-        "eel_dynamics.bags": [
-            "messages = eel_viz.bags.swimmer_messages:swimmer_messages",
-            "joints = eel_viz.bags.joint_states:joint_states",
-        ],
+        "eel_dynamics.bags": ["messages = eel_viz.bags.swimmer_messages:swimmer_messages"],
     },
 )

@@ -74,6 +74,10 @@ class _Sections(Protocol):
     @property
     def added_roll(self) -> Buffer: ...  # [kg m], of the water about E1
     @property
+    def lever(self) -> Buffer: ...  # [kg], m h of the weight, h below the axis
+    @property
+    def net(self) -> Buffer: ...  # [kg/m], of the displaced water less the body, where bodies weigh
+    @property
     def displaced(self) -> Buffer: ...  # [kg/m], of the water that the section displaces
     @property
     def drag2(self) -> Buffer: ...  # [kg/m^2], 1/2 rho_f k2
@@ -105,8 +109,8 @@ class _Stations(Protocol):
     def added_roll_slope(self) -> Buffer: ...  # (M,) [kg]
     @property
     def missed(self) -> Iterable[Buffer]: ...
-    # (M, p_max) each, times m: what the rows of `points` miss of the integrals of mass, added2 and 3, inertia1 to 3,
-    # displaced, drag2 and 3, drag_roll, laminar and turbulent; none where the sections are smooth
+    # (M, p_max) each, times m: what the rows of `points` miss of the integrals of mass, added2 and 3, lever, net,
+    # inertia1 to 3, displaced, drag2 and 3, drag_roll, laminar and turbulent; none where the sections are smooth
 
 class _Shared:
     """Never changes: copies are the object itself."""
@@ -130,16 +134,19 @@ class Swimmer(_Shared):
         nose_mass: float,
         nose_drag: float,
         distributed_pressure: bool,
+        offset: bool,
         righting: float,
+        gravity: float,
         missed_drag: Iterable[Buffer] = (),
     ) -> None:
         """sections: at the nodes. friction: of `FRICTION_LAWS`. resistive: drag along the body.
         first_watched: first of the speeds (0 V1, 1 V2, 2 V3, 3 Omega1, 4 Re/8e4 - 1) whose changes of sign within a
         panel are integrated exactly; 5 for none. nose_mass: m_o [kg]; nose_drag: 1/2 rho_f k_o [kg/m].
-        distributed_pressure: along the body in place of at the tail. righting [m^2/s^2]: g h of the righting moment of
-        weight and buoyancy; 0 for none. missed_drag: (K, n) [m] for V2, V3 and Omega1: of each node, what the drag's
-        integral from the start of its panel misses, by the drag at the node, at K fractions (1 - cos(pi k / (K - 1))) /
-        2 of the panel; none where the sections are smooth. `ValueError` names what does not fit."""
+        distributed_pressure: along the body in place of at the tail. offset: the centre of mass is off the axis.
+        righting, gravity [m/s^2]: g where `lever` gives a moment of weight, and where `net` gives a force; else 0.
+        missed_drag: (K, n) [m] for V2, V3 and Omega1: of each node, what the drag's integral from the start of its
+        panel misses, by the drag at the node, at K fractions (1 - cos(pi k / (K - 1))) / 2 of the panel; none where the
+        sections are smooth. `ValueError` names what does not fit."""
 
 class Flow(_Shared):
     """How the water moves by itself: the sum of its sources."""

@@ -105,10 +105,13 @@ inline Row points(const py::handle& object, const char* name, std::size_t n)
 
 inline Sections sections_from(const py::handle& s, std::size_t n)
 {
-    return {points(s, "mass", n),       points(s, "added2", n),           points(s, "added3", n),
-            points(s, "inertia1", n),   points(s, "inertia2", n),         points(s, "inertia3", n),
-            points(s, "added_roll", n), points(s, "displaced", n),        points(s, "drag2", n),
-            points(s, "drag3", n),      points(s, "drag_roll", n),        points(s, "laminar", n),
+    return {points(s, "mass", n),       points(s, "added2", n),
+            points(s, "added3", n),     points(s, "inertia1", n),
+            points(s, "inertia2", n),   points(s, "inertia3", n),
+            points(s, "added_roll", n), points(s, "lever", n),
+            points(s, "net", n),        points(s, "displaced", n),
+            points(s, "drag2", n),      points(s, "drag3", n),
+            points(s, "drag_roll", n),  points(s, "laminar", n),
             points(s, "turbulent", n),  points(s, "by_critical_speed", n)};
 }
 
@@ -148,7 +151,8 @@ inline std::shared_ptr<const Swimmer> swimmer_from(const py::object& grid, const
                                                    const py::object& stations, const std::string& friction,
                                                    bool resistive, std::size_t first_watched, bool wake,
                                                    double nose_mass, double nose_drag, bool distributed_pressure,
-                                                   double righting, const py::object& missed_drag)
+                                                   bool offset, double righting, double gravity,
+                                                   const py::object& missed_drag)
 {
     auto swimmer = std::make_shared<Swimmer>();
     swimmer->grid = grid_from(grid);
@@ -160,7 +164,8 @@ inline std::shared_ptr<const Swimmer> swimmer_from(const py::object& grid, const
     swimmer->friction = static_cast<Friction>(name - friction_names.begin());
     swimmer->resistive = resistive, swimmer->first_watched = first_watched, swimmer->wake = wake ? 1.0 : 0.0;
     swimmer->nose_mass = nose_mass, swimmer->nose_drag = nose_drag,
-    swimmer->distributed_pressure = distributed_pressure, swimmer->righting = righting;
+    swimmer->distributed_pressure = distributed_pressure;
+    swimmer->offset = offset, swimmer->righting = righting, swimmer->gravity = gravity;
 
     for (std::size_t speed = lateral; const py::handle each : missed_drag) {
         const Numbers table(each, "missed_drag");

@@ -346,17 +346,18 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
 
     auto swimmer = py::class_<Swimmer, std::shared_ptr<Swimmer>>(module, "Swimmer");
     share_in_copies(swimmer);
-    swimmer.def(
-        py::init([](const py::object& grid, const py::object& sections, const py::object& stations,
-                    const std::string& friction, bool resistive, std::size_t first_watched, bool wake, double nose_mass,
-                    double nose_drag, bool distributed_pressure, double righting, const py::object& missed_drag) {
-            return std::const_pointer_cast<Swimmer>(swimmer_from(grid, sections, stations, friction, resistive,
-                                                                 first_watched, wake, nose_mass, nose_drag,
-                                                                 distributed_pressure, righting, missed_drag));
-        }),
-        py::arg("grid"), py::arg("sections"), py::arg("stations"), py::kw_only(), py::arg("friction"),
-        py::arg("resistive"), py::arg("first_watched"), py::arg("wake"), py::arg("nose_mass"), py::arg("nose_drag"),
-        py::arg("distributed_pressure"), py::arg("righting"), py::arg("missed_drag") = py::tuple());
+    swimmer.def(py::init([](const py::object& grid, const py::object& sections, const py::object& stations,
+                            const std::string& friction, bool resistive, std::size_t first_watched, bool wake,
+                            double nose_mass, double nose_drag, bool distributed_pressure, bool offset, double righting,
+                            double gravity, const py::object& missed_drag) {
+                    return std::const_pointer_cast<Swimmer>(
+                        swimmer_from(grid, sections, stations, friction, resistive, first_watched, wake, nose_mass,
+                                     nose_drag, distributed_pressure, offset, righting, gravity, missed_drag));
+                }),
+                py::arg("grid"), py::arg("sections"), py::arg("stations"), py::kw_only(), py::arg("friction"),
+                py::arg("resistive"), py::arg("first_watched"), py::arg("wake"), py::arg("nose_mass"),
+                py::arg("nose_drag"), py::arg("distributed_pressure"), py::arg("offset"), py::arg("righting"),
+                py::arg("gravity"), py::arg("missed_drag") = py::tuple());
 
     auto flow_class = py::class_<Flow, std::shared_ptr<Flow>>(module, "Flow");
     share_in_copies(flow_class);

@@ -67,8 +67,9 @@ inline std::shared_ptr<Swimmer> straight_body()
     grid.set_steps();
     grid.series.assign(panel_nodes + 1, Row(grid.blocks));
     Sections& sections = swimmer->sections;
-    sections = {constant(body_mass), constant(added_mass), constant(added_mass3), constant(0.01), constant(0.015),
-                constant(inertia3),  constant(0.0),        constant(body_mass),   constant(0.0),  constant(drag3),
+    sections = {constant(body_mass), constant(added_mass), constant(added_mass3), constant(0.01),
+                constant(0.015),     constant(inertia3),   constant(0.0),         constant(0.0),
+                constant(0.0),       constant(body_mass),  constant(0.0),         constant(drag3),
                 constant(0.0),       constant(0.0),        constant(0.0),         constant(0.0)};
     swimmer->friction = Friction::laminar, swimmer->resistive = false;
     return swimmer;

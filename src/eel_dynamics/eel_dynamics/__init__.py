@@ -10,6 +10,7 @@ import eel_command  # noqa: F401  first: Ctrl-C ends a command during the other 
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.settling import Unsettled
+from eel_dynamics.analysis.trim import Ballast, Trim, ballast_for, trim_of
 from eel_dynamics.flow.flow import Flow, FlowSample
 from eel_dynamics.flow.functions import FlowField
 from eel_dynamics.flow.gridded import GriddedFlow
@@ -32,6 +33,7 @@ from eel_dynamics.simulation.stopping import SimulationStopped
 
 __all__ = [
     "Accuracy",
+    "Ballast",
     "Batch",
     "Body",
     "EnergyLedger",
@@ -54,16 +56,19 @@ __all__ = [
     "Snapshot",
     "Swim",
     "Torque",
+    "Trim",
     "Uniform",
     "Unsettled",
     "Vortex",
     "VortexStreet",
     "Wave",
+    "ballast_for",
     "hydrodynamic_wrench",
     "load_scene",
     "save_scene",
     "simulate",
     "simulate_batch",
+    "trim_of",
 ]
 
 STUDIES = (

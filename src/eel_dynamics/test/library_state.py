@@ -21,13 +21,15 @@ DENSE = Accuracy(name="dense", resolution=300.0, tolerance=1e-12)  # more nodes 
 
 def library_body(body):
     """The Body of a namespace of `cases` or `reference`."""
+    masses = {"mass_per_length": getattr(body, "mass", None), "centre_of_mass_offset": getattr(body, "offset", 0.0)}
     return Body(
+        **masses,
         length=body.kinks[-1],
         half_width=body.half_width,
         half_height=body.half_height,
         kinks=body.kinks[1:-1],
         nose=body.nose,
-        density=body.density,
+        density=None if hasattr(body, "mass") else body.density,
     )
 
 

@@ -5,6 +5,8 @@ It starts from the kinetic energy of body and fluid (eqs 16, 36 of Boyer, Porez 
 
     T(K, dK/dt, mu) = 1/2 integral eta . (J_b + J_f) eta dX,        eta(X) = twist of the section X, mu = eta(0),
 
+(that of the body with the velocity of its centre of mass, h below the axis, where `offset` gives one)
+
 and never writes an acceleration field. The momentum of the whole is dT/dmu and its matrix d2T/dmu2, both by
 polarisation (exact, as T is quadratic in mu); time derivatives are complex steps along the motion
 (K + i h dK/dt, ...). The head's acceleration is eq. (60); the internal wrench is eq. (50) integrated in the strong
@@ -42,6 +44,7 @@ def scene(**changes):
         "added_mass": "corrected",
         "tail_pressure": "lumped",
         "metacentric_height": 0.0,
+        "weight": False,
         "current": (0.0, 0.0, 0.0),
         "density": None,
         "fluid_density": 1000.0,
@@ -85,13 +88,19 @@ class Reference:
         density = body.density if settings.density is None else settings.density
         self.water = settings.fluid_density
         area = np.pi * self.a * self.b
-        J2, J3 = area * self.a**2 / 4, area * self.b**2 / 4
-        self.inertia_body = density * np.stack([J2 + J3, J2, J3, area, area, area], axis=1)  # diagonal of J_b, (N, 6)
+        J2, J3 = self.a**2 / 4, self.b**2 / 4
+        mass = getattr(body, "mass", lambda x: density * area)(self.space.x)  # kg/m
+        unit = np.ones_like(mass)
+        # diagonal of J_b, (N, 6), about the centre of mass, which lies h below the axis
+        self.inertia_body = mass[:, None] * np.stack([J2 + J3, J2, J3, unit, unit, unit], axis=1)
+        self.offset = getattr(body, "offset", lambda x: 0 * x)(self.space.x)  # m
         self.inertia_fluid = self._added(self.a, self.b)
         self.tail_added = self._added(body.half_height(at_tail), body.half_width(at_tail))[0]
         nose = np.prod(body.nose), body.nose[0] * body.nose[1]
         self.nose_mass = self.water * np.pi * NOSE_ADDED_MASS * nose[0] * (settings.reactive and settings.nose)
         self.displaced = self.water * area  # kg/m
+        self.net = (self.displaced - mass) * settings.weight  # kg/m
+        self.height = 0.0  # m, of the head
         self.flow = None  # u (N, 3) [m/s] of places (N, 3) [m] and a time [s], world; both may be complex
         self.pose = SimpleNamespace(position=np.zeros(3), axes=np.eye(3), time=0.0)  # of the head in the world
         self.nose_drag = np.pi * NOSE_PRESSURE * nose[1] * (settings.resistive and settings.nose)
@@ -175,11 +184,16 @@ class Reference:
             self.pose = pose
         return wrench
 
+    def of_mass(self, eta):
+        """Twists (..., N, 6) of the sections at their centres of mass, V + Omega x e, from those at their centres."""
+        e = -self.offset[:, None] * np.array([0.0, 0.0, 1.0])
+        return np.concatenate([eta[..., :3], eta[..., 3:] + np.cross(eta[..., :3], e)], axis=-1)
+
     # -- energy, momentum, balance ----------------------------------------------------------------------------------
     def energies(self, K, K_rate, mu):
         """Kinetic energy of body and of fluid, eqs (16), (36), for each head twist of mu (..., 6)."""
         eta, (R, r) = self.twists(K, K_rate, mu), self.configuration(K)
-        twists = eta, self.through_water(eta, R, r)
+        twists = self.of_mass(eta), self.through_water(eta, R, r)
         return tuple(
             np.einsum("x,xk,...xk->...", self.space.weights / 2, inertia, each**2)
             for inertia, each in zip((self.inertia_body, self.inertia_fluid), twists, strict=True)
@@ -229,15 +243,19 @@ class Reference:
         forces = friction * perimeter, 2 * DRAG_LATERAL * a, 2 * DRAG_VERTICAL * b
         return factors * np.outer(roll, E1), factors * np.stack(forces, axis=1) * square[:, 3:]
 
-    def potential_density(self, R):
+    def potential_density(self, R, r):
         """Potential energy (N,) [J/m] of weight and buoyancy: the weight hangs below each section's axis."""
-        weight = GRAVITY * self.scene.metacentric_height * self.inertia_body[:, 3]
-        return weight * (1.0 - R[:, :, 2] @ self.up)
+        hung = self.scene.metacentric_height + self.offset * self.scene.weight
+        weight = GRAVITY * hung * self.inertia_body[:, 3]
+        return weight * (1.0 - R[:, :, 2] @ self.up) - GRAVITY * self.net * (self.height + r @ self.up)
 
-    def righting(self, R):
-        """Torque (N, 3) per length of weight and buoyancy: how the potential falls as each section turns."""
-        turned = [self.potential_density((np.eye(3) + 1j * STEP * _hat(axis[None])[0]) @ R) for axis in np.eye(3)]
-        return -np.stack(turned, axis=1).imag / STEP
+    def weight(self, R, r):
+        """Torque about the section and force (N, 3) per length of weight and buoyancy: how the potential falls as each
+        section turns and moves."""
+        step = 1j * STEP
+        turned = [self.potential_density((np.eye(3) + step * _hat(axis[None])[0]) @ R, r) for axis in np.eye(3)]
+        moved = [self.potential_density(R, r + step * axis) for axis in np.eye(3)]
+        return tuple(-np.stack(rows, axis=1).imag / STEP for rows in (turned, moved))
 
     def nose_force(self, mu, mu_rate):
         """Axial force (N) on the nose: added mass times the true acceleration, and pressure drag."""
@@ -268,7 +286,9 @@ class Reference:
         still = np.zeros(6)
         matrix[3, 3] += self.nose_mass
         load[3] += self.nose_force(mu, still)
-        load[:3] += self.space.weights @ self.righting(self.configuration(K)[0])
+        R, r = self.configuration(K)
+        torque, force = self.weight(R, r)
+        load += self.space.weights @ np.concatenate([torque + np.cross(r, force), force], axis=1)
         if self.flow is not None:
             load += self.flow_force(K, K_rate, mu)
         return np.linalg.solve(matrix, load - self.momentum_rate(K, K_rate, K_acceleration, mu, still))
@@ -286,11 +306,14 @@ class Reference:
         def density(K, K_rate, mu, turn):  # of sigma_b, p_b, sigma_f, p_f in resting axes, (4, N, 3)
             (R, r), eta = self.configuration(K), self.twists(K, K_rate, mu)
             of_fluid = self.inertia_fluid * self.through_water(eta, R, r)
-            kinetic = np.concatenate([self.inertia_body * eta, of_fluid], axis=1).reshape(-1, 4, 3)
+            of_body = self.inertia_body * self.of_mass(eta)
+            e = -self.offset[:, None] * np.array([0.0, 0.0, 1.0])
+            of_body[:, :3] += np.cross(e, of_body[:, 3:])  # about the section's centre
+            kinetic = np.concatenate([of_body, of_fluid], axis=1).reshape(-1, 4, 3)
             return np.einsum("xij,xpj->pxi", turn @ R, kinetic)
 
         step, integrate = 1j * STEP, self.space.cumulate
-        _sigma_b, _p_b, sigma_f, p_f = density(K, K_rate, mu, np.eye(3))
+        _sigma_b, p_b, sigma_f, p_f = density(K, K_rate, mu, np.eye(3))
         pose = self.moved(step * mu, step)
         rates = (
             density(
@@ -312,9 +335,11 @@ class Reference:
         wake = float(self.scene.wake)  # 0: no water is swept past the sections
         t1, V1, energy = R[:, :, 0], wake * eta[:, 3:4], wake * np.sum(self.inertia_fluid * eta**2, axis=1) / 2
         nose = self.nose_force(mu, mu_rate)
-        n_sum = -nose * E1 + integrate(rates[1] + rates[3] - to_axes(resistive_force) - water_force)  # n + V1 p_f
-        c_slope = rates[0] + rates[2] + np.cross(to_axes(eta[:, 3:]), p_f) - np.cross(t1, n_sum)
-        c_sum = integrate(c_slope - to_axes(resistive_torque) - self.righting(R))  # c + V1 sigma_f
+        hung, net = self.weight(R, r)
+        n_sum = -nose * E1 + integrate(rates[1] + rates[3] - to_axes(resistive_force) - water_force - net)  # n + V1 p_f
+        v = to_axes(eta[:, 3:]), to_axes(true[:, 3:])  # through the water, and over ground
+        c_slope = rates[0] + rates[2] + np.cross(v[0], p_f) + np.cross(v[1], p_b) - np.cross(t1, n_sum)
+        c_sum = integrate(c_slope - to_axes(resistive_torque) - hung)  # c + V1 sigma_f
         force, torque = to_section(n_sum - V1 * p_f), to_section(c_sum - V1 * sigma_f)
         tail_energy = wake * self.tail_added @ self.at_tail(eta) ** 2 / 2
         tail_residual = np.concatenate([self.at_tail(torque), self.at_tail(force) + tail_energy * E1])
@@ -332,7 +357,7 @@ class Reference:
             nose_force=nose * E1,
             fluid_energy_density=energy,
             actuator_power=-self.space.weights @ np.sum(torque * K_rate, axis=1),
-            potential=self.space.weights @ self.potential_density(R),
+            potential=self.space.weights @ self.potential_density(R, r),
             wake_power=self.wake_power(eta, true),
             flow_power=self.flow_power(true, R, r, p_f) if self.flow is not None else 0.0,
             kinetic_fluid=self.energies(K, K_rate, mu)[1]
@@ -368,7 +393,7 @@ class Reference:
             world = rotation(q)
             drift = world.T @ current
             mu[3:] -= drift  # relative to the water
-            self.up = world[2]
+            self.up, self.height = world[2], state[2]
             if self.flow is not None:
                 self.pose = SimpleNamespace(position=state[:3], axes=world, time=time)
             mu_rate = self.acceleration(*law.curvature(time, self.space.x), mu)

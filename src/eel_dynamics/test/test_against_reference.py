@@ -81,7 +81,7 @@ def check(measured, kind, body, law, time, twist, q, settings, tolerance, splits
     shape_apart = [
         distance(got.backbone, at(r) @ world.T, length),
         distance(turned, world @ at(R.reshape(-1, 9)).reshape(-1, 3, 3), 1.0),
-        distance(got.center_of_mass, world @ center_of_mass(reference, r), length),
+        distance(got.center_of_mass, world @ center_of_mass(reference, R, r), length),
     ]
     # at a kink d/dX(V1 p_f) has two values, at the nose c_f P is 0 times infinity
     inner = ~np.isin(stations, body.kinks)
@@ -106,9 +106,9 @@ def check(measured, kind, body, law, time, twist, q, settings, tolerance, splits
     measured(f"reactive force per length, {kind}", apart, 10 * tolerance)
 
 
-def center_of_mass(reference, r):
+def center_of_mass(reference, R, r):
     mass = reference.space.weights * reference.inertia_body[:, 3]
-    return (mass @ r) / mass.sum()
+    return (mass @ (r - reference.offset[:, None] * R[:, :, 2])) / mass.sum()
 
 
 @few(25)

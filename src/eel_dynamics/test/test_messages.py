@@ -49,8 +49,7 @@ def filled(sample, name, snapshot):
 
 def with_errors(simulation, errors):
     """What `SampleMessages` reads of a simulation whose errors are estimated."""
-    water = simulation.water_at
-    return SimpleNamespace(x=simulation.x, scene=simulation.scene, head_errors=errors, water_at=water)
+    return SimpleNamespace(x=simulation.x, scene=simulation.scene, head_errors=errors)
 
 
 @pytest.fixture(scope="module")

@@ -35,6 +35,8 @@ IDENTITIES = {
     "No water": "Momentum and angular momentum stay; kinetic energy is the work of the actuators.",
     "Righting moment": "Weight below buoyancy: a pendulum in water, a torque from a potential, no direction special "
     "but up.",
+    "Bodies that weigh": "Gravity, buoyancy, mass along the body, a centre of mass off the axis: closed forms at "
+    "release, the roll's frequency, the same at any depth.",
     "Rigid body": "The straight rigid body has closed forms: Munk's moment, coasting, Euler's top.",
     "Symmetry": "Another pose, a mirror, the plane, rest, a current.",
     "Convergence": "Orders in time and in space, and what the presets reach on the falling gait over 10 s.",

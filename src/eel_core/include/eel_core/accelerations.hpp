@@ -9,7 +9,7 @@
 #include "eel_core/drag_kinks.hpp"
 #include "eel_core/loads.hpp"
 #include "eel_core/momentum.hpp"
-#include "eel_core/righting.hpp"
+#include "eel_core/weight.hpp"
 
 namespace eel_core {
 
@@ -61,7 +61,28 @@ Wrench<M, Lanes> inertial_wrench(const Section<Lanes>& section, const Workspace<
     return about_head<M>(frame, work.position[k], taken);
 }
 
-// Writes to `density` that wrench per length. Returns the integral of the density over the body.
+// What the moment m e of sections, m h = `lever`, adds to it: m (Omegadot x e + Omega x (Omega x e)), and the torque
+// m e x (Vdot + Omega x V).
+inline Wrench<Space, Lanes> wrench_of_offset(Lanes lever, const Workspace<Space>& work, std::size_t k)
+{
+    const Vector3<Lanes> moment = mass_moment(lever, work.frame[k].axis3), omega = work.omega[k];
+    const Vector3<Lanes> force = cross(work.alpha[k], moment) + cross(omega, cross(omega, moment));
+    return {cross(work.position[k], force) + cross(moment, work.acceleration[k]), force};
+}
+
+// Adds it to the `density` of the balance. Returns its integral over the body.
+EEL_CORE_APART inline Wrench<Space, double> add_offset(const Swimmer& swimmer, Workspace<Space>& work)
+{
+    Wrench<Space, Lanes> sum{};
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const auto density = wrench_of_offset(swimmer.sections.lever[k], work, k);
+        work.density.store(k, work.density[k] + density);
+        sum += swimmer.grid.weight[k] * density;
+    }
+    return total_of(sum);
+}
+
+// Writes to `density` the wrench that the motion takes per length. Returns the integral of the density over the body.
 template <class M>
 Wrench<M, double> set_inertial_density(const Swimmer& swimmer, Workspace<M>& work)
 {
@@ -71,7 +92,10 @@ Wrench<M, double> set_inertial_density(const Swimmer& swimmer, Workspace<M>& wor
         work.density.store(k, density);
         sum += swimmer.grid.weight[k] * density;
     }
-    return total_of(sum);
+    const auto taken = total_of(sum);
+    if constexpr (!M::planar)
+        if (swimmer.offset) return taken + add_offset(swimmer, work);
+    return taken;
 }
 
 // Adds the resistance, minus the drag, with the signs at the nodes.
@@ -108,7 +132,7 @@ void find_accelerations(const Swimmer& swimmer, const LawOnGrid& law, Workspace<
     left.linear.x += water_on_nose;
     Wrench<M, double> of_flow{};
     if (work.flowing) of_flow = total_wrench_of_flow(swimmer, work), left = left - of_flow;
-    if (swimmer.righting != 0.0) left.angular += work.righting;
+    if (swimmer.weighs()) left += work.weight;
     auto head = components_of(left);
     work.inertia.solve(head);
     work.head_acceleration = Components<Twist<M, double>>::make([&](std::size_t k) { return head[k]; });
@@ -118,7 +142,7 @@ void find_accelerations(const Swimmer& swimmer, const LawOnGrid& law, Workspace<
     work.balance = set_inertial_density(swimmer, work) - work.drag;
     if (swimmer.resistive) add_resistance(swimmer, work);
     if (work.flowing) add_wrench_of_flow(swimmer, of_flow, work);
-    if (swimmer.righting != 0.0) take_righting_torque(swimmer, work);
+    if (swimmer.weighs()) take_weight(swimmer, work);
     work.nose_force = water_on_nose - swimmer.nose_mass * work.head_acceleration.linear.x;
 }
 

@@ -21,6 +21,10 @@ void find_loads(const Swimmer& swimmer, Workspace<M>& work)
     integrate_resistive_load(swimmer, work);
 }
 
+// Height [m] of the nose over the level of no potential energy: z = 0, carried along by the current, in whose frame the
+// powers are.
+inline double height_in(const Water& water, double time, const State& y) { return y[2] - water.current.z * time; }
+
 // Shape and twist of the head in state y at `time` [s], in such `water`. False where the inertia is not positive
 // definite.
 template <class M>
@@ -43,7 +47,7 @@ bool find_motion(const Swimmer& swimmer, const LawOnGrid& law, const Water& wate
     set_velocities(swimmer, work.twist, work);
     if (work.flowing) set_flow_load(swimmer, work);
     find_loads(swimmer, work);
-    if (swimmer.righting != 0.0) set_righting_torque(swimmer, work);
+    if (swimmer.weighs()) set_weight(swimmer, height_in(water, time, y), work);
     return true;
 }
 

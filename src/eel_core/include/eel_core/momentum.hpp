@@ -6,6 +6,7 @@
 
 #include "eel_core/kinematics.hpp"
 #include "eel_core/moving_water.hpp"
+#include "eel_core/weight.hpp"
 
 namespace eel_core {
 
@@ -72,6 +73,30 @@ struct Inertia<Plane, T> {
     }
 };
 
+// Adds what the moments s = m e of the sections have of the inertia, and returns what of the momentum of the change of
+// shape: Omega x s, with r x (Omega x s) + s x V about the head.
+EEL_CORE_APART inline Momentum<Space, double> add_offset_inertia(const Swimmer& swimmer, Workspace<Space>& work)
+{
+    Inertia<Space, Lanes> inertia{};
+    Momentum<Space, Lanes> momentum{};
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const Lanes lever = swimmer.grid.weight[k] * swimmer.sections.lever[k];
+        const Vector3<Lanes> s = mass_moment(lever, work.frame[k].axis3), r = work.position[k];
+        const Vector3<Lanes> linear = cross(work.shape_omega[k], s);
+        momentum += {cross(r, linear) + cross(s, work.shape_velocity[k]), linear};
+        const Lanes zero(0.0);
+        inertia += {{2.0 * (r.y * s.y + r.z * s.z), -(r.x * s.y) - r.y * s.x, -(r.x * s.z) - r.z * s.x,
+                     2.0 * (r.x * s.x + r.z * s.z), -(r.y * s.z) - r.z * s.y, 2.0 * (r.x * s.x + r.y * s.y)},
+                    {zero, s.z, -s.y},
+                    {-s.z, zero, s.x},
+                    {s.y, -s.x, zero},
+                    {}};
+    }
+    const auto added = inertia.whole(0.0).lower;
+    for (std::size_t k = 0; k < added.size(); ++k) work.inertia.lower[k] += added[k];
+    return total_of(momentum);
+}
+
 // Sets the inertia of a configured body; returns the momentum of its change of shape, without the nose's.
 template <class M>
 Momentum<M, double> inertia_and_momentum(const Swimmer& swimmer, Workspace<M>& work)
@@ -89,6 +114,8 @@ Momentum<M, double> inertia_and_momentum(const Swimmer& swimmer, Workspace<M>& w
         momentum += {turning * work.shape_omega[k] + cross(position, linear), linear};
     }
     work.inertia = inertia.whole(swimmer.nose_mass);
+    if constexpr (!M::planar)
+        if (swimmer.offset) return total_of(momentum) + add_offset_inertia(swimmer, work);
     return total_of(momentum);
 }
 

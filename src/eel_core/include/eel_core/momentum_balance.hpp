@@ -9,7 +9,7 @@
 //     rate of P' = F - m_o (Omega x V)_1 E1 + m_o V1 (Omega x E1)
 //     rate of L  = T - V x (P' - m_o V1 E1)
 //
-// in components along the head's present axes, of vectors of the world; (T, F): wake, drag and righting moment.
+// in components along the head's present axes, of vectors of the world; (T, F): wake, drag and weight.
 #pragma once
 
 #include "eel_core/loads.hpp"
@@ -89,7 +89,7 @@ Momentum<M, double> momentum_rate_from_loads(const Swimmer& swimmer, const Works
     Vector<M, double> impulse = work.momentum.linear;
     impulse.x -= swimmer.nose_mass * twist.linear.x;
     rate.angular = rate.angular - cross(twist.linear, impulse);
-    if (swimmer.righting != 0.0) rate.angular += work.righting;
+    if (swimmer.weighs()) rate += work.weight;
     return rate;
 }
 

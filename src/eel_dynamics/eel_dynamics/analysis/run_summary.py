@@ -4,6 +4,7 @@
 import numpy as np
 
 from eel_dynamics.analysis.analysis import Analysis
+from eel_dynamics.analysis.trim import trim_of
 
 
 def describe(run, periods: int | None = None) -> str:
@@ -28,6 +29,8 @@ def _of_the_run(run) -> list[str]:
         f"head's path         {run.path_length:.4f} m",
         f"start to end        {np.linalg.norm(run.center_of_mass[-1] - run.center_of_mass[0]):.4f} m, centre of mass",
     ]
+    if run.scene.weight:
+        lines.append(f"weight              {trim_of(run.body, run.scene).about()}")
     if run.torque is not None:
         size, x, time = run.greatest_torque()
         lines.append(f"greatest torque     {size:.4g} N m at X = {x:.3f} m, t = {time:.3f} s")

@@ -11,6 +11,7 @@ import numpy as np
 from eel_base.wording import shown
 from numpy.polynomial import chebyshev
 
+from eel_dynamics.model.along import cuts_at
 from eel_dynamics.model.shapes import piecewise
 
 DEGREE = 48  # of the polynomial through the square on each panel, for its derivative
@@ -75,11 +76,7 @@ class ArrayHalfAxis:
             raise ValueError(f"body {name} must have as many values as x, {len(x)}, got {len(values)}")
         _check_shape(name, x, values, x[-1])
         self.given, self.breaks = np.stack((x, values)), x[1:-1]
-        cuts = (
-            [0]
-            + [int(np.argmin(np.abs(x - kink))) for kink in bounds[1:-1] if np.min(np.abs(x - kink)) < 1e-9 * x[-1]]
-            + [len(x) - 1]
-        )
+        cuts = cuts_at(x, bounds)
         self._starts = x[cuts[:-1]]
         self._pieces = [PchipInterpolator(x[i : j + 1], values[i : j + 1] ** 2) for i, j in pairwise(cuts)]
         self._slopes = [piece.derivative() for piece in self._pieces]

@@ -14,10 +14,11 @@ FREEDOMS = "roll", "pitch", "yaw", "surge", "sway", "heave"
 PLANE = 2, 3, 4
 
 
-def straight_inertia(grid, sections, nose_mass: float, length: float) -> np.ndarray:
+def straight_inertia(grid, sections, nose_mass: float, length: float, offset: bool = False) -> np.ndarray:
     """Inertia (6, 6) [kg] of a straight body about the head, rotation first.
 
-    sections: `SectionData` at the nodes of `grid`. nose_mass: m_o [kg]. length [m]: of the body.
+    sections: `SectionData` at the nodes of `grid`. nose_mass: m_o [kg]. length [m]: of the body. offset: its centre of
+    mass lies off the axis.
     """
     x, weight = grid.x / length, grid.weight
     roll, pitch, yaw = (
@@ -36,6 +37,10 @@ def straight_inertia(grid, sections, nose_mass: float, length: float) -> np.ndar
     )
     matrix[2, 4] = matrix[4, 2] = weight @ (along2 * x)
     matrix[1, 5] = matrix[5, 1] = -(weight @ (along3 * x))
+    lever = offset * sections.lever / length
+    matrix[0, 2] = matrix[2, 0] = weight @ (lever * x)
+    matrix[0, 4] = matrix[4, 0] = weight @ lever
+    matrix[1, 3] = matrix[3, 1] = -(weight @ lever)
     return matrix
 
 
@@ -45,10 +50,10 @@ def condition_of(matrix: np.ndarray) -> float:
     return float(value[-1] / value[0]) if value[0] > 0.0 else np.inf
 
 
-def check_inertia(grid, sections, nose_mass: float, length: float, planar: bool):
+def check_inertia(grid, sections, nose_mass: float, length: float, planar: bool, offset: bool = False):
     """`ValueError` that names the degrees of freedom without inertia. Arguments as in `straight_inertia`."""
     free = list(PLANE) if planar else list(range(6))
-    matrix = straight_inertia(grid, sections, nose_mass, length)[np.ix_(free, free)]
+    matrix = straight_inertia(grid, sections, nose_mass, length, offset)[np.ix_(free, free)]
     if not np.isfinite(matrix).all():
         raise ValueError("body is too large or too dense for numbers: its inertia is not finite")
     value, direction = np.linalg.eigh(matrix)

@@ -27,6 +27,7 @@ from eel_dynamics.model.scene import Scene
 WATCHED = {"all": 1, "jumps": 4, "none": 5}  # first of the speeds (V1, V2, V3, Omega1, Re/8e4 - 1) whose changes of
 # sign within a panel are integrated exactly
 GRAVITY = 9.80665  # m/s^2, standard
+NEUTRAL = 1e-9  # of the mass: greater differences from the displaced water are a net weight
 LEAST = 1e-9  # of the greatest drag by length: no drag at a node is smaller
 PLACES = 8  # by node of the largest panel, at which integrals up to a kink are tabulated
 CRITICAL_REYNOLDS = 8.0e4  # Reynolds number at which the printed friction law jumps from laminar to turbulent
@@ -39,8 +40,7 @@ def added_masses(body: Body, scene: Scene, a_squared, b_squared):
     """
     rho = scene.fluid_density if scene.reactive else 0.0
     along2, along3 = (a_squared, b_squared) if scene.added_mass == "corrected" else (b_squared, a_squared)
-    lateral = rho * np.pi * along2 * body.lateral_added_mass
-    return lateral, rho * np.pi * along3, rho * np.pi / 8.0 * (a_squared - b_squared) ** 2
+    return rho * np.pi * along2, rho * np.pi * along3, rho * np.pi / 8.0 * (a_squared - b_squared) ** 2
 
 
 class SectionData(NamedTuple):
@@ -49,6 +49,8 @@ class SectionData(NamedTuple):
     mass: np.ndarray  # kg/m, of the body
     added2: np.ndarray  # kg/m, added mass along E2
     added3: np.ndarray  # kg/m, along E3
+    lever: np.ndarray  # kg, m h of the weight: h below the axis
+    net: np.ndarray  # kg/m, of the displaced water less the body, where bodies weigh
     inertia1: np.ndarray  # kg m, of body and water about E1
     inertia2: np.ndarray  # kg m, about E2
     inertia3: np.ndarray  # kg m, about E3
@@ -64,11 +66,11 @@ class SectionData(NamedTuple):
     def of_water(self) -> "SectionData":
         """The section data of the water alone: the mass and inertia of the body are zero."""
         none = np.zeros_like(self.mass)
-        return self._replace(mass=none, inertia1=self.added_roll, inertia2=none, inertia3=none)
+        return self._replace(mass=none, lever=none, net=none, inertia1=self.added_roll, inertia2=none, inertia3=none)
 
 
-# In which a section's inertial wrench, a flow's pressure and its drag are linear; the order is that of the core's
-# `SectionPart`.
+# In which a section's inertial wrench, its weight, a flow's pressure and its drag are linear; the order is that of the
+# core's `SectionPart`.
 PARTS = tuple(name for name in SectionData._fields if name not in ("added_roll", "by_critical_speed"))
 
 
@@ -81,7 +83,7 @@ class StationData(NamedTuple):
     added2_slope: np.ndarray  # (M,) kg/m^2, derivative of `added2` by X
     added3_slope: np.ndarray  # (M,) kg/m^2
     added_roll_slope: np.ndarray  # (M,) kg
-    missed: np.ndarray | tuple  # (12, M, p_max) for each of `PARTS`: what the rows of `points` miss, times m; or none
+    missed: np.ndarray | tuple  # (14, M, p_max) for each of `PARTS`: what the rows of `points` miss, times m; or none
 
 
 def nose_of(body: Body, scene: Scene) -> tuple[float, float]:
@@ -107,7 +109,9 @@ def core_swimmer(body: Body, scene: Scene, grid: Grid, sections: SectionData, x,
         nose_mass=nose_mass,
         nose_drag=nose_drag,
         distributed_pressure=scene.tail_pressure == "distributed",
-        righting=GRAVITY * scene.metacentric_height,
+        offset=body.offset and not scene.planar,
+        righting=GRAVITY * (scene.metacentric_height or float(scene.weight and not scene.planar)),
+        gravity=GRAVITY if sections.net.any() else 0.0,
         missed_drag=missed_drag_of(body, scene, grid, sections) if kinks == "all" else (),
     )
 
@@ -122,13 +126,32 @@ def missed_drag_of(body: Body, scene: Scene, grid: Grid, sections: SectionData):
     return missed_within(field, of_drag(sections), grid, body.breaks, 0.5 - 0.5 * np.cos(angle))
 
 
-def righting_time(scene: Scene, sections: SectionData, weight: np.ndarray) -> float:
-    """Inverse angular frequency [s] of the straight body's small roll; infinite without a righting moment.
+def weight_time(scene: Scene, sections: SectionData, weight: np.ndarray, length: float) -> float:
+    """The shorter time [s] in which the straight body's weight rolls it (the inverse angular frequency), or moves it by
+    its `length` [m]; infinite where it does not weigh.
 
     sections: at the nodes, whose integration weights are weight (n,) [m].
     """
-    moment = GRAVITY * abs(scene.metacentric_height) * float(weight @ sections.mass)
-    return float(np.sqrt(weight @ sections.inertia1 / moment)) if moment > 0.0 and not scene.planar else np.inf
+    moment = GRAVITY * abs(scene.metacentric_height or scene.weight) * abs(float(weight @ sections.lever))
+    force, time = GRAVITY * float(weight @ np.abs(sections.net)), np.inf
+    if moment > 0.0 and not scene.planar:
+        time = float(np.sqrt(weight @ sections.inertia1 / moment))
+    return min(time, float(np.sqrt(length * (weight @ sections.mass) / force))) if force > 0.0 else time
+
+
+def check_weight(body: Body, scene: Scene, sections: SectionData, weight: np.ndarray) -> None:
+    """`ValueError` for a planar `scene` in which weight is not buoyancy, or one with a metacentric height for a `body`
+    that has its own; other arguments as in `weight_time`."""
+    net = float(weight @ np.abs(sections.net))
+    if scene.metacentric_height and body.offset:
+        raise ValueError(
+            "scene metacentric_height must be 0 m for a body with centre_of_mass_offset, got "
+            f"{scene.metacentric_height} m: turn on weight"
+        )
+    if scene.planar and net > NEUTRAL * float(weight @ sections.mass):
+        raise ValueError(
+            f"scene planar must be off where weight and buoyancy differ, got {GRAVITY * net:.3g} N between them"
+        )
 
 
 def stations_of(body: Body, scene: Scene, grid: Grid, nodes: SectionData, x: np.ndarray) -> StationData:
@@ -179,26 +202,34 @@ def _off_zero(values: np.ndarray) -> np.ndarray:
 def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionData:
     """Section data of `body` in `scene` at `x` (n,) [m]."""
     a, b = body.half_height(x), body.half_width(x)
-    density = body.density if scene.density is None else scene.density
     area = np.pi * a * b
+    mass = body.mass_per_length(x, scene.density)
     added2, added3, added_roll = added_masses(body, scene, a**2, b**2)
-    inertia2, inertia3 = density * area * a**2 / 4.0, density * area * b**2 / 4.0
+    inertia2, inertia3 = mass * a**2 / 4.0, mass * b**2 / 4.0  # about the centre of mass
+    lever, hung = np.zeros_like(mass), 0.0
+    if body.offset:
+        lever = mass * body.centre_of_mass_offset(x)
+        hung = lever * body.centre_of_mass_offset(x)
+    elif scene.metacentric_height:
+        lever = mass  # times g h: `core_swimmer`
     half_rho = 0.5 * scene.fluid_density if scene.resistive else 0.0
     # at the nose c_f P has a limit, as c_f grows like X^-1/2 and P like X^1/2
     behind = np.maximum(x, 1e-9 * body.length)
     c, d = (a, b) if np.array_equal(behind, x) else (body.half_height(behind), body.half_width(behind))
     perimeter = np.pi * (1.5 * (c + d) - np.sqrt(c * d)) * (0.5 if scene.perimeter == "printed" else 1.0)
     across = half_rho if scene.cross_flow else 0.0
-    rubbed = 0.0 if scene.friction == "none" else half_rho * body.friction_factor
+    rubbed = 0.0 if scene.friction == "none" else half_rho
     critical_speed = CRITICAL_REYNOLDS * scene.viscosity / behind  # m/s, |V1| at which Re = 8e4
     with np.errstate(divide="ignore"):
         by_critical_speed = np.where(critical_speed > 0.0, 1.0 / critical_speed, 0.0)
     table = SectionData(
-        mass=density * area,
+        mass=mass,
         added2=added2,
         added3=added3,
-        inertia1=inertia2 + inertia3 + added_roll,
-        inertia2=inertia2,
+        lever=lever,
+        net=scene.fluid_density * area - mass if scene.weight else np.zeros_like(mass),
+        inertia1=inertia2 + inertia3 + added_roll + hung,
+        inertia2=inertia2 + hung,
         inertia3=inertia3,
         added_roll=added_roll,
         displaced=scene.fluid_density * area,

@@ -53,6 +53,20 @@ class PolynomialHalfAxis:
         return chebyshev.Chebyshev(self.coefficients[panel], domain=self.bounds[panel : panel + 2])
 
 
+@dataclass(frozen=True)
+class PolynomialAlong:
+    """A number along the body that is a Chebyshev polynomial between two of the `bounds` (0, kinks, length) [m]."""
+
+    bounds: tuple[float, ...]
+    coefficients: tuple[tuple[float, ...], ...]
+
+    def __call__(self, x) -> np.ndarray:
+        """Its values at `x` [m]."""
+        ends = zip(pairwise(self.bounds), self.coefficients, strict=True)
+        series = [chebyshev.Chebyshev(row, domain=domain) for domain, row in ends]
+        return piecewise(series, self.bounds, np.asarray(x, dtype=float))
+
+
 def _boyer_radius(x):
     return 0.05 * np.sqrt(np.maximum(0.0, 1.0 - np.maximum(0.0, 1.0 - x / 0.05) ** 2))
 
@@ -88,11 +102,13 @@ FUNCTIONS = {
 
 def polynomials_through(half_axis, bounds: tuple[float, ...], degree: int = 48) -> PolynomialHalfAxis:
     """Polynomials through the square of a `half_axis` (function of X [m] that returns m) between the `bounds` [m]."""
-    series = [
-        chebyshev.Chebyshev.interpolate(lambda x: half_axis(x) ** 2, degree, domain=[start, end])
-        for start, end in pairwise(bounds)
-    ]
-    return PolynomialHalfAxis(tuple(bounds), tuple(tuple(each.coef.tolist()) for each in series))
+    return PolynomialHalfAxis(tuple(bounds), coefficients_of(lambda x: half_axis(x) ** 2, bounds, degree))
+
+
+def coefficients_of(function, bounds: tuple[float, ...], degree: int = 48) -> tuple[tuple[float, ...], ...]:
+    """Rows of coefficients of the polynomials through a `function` of X [m] between the `bounds` [m]."""
+    series = [chebyshev.Chebyshev.interpolate(function, degree, domain=ends) for ends in pairwise(bounds)]
+    return tuple(tuple(each.coef.tolist()) for each in series)
 
 
 def piecewise(functions: Sequence[Callable], bounds: Sequence[float] | np.ndarray, x: np.ndarray) -> np.ndarray:

@@ -335,7 +335,7 @@ class Run:
     @property
     def body_mass(self) -> float:
         """Mass of the body in this scene [kg]."""
-        return self.body.volume * (self.body.density if self.scene.density is None else self.scene.density)
+        return self.body.mass_in(self.scene.density)
 
 
 def simulate(

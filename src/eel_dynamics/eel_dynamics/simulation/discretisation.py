@@ -14,7 +14,14 @@ from eel_dynamics.model.grid import Grid, Panel
 from eel_dynamics.model.inertia import check_inertia
 from eel_dynamics.model.panels import panels_of
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.model.section_data import SectionData, core_swimmer, nose_of, righting_time, sections_on
+from eel_dynamics.model.section_data import (
+    SectionData,
+    check_weight,
+    core_swimmer,
+    nose_of,
+    sections_on,
+    weight_time,
+)
 
 
 class Discretisation(NamedTuple):
@@ -24,7 +31,7 @@ class Discretisation(NamedTuple):
     sections: SectionData  # at the nodes
     swimmer: eel_core.Swimmer  # all of it, for the compiled mechanics
     mass: float  # kg, of the body
-    righting_time: float  # s
+    weight_time: float  # s
     tabulation: Tabulation
 
     def __deepcopy__(self, memo: dict) -> "Discretisation":
@@ -51,10 +58,11 @@ def _on_panels(
     """Many resolutions give the same `panels`: nodes fill blocks of eight."""
     x, grid = np.frombuffer(stations), Grid.of(panels)
     sections = sections_on(body, scene, grid)
-    check_inertia(grid, sections, nose_of(body, scene)[0], body.length, scene.planar)
+    check_inertia(grid, sections, nose_of(body, scene)[0], body.length, scene.planar, body.offset)
+    check_weight(body, scene, sections, grid.weight)
     nodes_before = np.searchsorted(grid.x, x, side="right")
     base = np.where(nodes_before > 0, grid.x[nodes_before - 1], 0.0)
     swimmer = core_swimmer(body, scene, grid, sections, x, kinks)
     tabulation = Tabulation(grid.x, grid.previous, x, base, np.frombuffer(further))
-    mass, righting = float(grid.weight @ sections.mass), righting_time(scene, sections, grid.weight)
-    return Discretisation(grid, sections, swimmer, mass, righting, tabulation)
+    mass, time = float(grid.weight @ sections.mass), weight_time(scene, sections, grid.weight, body.length)
+    return Discretisation(grid, sections, swimmer, mass, time, tabulation)

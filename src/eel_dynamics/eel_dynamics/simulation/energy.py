@@ -7,7 +7,8 @@
 A positive power feeds energy into body and water. The power of the wake is V1(l) T_f(l). It is positive where the tail
 leads, which is a limit of the theory. The power of the nose includes that of its added mass, so kinetic_fluid does not
 include 1/2 m_o V1^2. The power of the drag does not include the nose. The potential energy is that of
-the righting moment (`Scene.metacentric_height`), 0 where every section stands upright.
+the weight and the buoyancy (`Scene.weight`; of `Scene.metacentric_height` alone their moment), 0 where every section
+stands upright at z = 0.
 
 Where the water moves by itself (`flow`), U is its velocity at a section and p the momentum of the section's water that
 moves through it: kinetic_fluid is the integral of T_f + p . U, and flow_power that of p . u_t + rho_f A a_u . V, the

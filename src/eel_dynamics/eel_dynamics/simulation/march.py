@@ -3,7 +3,6 @@
 
 from collections.abc import Callable
 from copy import deepcopy
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,6 @@ from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
 from eel_dynamics.accuracy.step_bounds import step_bounds_of
 from eel_dynamics.curvature.curvature_samples import CurvatureSample
 from eel_dynamics.curvature.law_follower import LawFollower
-from eel_dynamics.flow.flow import Flow
 from eel_dynamics.model.initial_state import InitialState, time_scale
 from eel_dynamics.simulation.discretisation import Discretisation, discretise
 from eel_dynamics.simulation.observations import Observations, Snapshot
@@ -113,12 +111,6 @@ class March:
         self._hand_over_law()
         self._needs = needs
 
-    def change_flow(self, flow: Flow | None):
-        """Let the water move by `flow` from now on, at present with the same velocity as before."""
-        self.setup = replace(self.setup, flow=flow)
-        self._use(self.settings.at_least(self.setup.grid_for(self._needs)))
-        self._hand_over_law()
-
     def _fit(self, needs: ShapeNeeds):
         """Make the grid fine enough for the `needs` and, once no finer motion is left, not much finer."""
         wanted = self.setup.grid_for(needs)
@@ -160,7 +152,7 @@ class March:
             mass=here.mass,
             length=setup.body.length,
             speed=follower.speed(setup.body.length),
-            scale=min(follower.time_scale, self._time_scale, here.righting_time, setup.flow_time_scale),
+            scale=min(follower.time_scale, self._time_scale, here.weight_time, setup.flow_time_scale),
             most_evaluations=setup.most_evaluations,
         )
 

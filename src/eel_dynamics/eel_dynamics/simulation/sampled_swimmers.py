@@ -151,6 +151,6 @@ class SampledSwimmers:
             mass=discretisation.mass,
             length=length,
             speed=0.0,
-            scale=min(time_scale(twist, length), discretisation.righting_time),
+            scale=min(time_scale(twist, length), discretisation.weight_time),
             most_evaluations=self._setup.most_evaluations,
         )

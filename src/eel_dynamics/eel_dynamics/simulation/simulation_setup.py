@@ -54,6 +54,8 @@ def check_possible(robot: Robot, body: Body, scene: Scene, flow: Flow | None) ->
     """`ValueError` for a `robot` that does not fit the body, or with physics that bodies with modes do not have yet."""
     if flow is not None:
         raise ValueError(f"robot cannot swim in water that moves by itself yet: take flow=None, got {flow!r}")
+    if body.offset:
+        raise ValueError("robot cannot have its mass off the axis yet: take a body with centre_of_mass_offset=0")
     mode_table(robot, body, bool(scene.planar))
 
 

@@ -134,7 +134,7 @@ class BentBody {
         find_shape_accelerations(*swimmer_, law.law, work);
         auto left = work.tail + work.drag - set_inertial_density(*swimmer_, work);
         left.linear.x += nose_drag(*swimmer_, work.nose_through_water().x);
-        if (swimmer_->righting != 0.0) left.angular += work.righting;
+        if (swimmer_->weighs()) left += work.weight;
         for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {  // about the sections, weighed
             Wrench<M, Lanes> taken = work.density[k];
             taken.angular = taken.angular - cross(work.position[k], taken.linear);
@@ -194,7 +194,7 @@ class BentBody {
             }
         }
         find_loads(*swimmer_, work);
-        if (swimmer_->righting != 0.0) set_righting_torque(*swimmer_, work);
+        if (swimmer_->weighs()) set_weight(*swimmer_, 0.0, work);  // its energy is that of what is observed
         set_mode_loads();
         set_forces(*modes_, reference, x, rate.data(), forces);
     }
@@ -212,9 +212,11 @@ class BentBody {
                 load = {frame.parent(drag.angular), frame.parent(drag.linear)};
             }
             if constexpr (!M::planar)
-                if (swimmer_->righting != 0.0) {
-                    const Lanes moment = swimmer_->righting * (swimmer_->grid.weight[k] * swimmer_->sections.mass[k]);
+                if (swimmer_->weighs()) {
+                    const Lanes weight = swimmer_->grid.weight[k];
+                    const Lanes moment = swimmer_->righting * (weight * swimmer_->sections.lever[k]);
                     load.angular += righting_torque(moment, frame.axis3, work.up);
+                    load.linear += swimmer_->gravity * (weight * swimmer_->sections.net[k]) * work.up;
                 }
             load_.store(k, load);
         }

@@ -115,7 +115,7 @@ class BentMarch {
         work.head = head_frame(state_, Space());
         put_momentum(momentum_of(*swimmer_, twist, work), work.head, state_);
         set_velocities(*swimmer_, twist, work);
-        if (swimmer_->righting != 0.0) set_righting_torque(*swimmer_, work);
+        if (swimmer_->weighs()) set_weight(*swimmer_, height_in(water(), time_, state_), work);
         const auto [body, fluid, potential] = energies_of(*swimmer_, work);
         begin();
         std::visit([&](auto& stepper) { find_instant(stepper); }, stepper_);

@@ -121,7 +121,7 @@ class March {
         put_momentum(momentum_of(*swimmer_, twist, work), work.head, state_);
         set_velocities(*swimmer_, twist, work);
         if (work.flowing) set_flow_load(*swimmer_, work);
-        if (swimmer_->righting != 0.0) set_righting_torque(*swimmer_, work);
+        if (swimmer_->weighs()) set_weight(*swimmer_, height_in(settings_.water, time_, state_), work);
         begin();
         const auto [body, water, potential] = energies_of(*swimmer_, work);
         return body + water + potential;

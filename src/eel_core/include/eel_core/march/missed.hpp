@@ -33,7 +33,8 @@ class MissedWrench {
         if (work.flowing) add_flow(swimmer, work, frame, omega, flow);
         const std::size_t used = swimmer.resistive ? Part::count : Part::drag2;
         for (std::size_t part = 0; part < used; ++part)
-            if (part == Part::displaced && !work.flowing)
+            if ((part == Part::displaced && !work.flowing) || (part == Part::net && swimmer.gravity == 0.0) ||
+                (part == Part::lever && swimmer.righting == 0.0 && !swimmer.offset))
                 continue;
             else if ((Part::inertia1 <= part && part < Part::displaced) || part == Part::drag_roll)  // without a force
                 swimmer.missed[part].add<Vector3<double>>(unit_[part], factor_[part], integral);
@@ -46,15 +47,18 @@ class MissedWrench {
     {
         for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
             const auto of = [&](const Section<Lanes>& one) { return inertial_wrench<Space>(one, work, k); };
-            const std::array<Wrench<Space, Lanes>, Part::displaced> unit{
-                of({1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}), of({0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0}),
-                of({0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0}), of({0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0}),
-                of({0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0}), of({0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0})};
-            for (std::size_t part = 0; part < Part::displaced; ++part) unit_[part].store(k, unit[part]);
-            if (swimmer.righting == 0.0) continue;
-            Wrench<Space, Lanes> upright = unit[Part::mass];
-            upright.angular = upright.angular - righting_torque(Lanes(swimmer.righting), work.frame[k].axis3, work.up);
-            unit_[Part::mass].store(k, upright);
+            unit_[Part::mass].store(k, of({1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}));
+            unit_[Part::added2].store(k, of({0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0}));
+            unit_[Part::added3].store(k, of({0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0}));
+            unit_[Part::inertia1].store(k, of({0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0}));
+            unit_[Part::inertia2].store(k, of({0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0}));
+            unit_[Part::inertia3].store(k, of({0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0}));
+            if (!swimmer.weighs() && !swimmer.offset) continue;
+            Wrench<Space, Lanes> hanging{};
+            if (swimmer.offset) hanging = wrench_of_offset(Lanes(1.0), work, k);
+            hanging.angular = hanging.angular - righting_torque(Lanes(swimmer.righting), work.frame[k].axis3, work.up);
+            unit_[Part::lever].store(k, hanging);
+            unit_[Part::net].store(k, -net_weight(swimmer, work.up, work.position[k], Lanes(1.0)));
         }
     }
 

@@ -54,6 +54,8 @@ inline std::array<double, 3> energies_of(const Swimmer& swimmer, const Workspace
         const Frame3<Lanes> frame = work.frame[k];
         const Vector3<Lanes> v = frame.local(work.velocity[k]), omega = frame.local(work.omega[k]);
         body += swimmer.grid.weight[k] * section.body_energy(v, omega);
+        if (swimmer.offset)
+            body += swimmer.grid.weight[k] * dot(v, cross(omega, Vector3<Lanes>{0.0, 0.0, -swimmer.sections.lever[k]}));
         const Vector3<Lanes> w = frame.local(through_water[k]);
         water += swimmer.grid.weight[k] * section.water_energy(w, omega);
     }
@@ -115,6 +117,8 @@ class Observer {
         for (std::size_t k = 0; k < swimmer_.grid.blocks; ++k) {
             const Lanes part = swimmer_.grid.weight[k] * swimmer_.sections[k].mass;
             mass += part, moment += part * work.position[k];
+            if (swimmer_.offset)
+                moment += mass_moment(swimmer_.grid.weight[k] * swimmer_.sections.lever[k], work.frame[k].axis3);
         }
         const Vector3<double> centre = work.head.parent((1.0 / total(mass)) * total_of(moment));
         put(half_turn(Vector3{y[0], y[1], y[2]} + centre), at(Profiles::center_of_mass, sample));

@@ -99,6 +99,8 @@ struct DragSection {
 // The sections at the nodes, or at the stations.
 struct Sections {
     Row mass, added2, added3, inertia1, inertia2, inertia3, added_roll;
+    Row lever;      // [kg], m h of the weight; see weight.hpp
+    Row net;        // [kg/m], of the displaced water less the body, where bodies weigh
     Row displaced;  // [kg/m], of the water that the section displaces
     Row drag2, drag3, drag_roll, laminar, turbulent, by_critical_speed;
 

@@ -11,13 +11,15 @@ namespace eel_core {
 // `lateral` on, the drag has a kink or a jump where the speed changes its sign.
 enum Speed : std::size_t { axial = 0, lateral = 1, vertical = 2, roll = 3, above_critical = 4, speeds = 5 };
 
-// Numbers of a section in which its inertial wrench, the undisturbed pressure of a flow and, from `drag2` on, its drag
-// are linear.
+// Numbers of a section in which its inertial wrench, its weight, the undisturbed pressure of a flow and, from `drag2`
+// on, its drag are linear.
 struct SectionPart {
     enum : std::size_t {
         mass,
         added2,
         added3,
+        lever,
+        net,
         inertia1,
         inertia2,
         inertia3,
@@ -28,7 +30,7 @@ struct SectionPart {
         laminar,
         turbulent
     };
-    static constexpr std::size_t count = 12;
+    static constexpr std::size_t count = 14;
 };
 
 struct Swimmer {
@@ -41,7 +43,11 @@ struct Swimmer {
     double nose_mass = 0.0;               // [kg], m_o
     double nose_drag = 0.0;               // [kg/m], 1/2 rho_f k_o
     bool distributed_pressure = false;    // -d/dX(T_f t1) along the body in place of -T_f t1 at the tail
-    double righting = 0.0;                // [m^2/s^2], g h of the righting moment; 0: none
+    bool offset = false;                  // the centre of mass is off the axis: `lever` is part of the inertia
+    double righting = 0.0;                // [m/s^2], g, by which `lever` gives a moment of weight; 0: none
+    double gravity = 0.0;                 // [m/s^2], g, by which `net` gives a force; 0: no section has any
+
+    bool weighs() const { return righting != 0.0 || gravity != 0.0; }
 
     // For some speeds: parts of the nodes that the integral of the drag from a panel's start misses, by the drag at the
     // node [m]; at fractions (1 - cos(pi k / last)) / 2 of the panel, k = 0 ... last. None where the sections are

@@ -81,14 +81,15 @@ struct Workspace {
     // Of the whole body:
     Frame<M, double> head;  // axes of the head in the world
     Factored<M::freedoms> inertia;
-    Twist<M, double> twist;         // of the head, relative to the water
-    Momentum<M, double> momentum;   // of body, water and nose
-    Wrench<M, double> tail, drag;   // on the body
-    Vector3<double> up{};           // of the world; as the next, where there is a righting moment
-    Angular<M, double> righting{};  // [N m], torque of weight and buoyancy
-    double drag_power = 0.0;        // [W]
-    double tail_speed = 0.0;        // V1 at the tail [m/s]
-    double tail_energy = 0.0;       // T_f there [J/m]
+    Twist<M, double> twist;        // of the head, relative to the water
+    Momentum<M, double> momentum;  // of body, water and nose
+    Wrench<M, double> tail, drag;  // on the body
+    Vector3<double> up{};          // of the world; as the next two, where the body weighs
+    double height = 0.0;           // of the nose [m], over that of no potential energy
+    Wrench<M, double> weight{};    // of weight and buoyancy
+    double drag_power = 0.0;       // [W]
+    double tail_speed = 0.0;       // V1 at the tail [m/s]
+    double tail_energy = 0.0;      // T_f there [J/m]
     Twist<M, double> head_acceleration;
     Wrench<M, double> balance;  // integral over the body of the density, as the head equation has it
     double nose_force = 0.0;    // [N], along t1(0)

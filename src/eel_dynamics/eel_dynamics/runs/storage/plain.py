@@ -19,8 +19,14 @@ from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.budget import Budget
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.shapes import NamedHalfAxis, PolynomialHalfAxis, polynomials_through
+from eel_dynamics.model.body import MASSES, Body
+from eel_dynamics.model.shapes import (
+    NamedHalfAxis,
+    PolynomialAlong,
+    PolynomialHalfAxis,
+    coefficients_of,
+    polynomials_through,
+)
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 HALF_AXES = ("half_width", "half_height")
@@ -71,6 +77,13 @@ def _plain_body(body: Body) -> dict:
         if kind is None:
             kind, value = "polynomial", _polynomial(body, name)
         plain[name] = {"kind": kind, **asdict(value)}
+    for name in MASSES:
+        value = plain[name]
+        if isinstance(value, np.ndarray):
+            plain[name] = value.tolist()
+        elif callable(value):
+            bounds = (0.0, *body.panel_ends)
+            plain[name] = asdict(PolynomialAlong(bounds, coefficients_of(getattr(body, name), bounds)))
     if "x" in plain:
         plain["x"] = plain["x"].tolist()
     return plain
@@ -84,6 +97,9 @@ def body_of(plain: dict) -> Body:
             given = dict(plain[name])
             kind = FUNCTIONS[given.pop("kind")]
             arguments[name] = kind(**{key: _tuples(value) for key, value in given.items()})
+    for name in MASSES:
+        if isinstance(plain.get(name), dict):
+            arguments[name] = PolynomialAlong(**{key: _tuples(value) for key, value in plain[name].items()})
     return Body(**arguments)
 
 
