@@ -1,34 +1,32 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel tradeoff`: measure what accuracy costs, and what poorer models miss.
+"""`eel tradeoff`: measure what accuracy costs in a scene, and what each term of the model is worth.
 
-eel tradeoff falling
-eel tradeoff falling --page docs/appendix/tradeoff.md --out docs/images
-eel tradeoff falling straight turning --csv
-eel tradeoff straight --set period=0.7 --quick
+eel tradeoff scene.yaml
+eel tradeoff straight --set period=0.7 --within "5 ms"
+eel tradeoff falling docs/scenes/street.yaml --page docs/appendix/tradeoff.md --out docs/images
 eel tradeoff --delivered --seed 7 --page docs/explanation/accuracy.md --out docs/images
 """
 
 import argparse
 import sys
+from functools import partial
+from pathlib import Path
 
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
 from eel_base.command.run_command import run_command
 from eel_base.files.output_file import written_as
-from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.command_options import add_options, body_of, set_numbers
-from eel_dynamics.runs.swim import Swim
-from eel_gaits.gaits.registry import gait
+from eel_dynamics.accuracy.budget import Budget
 
 from eel_studies.outputs import Outputs, add_output_options
-from eel_studies.tradeoff import measuring, models
+from eel_studies.scene_options import add_scene_options, swim_from
 from eel_studies.tradeoff.delivered import COUNT, SEED, deliver, delivered_table, draw_delivered
 from eel_studies.tradeoff.drawing import SIZE, draw_trade
+from eel_studies.tradeoff.measuring import SAMPLE_PERIOD, Trade, measure
 from eel_studies.tradeoff.page import PARTS, reference_line, write_page
 from eel_studies.tradeoff.price import SWIMS, draw_prices, prices
 from eel_studies.tradeoff.settings import settings
-from eel_studies.tradeoff.table import model_table, trade_table
+from eel_studies.tradeoff.table import asked_table, trade_table, worth_table
 
 NAME = "eel tradeoff"
 DELIVERED = "--delivered"  # as the first option: the other parser
@@ -44,33 +42,42 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _trade(options: argparse.Namespace) -> int:
-    progress, numbers = Progress(NAME, "settings"), set_numbers(options.set)
-    laws = [gait(name, **numbers) for name in options.gaits or ["falling"]]
-    swims = [Swim(law, body_of(options.body), Scene(), Accuracy.of("standard")) for law in laws]
-    least = measuring.SAMPLE_PERIOD  # a single sample has no error
-    if not least <= options.duration < float("inf"):
-        raise ValueError(f"--duration must be finite and >= {least} s, got {options.duration}")
+    progress, names = Progress(NAME, "settings"), options.swim or ["falling"]
+    budget = options.within and Budget.of(f"fastest within {options.within} per second")
+    swims = {Path(name).stem: swim_from(name, options) for name in names}
+    for swim in swims.values():
+        if isinstance(swim.duration, float) and not swim.duration >= (least := swim.sample_period or SAMPLE_PERIOD):
+            raise ValueError(f"--duration must be >= {least} s, got {swim.duration}")
     if not options.repeats >= 1:
         raise ValueError(f"--repeats must be 1 or more, got {options.repeats}")
-    outputs, found, pictures = Outputs(NAME, options, PARTS), [], []
-    for swim in swims:
-        progress.say(f"gait {swim.law.name}")
+    outputs, found = Outputs(NAME, options, PARTS), []
+    for name, swim in swims.items():
+        progress.say(f"scene {name}")
         rows = settings(swim.scene, options.quick)
-        trade = measuring.measure(swim, rows, options.duration, options.repeats, progress.say)
-        poorer = models.compare(swim, trade.reference, options.duration, progress.say)
-        found.append((trade, poorer))
-        print(f"\n{trade.name}, {trade.duration:g} s. {reference_line(trade)}\n")
-        print(trade_table(trade, options.all).text(), model_table(poorer, trade).text(), sep="\n\n")
-    for trade, poorer in found:
-        name, title = f"tradeoff_{trade.name}", f"The trade of the {trade.name} gait"
-        draw = lambda figure, pair=(trade, poorer): draw_trade(figure, *pair)  # noqa: E731
-        pictures.append(outputs.draw(name, title, draw, SIZE, ("svg", "png")))
+        trade = measure(swim, rows, options.repeats, progress.say, name)
+        found.append(trade)
+        tables = trade_table(trade, options.all), asked_table(trade), worth_table(trade)
+        print(f"\n{trade.name}, {trade.duration:g} s. {reference_line(trade)}", *(t.text() for t in tables), sep="\n\n")
+        if budget:
+            print(f"\n{_budget_line(trade, budget)}")
+    pictures = []
+    for trade in found:
+        name, title = f"tradeoff_{trade.name}", f"The trade of the scene {trade.name}"
+        pictures.append(outputs.draw(name, title, partial(draw_trade, trade=trade), SIZE, ("svg", "png")))
         if options.csv:
             path = outputs.folder / f"{name}.csv"
             trade_table(trade, everything=True).write_csv(path)
             print(f"written to {written_as(path)}")
     write_page(outputs, found, pictures)
     return 0
+
+
+def _budget_line(trade: Trade, budget: Budget) -> str:
+    best, asked = trade.within(budget)
+    named = "no preset or target is as fast" if asked is None else f"accuracy={asked.accuracy.name!r} delivers"
+    return f"{budget.name}: {best.accuracy.name} delivers {best.error:.1e}; {named}" + (
+        f" {asked.error:.1e}." if asked else "."
+    )
 
 
 def _deliver(options: argparse.Namespace) -> int:
@@ -97,11 +104,11 @@ def _deliver(options: argparse.Namespace) -> int:
 def _parser() -> Parser:
     parser = Parser(
         prog=NAME,
-        description="Measure error and cost of many settings for a gait, mark the Pareto front, and compare with the "
-        "error of models that leave physics out. Takes about a minute per gait.",
+        description="Measure error and cost of many settings for a scene, mark the Pareto front, and compare with the "
+        "error of models without one of their terms. Takes about a minute per scene.",
     )
-    add_options(parser, "gaits", "--set", "--body", gaits=([], "falling"))
-    parser.add_argument("--duration", type=float, default=10.0, metavar="SECONDS", help="s (10)")
+    add_scene_options(parser, several=True)
+    parser.add_argument("--within", metavar="TIME", help="e.g. '5 ms': what is fastest within it per simulated second")
     parser.add_argument(
         "--repeats", type=int, default=5, metavar="N", help="rounds of timing, of which the median counts (5)"
     )

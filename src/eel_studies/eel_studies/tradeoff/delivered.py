@@ -3,7 +3,7 @@
 
 Swims are drawn from bends in space and in the plane, periods of 0.2 to 3 s, densities of 200 to 8,000 kg/m^3, every
 friction law, three bodies, heads at rest and moving, and durations of 1 to 16 s. The true error is the distance from a
-reference: two methods on two grids that agree to a tenth of the target, and of the estimate where any do. It is known
+`reference`: two methods on two grids that agree to a tenth of the target, and of the estimate where any do. It is known
 as well as they agree.
 """
 
@@ -13,30 +13,21 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import FRICTION, Scene
 from eel_dynamics.runs.companion import relative_errors
-from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.runs.swim import AT_REST, Swim
 from eel_dynamics.simulation.stopping import SimulationStopped
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 
+from eel_studies.reference import reference_of
 from eel_studies.table import Table
 from eel_studies.workers import in_threads
 
 TARGETS = 1e-2, 1e-3, 1e-4, 1e-5, 1e-6
-# Two methods on two grids, which are trusted where they agree; finer ones where the first do not. Two grids may have
-# nearly the same error, so the pair must agree better than what it is to judge.
-REFERENCES = tuple(
-    (
-        Accuracy(name="pair", resolution=points, tolerance=tolerance),
-        Accuracy(name="adams", resolution=points + 20.0, tolerance=0.3 * tolerance, method="adams", order=6),
-    )
-    for points, tolerance in ((70.0, 1e-11), (160.0, 1e-12), (320.0, 1e-13))
-)
 AGREED = 0.1  # of the target and of the estimate, to which the references are to agree
 LEAST = 1e-11  # least error that a reference resolves
 COUNT, SEED = 500, 1
@@ -53,7 +44,7 @@ class Trial:
     delivered run alone.
     """
 
-    swim: dict[str, Any]
+    swim: Swim  # with the target as its accuracy
     error: Any  # ErrorEstimate | None
     uncertainty: float
     estimate: ErrorEstimate
@@ -63,7 +54,7 @@ class Trial:
     @property
     def target(self) -> float:
         """The relative error that was asked for."""
-        return float(self.swim["accuracy"])
+        return float(self.swim.accuracy)
 
     @property
     def missed(self) -> bool:
@@ -76,8 +67,8 @@ class Trial:
         return float(max(self.error.worst - self.uncertainty, LEAST) / max(self.estimate.worst, LEAST))
 
 
-def drawn(rng: np.random.Generator) -> dict[str, Any]:
-    """Arguments of `simulate` for one swim."""
+def drawn(rng: np.random.Generator) -> Swim:
+    """One swim, with its target as accuracy."""
 
     def between(low: float, high: float) -> float:
         return float(np.exp(rng.uniform(np.log(low), np.log(high))))
@@ -99,52 +90,30 @@ def drawn(rng: np.random.Generator) -> dict[str, Any]:
         terms.append(Term(axis="pitch", amplitude=bend, **wave))
     wrench = bool(rng.integers(2))
     water: dict[str, Any] = {"density": between(*DENSITIES), "friction": str(rng.choice(FRICTION))}
-    return {
-        "law": Law(*terms, name="drawn"),
-        "duration": between(*DURATIONS),
-        "body": body,
-        "scene": Scene(**water, internal_wrench=wrench, ledger=False),
-        "accuracy": float(rng.choice(TARGETS)),
-        "twist": rng.normal(size=6) * SPEED * (rng.random() < 0.3),
-        "stations": 11,
-    }
+    duration, target = between(*DURATIONS), float(rng.choice(TARGETS))
+    scene = Scene(**water, internal_wrench=wrench, ledger=False)
+    start = AT_REST._replace(twist=rng.normal(size=6) * SPEED * (rng.random() < 0.3))
+    return Swim(Law(*terms, name="drawn"), body, scene, target, start, duration=duration, stations=11)
 
 
-def trial_of(swim: dict[str, Any]) -> Trial | None:
+def trial_of(swim: Swim) -> Trial | None:
     """The trial of one swim; None for a swim that stops before its end, with its reason."""
     try:
-        run = simulate(**swim)
+        run = swim.run()
         estimate = run.error_estimate
         assert estimate is not None
-        reference, uncertainty = _reference(swim, estimate.worst)
+        reference, uncertainty = reference_of(swim, AGREED * min(swim.accuracy, max(estimate.worst, 10.0 * LEAST)))
     except SimulationStopped:
         return None
+    known = uncertainty < AGREED * swim.accuracy
     return Trial(
         swim=swim,
-        error=None if reference is None else relative_errors(run, reference),
+        error=relative_errors(run, reference) if known else None,
         uncertainty=uncertainty,
         estimate=estimate,
-        reported=bool(estimate.over_target(swim["accuracy"], float(run.time[-1]))),
+        reported=bool(estimate.over_target(swim.accuracy, float(run.time[-1]))),
         cost=1.0 + estimate.cost / (run.nodes * run.evaluations),
     )
-
-
-def _reference(swim: dict[str, Any], estimate: float) -> tuple[Run | None, float]:
-    """A run that is trusted, and its distance from another method on another grid; None and infinity if there is none.
-
-    The first of the `REFERENCES` that agree to a tenth of the `estimate` of the error and of the target. If none do,
-    those that agree best, if to a tenth of the target.
-    """
-    reference, uncertainty = None, np.inf
-    wanted = AGREED * min(swim["accuracy"], max(estimate, 10.0 * LEAST))
-    for pair in REFERENCES:
-        first, second = (simulate(**{**swim, "accuracy": each}, estimate=False) for each in pair)
-        distance = relative_errors(first, second).worst
-        if distance < min(uncertainty, AGREED * swim["accuracy"]):
-            reference, uncertainty = first, distance
-        if uncertainty <= wanted:
-            break
-    return reference, uncertainty
 
 
 def deliver(count: int = COUNT, seed: int = SEED, say: Callable[[str], object] = lambda text: None) -> list[Trial]:
@@ -155,8 +124,8 @@ def deliver(count: int = COUNT, seed: int = SEED, say: Callable[[str], object] =
         return [each for each in in_threads(trial_of, swims_of(count, seed)) if each is not None]
 
 
-def swims_of(count: int, seed: int) -> list[dict[str, Any]]:
-    """The arguments of `simulate` for `count` swims that `seed` draws."""
+def swims_of(count: int, seed: int) -> list[Swim]:
+    """The `count` swims that `seed` draws."""
     return [drawn(np.random.default_rng([seed, index])) for index in range(count)]
 
 

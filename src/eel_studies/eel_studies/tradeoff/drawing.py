@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The trade-off as a picture: error against times real time, both Pareto fronts, and the errors of simpler models.
+"""The trade-off as a picture: error against times real time, both Pareto fronts, and the errors without a term.
 
 Methods differ in colour (Okabe and Ito) and in mark, so that they can be told apart in print without colour.
 """
@@ -8,12 +8,10 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from eel_dynamics.accuracy.accuracy import PRESETS
 
 from eel_studies.pictures import BLACK, BLUE, GREEN, GREY, ORANGE, Axes, Figure
-from eel_studies.tradeoff.measuring import Measured, Trade, front
-from eel_studies.tradeoff.models import Model
-from eel_studies.tradeoff.settings import METHODS
+from eel_studies.tradeoff.measuring import Measured, Trade, front_of
+from eel_studies.tradeoff.settings import ASKED_FOR, METHODS
 
 LOOKS = {"adams": (BLUE, "o"), "dormand_prince": (GREEN, "s"), "classical": (ORANGE, "^")}
 SIZE = 11.0, 5.4  # inches
@@ -21,21 +19,19 @@ LEADER = 1.0, 1.06  # axes: where the line from a model's error to its name begi
 FLOOR = 3.0  # times the reference's own error: differences below it are not significant
 
 
-def draw_trade(figure: Figure, trade: Trade, models: list[Model]) -> None:
+def draw_trade(figure: Figure, trade: Trade) -> None:
     """Draw the trade-off into an empty matplotlib figure: error of pose on the left, of torque on the right."""
-    figure.suptitle(
-        f"Gait {trade.name!r}, {trade.duration:g} s: what exactness costs, and what a poorer model is off by"
-    )
+    figure.suptitle(f"{trade.name}, {trade.duration:g} s: what exactness costs, and what a poorer model is off by")
     panels = figure.subplots(1, 2, sharex=True)
-    for axes, quantity, floor in zip(panels, ("pose_error", "torque_error"), trade.reference_error, strict=True):
-        _draw_panel(axes, trade, models, quantity, FLOOR * floor)
-    panels[0].set_ylabel("error of the head's position at the end, by its path")
+    for axes, quantity in zip(panels, ("pose_error", "torque_error"), strict=True):
+        _draw_panel(axes, trade, quantity, FLOOR * trade.reference_error)
+    panels[0].set_ylabel("error of the head's position, by its path")
     panels[1].set_ylabel("error of the torque along the body, by its greatest")
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), frameon=False)
 
 
-def _draw_panel(axes: Axes, trade: Trade, models: list[Model], quantity: str, floor: float) -> None:
+def _draw_panel(axes: Axes, trade: Trade, quantity: str, floor: float) -> None:
     from matplotlib.patheffects import withStroke
 
     def error(row: Measured) -> float:
@@ -48,31 +44,31 @@ def _draw_panel(axes: Axes, trade: Trade, models: list[Model], quantity: str, fl
         rows = [row for row in trade.rows if row.accuracy.method == method]
         if rows:
             plot(rows, mark, color=colour, markersize=4, alpha=0.45, markeredgewidth=0, label=METHODS[method])
-    best = front(trade.rows, error)
+    best = front_of(trade.rows, error)
     plot(best, color=BLACK, linewidth=1.4, label="Pareto front")
     for row in best:
         plot([row], LOOKS[row.accuracy.method][1], color=BLACK, markersize=5)
-    presets = [row for row in trade.rows if row.accuracy.name in PRESETS]
+    presets = [row for row in trade.rows if row.accuracy.name in ASKED_FOR]
     looks = {"markerfacecolor": "white", "markeredgecolor": BLACK, "markersize": 7, "linestyle": ""}
     if presets:
-        plot(presets, "D", **looks, label="presets")
+        plot(presets, "D", **looks, label="presets and targets")
     white = [withStroke(linewidth=3, foreground="white")]
     for row in presets:
         beside = {"xytext": (-7, 3), "textcoords": "offset points", "ha": "right", "path_effects": white}
         axes.annotate(row.accuracy.name, (row.times_real_time, error(row)), **beside)
-    worst = max((getattr(model, quantity) for model in models if not model.stopped), default=1.0)
+    worst = max((getattr(model, quantity) for model in trade.worths if not model.stopped), default=1.0)
     axes.set(xscale="log", yscale="log", xlabel="times real time", ylim=(0.1 * floor, max(3.0, 2.0 * worst)))
     axes.set_xlim(0.2 * min(row.times_real_time for row in trade.rows), None)
     axes.axhspan(0.1 * floor, floor, color=GREY, alpha=0.25, linewidth=0)
     said = {"transform": axes.get_yaxis_transform(), "va": "center", "ha": "right"}
     axes.text(0.98, 0.33 * floor, "as exact as the converged run itself", **said)
     axes.grid(alpha=0.3)
-    _draw_models(axes, models, quantity, floor)
+    _draw_worths(axes, trade, quantity, floor)
 
 
-def _draw_models(axes: Axes, models: list[Model], quantity: str, floor: float) -> None:
-    """A line for each simpler model, with its name at the right edge. Names that would overlap are moved apart."""
-    shown = [model for model in models if not model.stopped and getattr(model, quantity) > floor]
+def _draw_worths(axes: Axes, trade: Trade, quantity: str, floor: float) -> None:
+    """A line for the model without each term, with its name at the right. Names that would overlap are moved apart."""
+    shown = [model for model in trade.worths if not model.stopped and getattr(model, quantity) > floor]
     shown.sort(key=lambda model: getattr(model, quantity))
     low, high = np.log10(axes.get_ylim())
     values = [getattr(model, quantity) for model in shown]
@@ -83,7 +79,7 @@ def _draw_models(axes: Axes, models: list[Model], quantity: str, floor: float) -
         axes.axhline(value, zorder=0, **dashes)
         leader = {"color": GREY, "linewidth": 0.6, "clip_on": False, "transform": across}
         axes.plot(LEADER, [value, 10.0**height], **leader)  # in the order of the values: they do not cross
-        axes.text(LEADER[1] + 0.01, 10.0**height, model.name.split(" (")[0], transform=across, fontsize="small",
+        axes.text(LEADER[1] + 0.01, 10.0**height, f"no {model.name}", transform=across, fontsize="small",
                   va="center")  # fmt: skip
 
 

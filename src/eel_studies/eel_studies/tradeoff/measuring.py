@@ -1,37 +1,39 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Error and cost of each setting, against a converged run.
+"""Error and cost of each setting for a swim, against a converged run; and what each term of the model is worth.
 
-Errors are those of `accuracy`: of the head's position at the end relative to the length of its path (or of the body, if
-longer), and of the torque field relative to its greatest magnitude. Times are those of the same steps on the same
-nodes, without the samples. They are CPU times of one core: they equal wall times on an idle machine, and stay
-meaningful on a busy one. They are medians over repeats. In each repeat all settings take turns, so that a disturbance
-does not fall on a single setting.
+Errors are those of `accuracy`: of the head's position in the later half relative to the length of its path (or of the
+body, if longer), and of the torque field relative to its greatest magnitude. Times are those of the same steps on the
+same nodes, without the samples: CPU times of one core, which equal wall times on an idle machine and stay meaningful on
+a busy one. They are medians over repeats, in which all settings take turns, so that a disturbance does not fall on a
+single one.
 """
 
 import statistics
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from operator import attrgetter
-from typing import TypeVar
 
-import numpy as np
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.model.scene import Scene
+from eel_dynamics.accuracy.budget import Budget
+from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.swim import Swim
-from eel_dynamics.simulation.simulation import Simulation, SimulationStopped
+from eel_dynamics.simulation.stopping import SimulationStopped
 
-from eel_studies.tradeoff.settings import CHECK, REFERENCE
+from eel_studies.reference import bare, front, reference_of, settled
+from eel_studies.scene_terms.terms import terms_of
+from eel_studies.tradeoff.settings import ASKED_FOR, REFERENCE
+from eel_studies.workers import in_threads
 
 SAMPLE_PERIOD = 0.05  # s
-STATIONS = 51
-Row = TypeVar("Row")
+REACHED = 1e-9  # relative error of a reference that is wanted
+SECONDS = attrgetter("seconds")  # of a row: its cost
 
 
 @dataclass(frozen=True)
 class Measured:
-    """Relative errors and cost of a setting. Times are without the ledger and without samples."""
+    """Relative errors of a setting, no less than that of the reference, and its cost without ledger and samples."""
 
     accuracy: Accuracy
     pose_error: float
@@ -49,100 +51,108 @@ class Measured:
 
 
 @dataclass(frozen=True)
-class Trade:
-    """All that was measured for a gait."""
+class Worth:
+    """Relative errors of a model without a term, compared with the whole one; infinite where it stopped."""
 
-    swim: Swim  # with the accuracy of the reference
-    duration: float  # s
+    name: str
+    pose_error: float
+    torque_error: float
+    stopped: str = ""
+
+
+@dataclass(frozen=True)
+class Trade:
+    """All that was measured for a swim."""
+
+    name: str  # of the scene
+    swim: Swim
     reference: Run
-    reference_error: tuple[float, float]  # of pose and torque, compared with a coarser run
+    reference_error: float  # distance of the reference from another method on another grid
     rows: list[Measured]
     unstable: list[Accuracy]  # settings that diverged
-    repeats: int
+    worths: list[Worth]
 
     @property
-    def name(self) -> str:
-        """Of the gait."""
-        return str(self.swim.law.name)
+    def duration(self) -> float:
+        """[s]."""
+        return float(self.swim.duration)
 
+    def within(self, budget: Budget) -> tuple[Measured, Measured | None]:
+        """The setting with the least error within the `budget`, and the like among those `ASKED_FOR`, or None.
 
-def errors_of(run: Run, reference: Run) -> tuple[float, float]:
-    """Relative errors of pose and torque of `run`, which has the same samples and stations as `reference`."""
-    way = max(reference.path_length, reference.body.length)
-    pose = float(np.linalg.norm(run.position[-1] - reference.position[-1])) / way
-    assert run.torque is not None and reference.torque is not None
-    size = float(np.max(np.linalg.norm(reference.torque, axis=2)))
-    return pose, float(np.max(np.linalg.norm(run.torque - reference.torque, axis=2))) / size if size else 0.0
-
-
-def swim_with(swim: Swim, duration: float, accuracy: Accuracy, **scene: object) -> Run:
-    """The `swim` of `duration` [s] with torque and without the ledger, for the measurement of errors.
-
-    scene: fields of `Scene` that differ. `SimulationStopped` where the run cannot go on.
-    """
-    swim = swim._replace(scene=_measured_in(replace(swim.scene, **scene)), accuracy=accuracy)  # type: ignore[arg-type]
-    return swim.run(duration=duration, sample_period=SAMPLE_PERIOD, stations=STATIONS, estimate=False)
+        `ValueError` where nothing is as fast.
+        """
+        rows = [row for row in self.rows if row.seconds <= budget.seconds_per_second * self.duration]
+        if not rows:
+            fastest = 1e3 / max(row.times_real_time for row in self.rows)
+            raise ValueError(f"{budget.name!r} cannot be met here: the fastest run takes {fastest:.3g} ms per second")
+        asked = [row for row in rows if row.accuracy.name in ASKED_FOR]
+        return min(rows, key=attrgetter("error")), min(asked, key=attrgetter("error"), default=None)
 
 
 def measure(
     swim: Swim,
     settings: list[Accuracy],
-    duration: float = 10.0,
     repeats: int = 5,
     say: Callable[[str], object] = lambda text: None,
+    name: str = "scene",
 ) -> Trade:
-    """Errors and times of `duration` [s] of a `swim` with every one of the `settings`.
+    """Errors and times of a `swim` with every one of the `settings`, and the errors of models without a term.
 
-    repeats: rounds of timing. say(text): called with a line of progress. Settings that diverge are listed in
-    `Trade.unstable`.
+    repeats: rounds of timing. say(text): called with a line of progress. `SimulationStopped` where no reference comes
+    to its end. Settings that diverge are listed in `Trade.unstable`.
     """
-    say("the reference run, and a check of it")
-    reference = swim_with(swim, duration, REFERENCE)
-    reference_error = errors_of(swim_with(swim, duration, CHECK), reference)
-    runs, unstable = {}, []
+    say("the reference: two methods on two grids")
+    swim = settled(bare(swim), SAMPLE_PERIOD)
+    reference, apart = reference_of(swim, REACHED)
     say(f"errors of {len(settings)} settings")
-    for accuracy in settings:
-        try:
-            runs[accuracy] = swim_with(swim, duration, accuracy)
-        except SimulationStopped:
-            unstable.append(accuracy)
-    times: dict[Accuracy, list[tuple[float, float]]] = {accuracy: [] for accuracy in runs}  # of the march, of all
+    found = zip(settings, in_threads(lambda each: _swum(swim._replace(accuracy=each)), settings), strict=True)
+    runs = {accuracy: run for accuracy, run in found if isinstance(run, Run)}
+    unstable = [accuracy for accuracy in settings if accuracy not in runs]
+    times: dict[Accuracy, list[tuple[float, float, int]]] = {accuracy: [] for accuracy in runs}
     for repeat in range(repeats):
         say(f"times, round {repeat + 1} of {repeats}")
         for accuracy in runs:
-            start = time.thread_time()
-            swimmer = ready(swim, accuracy)
-            begin = time.thread_time()
-            swimmer.advance(duration)
-            end = time.thread_time()
-            times[accuracy].append((end - begin, end - start))
+            times[accuracy].append(_timed(swim, accuracy))
     rows = []
     for accuracy, run in runs.items():
-        marching, seconds = map(statistics.median, zip(*times[accuracy], strict=True))
-        microseconds = 1e6 * marching / max(1, run.evaluations)
-        memory = ready(swim, accuracy).memory
-        cost = microseconds, seconds, duration / seconds, memory
-        rows.append(Measured(accuracy, *errors_of(run, reference), *cost, run))
-    return Trade(swim, duration, reference, reference_error, rows, unstable, repeats)
+        marching, seconds, memory = map(statistics.median, zip(*times[accuracy], strict=True))
+        errors, microseconds = relative_errors(run, reference), 1e6 * marching / max(1, run.evaluations)
+        times_real_time = float(swim.duration) / seconds
+        cost = microseconds, seconds, times_real_time, int(memory)
+        pose, torque = (max(error or 0.0, apart) for error in (errors.position, errors.torque))
+        rows.append(Measured(accuracy, pose, torque, *cost, run))
+    say("the model without each of its terms")
+    parts = terms_of(swim)
+    poorer = in_threads(lambda each: _swum(each._replace(accuracy=REFERENCE)), parts.values())
+    worths = [_worth(name, run, reference) for name, run in zip(parts, poorer, strict=True)]
+    return Trade(name, swim, reference, apart, rows, unstable, worths)
 
 
-def front(
-    rows: list[Row], error: Callable[[Row], float], cost: Callable[[Row], float] = attrgetter("seconds")
-) -> list[Row]:
-    """The Pareto front: those `rows` that no other row beats in both error and cost, the cheapest first."""
-    best, result = np.inf, []
-    for row in sorted(rows, key=lambda row: (cost(row), error(row))):
-        if error(row) < best:
-            best = error(row)
-            result.append(row)
-    return result
+def front_of(rows: list[Measured], error: Callable[[Measured], float] = attrgetter("error")) -> list[Measured]:
+    """The Pareto front of an `error` against the time."""
+    return front(rows, error, SECONDS)
 
 
-def ready(swim: Swim, accuracy: Accuracy) -> Simulation:
-    """The `swim` before its first step, without samples."""
-    return Simulation(swim.body, _measured_in(swim.scene), accuracy, 2, law=swim.law)
+def _swum(swim: Swim) -> Run | SimulationStopped:
+    try:
+        return swim.run(estimate=False, progress=lambda reached, left: None)
+    except SimulationStopped as stopped:
+        return stopped
 
 
-def _measured_in(scene: Scene) -> Scene:
-    """`scene` with the torque and without the ledger: errors and times are of the grid that the torque needs."""
-    return replace(scene, ledger=False, internal_wrench=True)
+def _timed(swim: Swim, accuracy: Accuracy) -> tuple[float, float, int]:
+    """CPU time [s] of the march and of all, and the bytes that it works on."""
+    start = time.thread_time()
+    swimmer = swim.simulation(accuracy=accuracy, stations=2)
+    begin = time.thread_time()
+    swimmer.advance(float(swim.duration))
+    end = time.thread_time()
+    return end - begin, end - start, swimmer.memory
+
+
+def _worth(name: str, run: Run | SimulationStopped, reference: Run) -> Worth:
+    if isinstance(run, SimulationStopped):
+        return Worth(name, float("inf"), float("inf"), str(run))
+    errors = relative_errors(run, reference)
+    return Worth(name, errors.position, errors.torque or 0.0)

@@ -1,34 +1,33 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What docs/appendix/tradeoff.md tells: six rows, a picture, and the simpler models."""
+"""What docs/appendix/tradeoff.md tells: six rows, a picture and the worth of terms of one scene; presets in all."""
 
 import math
 import platform
 from datetime import date
 from pathlib import Path
 
+from eel_dynamics.accuracy.accuracy import PRESETS
+
 import eel_core
 from eel_studies.outputs import Outputs
-from eel_studies.tradeoff.measuring import Trade
-from eel_studies.tradeoff.models import Model
-from eel_studies.tradeoff.settings import CHECK
-from eel_studies.tradeoff.table import WANTED, cheapest, digits_table, model_table
+from eel_studies.table import Table
+from eel_studies.tradeoff.measuring import REACHED, Trade
+from eel_studies.tradeoff.table import WANTED, cheapest, digits_table, worth_table
 
-PARTS = "digits", "picture", "models"
+PARTS = "digits", "picture", "models", "scenes"
 
 
-def write_page(outputs: Outputs, found: list[tuple[Trade, list[Model]]], pictures: list[str]) -> None:
-    """Write the page, where one is asked for, of the first gait.
-
-    found: pairs of a trade and its models. pictures: of them, as the page links them.
-    """
-    first, models = found[0]
+def write_page(outputs: Outputs, found: list[Trade], pictures: list[str]) -> None:
+    """Write the page, where one is asked for, of the trades `found` and their `pictures`, as the page links them."""
+    first = found[0]
     values = {
         "machine": machine(),
         "gait": first.name,
         "duration": f"{first.duration:g}",
         "digit": digit_line(first),
     }
-    texts = digits_table(first).markdown(), pictures[0], model_table(models, first).markdown()
+    scenes = "\n\n".join((scenes_table(found).markdown(), *pictures[1:]))
+    texts = digits_table(first).markdown(), pictures[0], worth_table(first).markdown(), scenes
     outputs.write(dict(zip(PARTS, texts, strict=True)), values)
 
 
@@ -43,14 +42,24 @@ def digit_line(trade: Trade) -> str:
 
 
 def reference_line(trade: Trade) -> str:
-    """The convergence of the reference run, in words."""
-    pose, torque = trade.reference_error
+    """How well the reference is known, in words."""
     unstable = f" {len(trade.unstable)} settings diverged." if trade.unstable else ""
-    check = f"{CHECK.resolution:g} points and {CHECK.tolerance:g}"
+    poor = "" if trade.reference_error <= 10.0 * REACHED else f": this scene cannot be solved to {REACHED:g}"
     return (
-        f"The reference differs from a run of {check} by {pose:.0e} in pose and {torque:.0e} in torque; smaller errors "
-        f"are not told apart.{unstable}"
+        f"Two methods on two grids agree to {trade.reference_error:.0e}{poor}; smaller errors are not told apart."
+        f"{unstable}"
     )
+
+
+def scenes_table(found: list[Trade]) -> Table:
+    """A row for each scene: how well its reference is known, what presets deliver, and times real time."""
+    rows = []
+    for trade in found:
+        rows_of = {row.accuracy.name: row for row in trade.rows}
+        cells = [rows_of.get(name) for name in PRESETS]
+        texts = ("diverges" if row is None else f"{row.error:.0e} at {row.times_real_time:.0f}" for row in cells)
+        rows.append((f"{trade.name}, {trade.duration:g} s", f"{trade.reference_error:.0e}", *texts))
+    return Table(("scene", "reference", *PRESETS), rows)
 
 
 def machine() -> str:

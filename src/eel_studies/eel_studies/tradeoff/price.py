@@ -8,11 +8,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.runs.companion import relative_errors
-from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.swim import Swim
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 from eel_studies.pictures import BLACK, BLUE, GREY, ORANGE
-from eel_studies.tradeoff.delivered import LEAST, REFERENCES, TARGETS, swims_of
+from eel_studies.reference import REFERENCES
+from eel_studies.tradeoff.delivered import LEAST, TARGETS, swims_of
 
 SWIMS = 24  # of the settings: each takes some milliseconds
 RESOLUTIONS = 4.0, 10.0, 16.0, 24.0, 32.0, 48.0
@@ -41,19 +43,19 @@ def prices(count: int, seed: int, say: Callable[[str], object] = lambda text: No
     return grey, [_price(known, target, estimate=True) for target in TARGETS]
 
 
-def _reference(swim: dict[str, Any]) -> Run | None:
+def _reference(swim: Swim) -> Run | None:
     try:
-        return simulate(**swim | {"accuracy": REFERENCES[0][0]}, estimate=False)
+        return swim.run(accuracy=REFERENCES[0][0], estimate=False)
     except SimulationStopped:
         return None
 
 
-def _price(known: list[tuple[dict[str, Any], Run]], accuracy: Accuracy | float, *, estimate: bool) -> Price:
+def _price(known: list[tuple[Swim, Run]], accuracy: Accuracy | float, *, estimate: bool) -> Price:
     rows = []
     for swim, reference in known:
-        periods = swim["duration"] / swim["law"].terms[0].period
+        periods = float(swim.duration) / swim.law.terms[0].period
         try:
-            run = simulate(**swim | {"accuracy": accuracy}, estimate=estimate)
+            run = swim.run(accuracy=accuracy, estimate=estimate)
         except SimulationStopped:
             rows.append((np.inf, np.inf, np.inf))
             continue

@@ -4,11 +4,9 @@
 from collections.abc import Callable
 from operator import attrgetter
 
-from eel_dynamics.accuracy.accuracy import PRESETS
-
 from eel_studies.table import Table
-from eel_studies.tradeoff.measuring import Measured, Trade, front
-from eel_studies.tradeoff.models import Model
+from eel_studies.tradeoff.measuring import SECONDS, Measured, Trade, Worth, front_of
+from eel_studies.tradeoff.settings import ASKED_FOR
 
 COLUMNS: dict[str, Callable[[Measured], str]] = {  # head: text of a row
     "setting": lambda row: row.accuracy.name,
@@ -26,7 +24,6 @@ COLUMNS: dict[str, Callable[[Measured], str]] = {  # head: text of a row
 LEFT = 0, 1, 2  # columns that are texts
 LONG_ONLY = "method", "order", "us per evaluation", "memory [kB]"  # columns that the short table leaves out
 WANTED = 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7  # relative errors of the rows of the short table
-SECONDS = attrgetter("seconds")  # of a row: its cost
 EXACT_ENOUGH = 0.1  # of a model's error, allowed for the discretisation
 
 
@@ -34,7 +31,7 @@ def marks_of(trade: Trade) -> dict[int, str]:
     """Marks by the `id` of each row. P: on the front of pose error against time; T: on that of torque error."""
     marks = {id(row): "" for row in trade.rows}
     for letter, error in (("P", attrgetter("pose_error")), ("T", attrgetter("torque_error"))):
-        for row in front(trade.rows, error):
+        for row in front_of(trade.rows, error):
             marks[id(row)] += letter
     return marks
 
@@ -42,7 +39,7 @@ def marks_of(trade: Trade) -> dict[int, str]:
 def listed(trade: Trade, everything: bool = False) -> list[Measured]:
     """The settings of the fronts and the presets, the cheapest first; `everything`: all settings."""
     marks = marks_of(trade)
-    rows = [row for row in trade.rows if everything or marks[id(row)] or row.accuracy.name in PRESETS]
+    rows = [row for row in trade.rows if everything or marks[id(row)] or row.accuracy.name in ASKED_FOR]
     return sorted(rows, key=SECONDS)
 
 
@@ -68,24 +65,32 @@ def trade_table(trade: Trade, everything: bool = False) -> Table:
     return Table(("front", *COLUMNS), rows, LEFT)
 
 
-def model_table(models: list[Model], trade: Trade) -> Table:
-    """A table of each simpler model's errors, and the cheapest setting whose own errors are a tenth of them or less."""
-    head = "left out, or otherwise", "error of pose", "error of torque", "exact enough for it", "times real time"
+def asked_table(trade: Trade) -> Table:
+    """A row for each preset and target: what it delivers and costs here."""
+    columns = {name: text for name, text in COLUMNS.items() if name not in LONG_ONLY}
+    rows = [row for row in trade.rows if row.accuracy.name in ASKED_FOR]
+    cells = [[text(row) for text in columns.values()] for row in sorted(rows, key=SECONDS)]
+    return Table(("accuracy", *list(columns)[1:]), cells, (0,))
+
+
+def worth_table(trade: Trade) -> Table:
+    """A row for each term of the model: the errors without it, and the cheapest setting that is exact enough for it."""
+    head = "left out", "error of pose", "error of torque", "exact enough for it", "times real time"
     rows = []
-    for model in sorted(models, key=lambda model: -max(model.pose_error, model.torque_error)):
-        if model.stopped:
-            rows.append((model.name, "-", "-", model.stopped, "-"))
+    for worth in sorted(trade.worths, key=lambda worth: -max(worth.pose_error, worth.torque_error)):
+        if worth.stopped:
+            rows.append((worth.name, "-", "-", worth.stopped, "-"))
             continue
-        setting = exact_enough(model, trade)
+        setting = exact_enough(worth, trade)
         named = "no difference that a setting resolves" if setting is None else setting.accuracy.name
         speed = "-" if setting is None else f"{setting.times_real_time:.0f}"
-        rows.append((model.name, f"{model.pose_error:.1e}", f"{model.torque_error:.1e}", named, speed))
+        rows.append((worth.name, f"{worth.pose_error:.1e}", f"{worth.torque_error:.1e}", named, speed))
     return Table(head, rows, LEFT)
 
 
-def exact_enough(model: Model, trade: Trade) -> Measured | None:
-    """The cheapest setting with at most a tenth of the model's errors, or None."""
+def exact_enough(worth: Worth, trade: Trade) -> Measured | None:
+    """The cheapest setting whose errors are at most a tenth of those without the term, or None."""
     for row in sorted(trade.rows, key=SECONDS):
-        if row.pose_error <= EXACT_ENOUGH * model.pose_error and row.torque_error <= EXACT_ENOUGH * model.torque_error:
+        if row.pose_error <= EXACT_ENOUGH * worth.pose_error and row.torque_error <= EXACT_ENOUGH * worth.torque_error:
             return row
     return None

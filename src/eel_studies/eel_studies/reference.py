@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs to compare others with: two methods on two grids, which are trusted where they agree.
+
+Two grids may have nearly the same error, so the pair must agree better than what it is to judge.
+"""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.runs.companion import relative_errors
+from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.swim import Swim
+from eel_dynamics.simulation.stopping import SimulationStopped
+
+REFERENCES = tuple(  # finer ones, where the first do not agree
+    (
+        Accuracy(name="pair", resolution=points, tolerance=tolerance),
+        Accuracy(name="adams", resolution=points + 20.0, tolerance=0.3 * tolerance, method="adams", order=6),
+    )
+    for points, tolerance in ((70.0, 1e-11), (160.0, 1e-12), (320.0, 1e-13))
+)
+
+
+def reference_of(swim: Swim, wanted: float, **how: Any) -> tuple[Run, float]:
+    """A run of `swim` to compare others with, and its relative distance from another method on another grid.
+
+    The first of the `REFERENCES` that agree to `wanted`; else those that agree best. how: as in `Swim.run`.
+    `SimulationStopped` where none comes to its end.
+    """
+    best: tuple[Run, float] | None = None
+    stop: Exception | None = None
+    for pair in REFERENCES:
+        try:
+            first, second = (swim._replace(accuracy=each).run(estimate=False, **how) for each in pair)
+        except SimulationStopped as error:
+            stop = error
+            continue
+        distance = relative_errors(first, second).worst
+        if best is None or distance < best[1]:
+            best = first, distance
+        if best[1] <= wanted:
+            break
+    if best is None:
+        raise stop or ValueError("no reference")
+    return best
+
+
+def bare(swim: Swim, **scene: Any) -> Swim:
+    """The `swim` with torque and without the ledger, whose errors and times are compared. scene: further fields."""
+    return swim._replace(scene=replace(swim.scene, ledger=False, internal_wrench=True, **scene))
+
+
+def settled(swim: Swim, sample_period: float) -> Swim:
+    """The `swim` with a duration in s and so long a `sample_period` [s], unless it has one of its own."""
+    swim = swim._replace(sample_period=swim.sample_period or sample_period)
+    if isinstance(swim.duration, str):
+        swim = swim._replace(duration=float(swim.run(estimate=False).time[-1]))
+    return swim
+
+
+def front(rows: list[Any], error: Any, cost: Any) -> list[Any]:
+    """The Pareto front: those `rows` that no other row beats in both error and cost, the cheapest first."""
+    best, result = np.inf, []
+    for row in sorted(rows, key=lambda row: (cost(row), error(row))):
+        if error(row) < best:
+            best = error(row)
+            result.append(row)
+    return result
