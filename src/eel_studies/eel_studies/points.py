@@ -37,6 +37,7 @@ Measure = Callable[[Run], dict[str, Any]]  # run -> {name: number}
 AccuracyLike = str | float | Accuracy
 Stations = int | np.ndarray
 Progress = Callable[[int, int], object] | bool | None  # as in `sweep`
+GROUPS = "scene.", "body.", "initial."  # what begins a name of theirs
 POSITIONS = ("position_x", "position_y", "position_z")
 VELOCITIES = ("omega_x", "omega_y", "omega_z", "v_x", "v_y", "v_z")
 
@@ -123,7 +124,7 @@ def _named(value: object) -> bool:
 def _point(values: Numbers, gait: Gait, base: Swim) -> Swim:
     body, accuracy = base.body, base.accuracy
     own: dict[str, Any] = {}
-    groups: dict[str, dict[str, Any]] = {"scene": {}, "body": {}, "initial": {}}
+    groups: dict[str, dict[str, Any]] = {group.rstrip("."): {} for group in GROUPS}
     for name, value in values.items():
         group, _, field = name.partition(".")
         if field and group in groups:
@@ -134,8 +135,8 @@ def _point(values: Numbers, gait: Gait, base: Swim) -> Swim:
             accuracy = Accuracy.of(value)
         else:
             own[name] = value
-    _check_names("scene", groups["scene"], [item.name for item in fields(Scene)])
-    _check_names("body", groups["body"], NUMBERS)
+    check_names("scene", groups["scene"], [item.name for item in fields(Scene)])
+    check_names("body", groups["body"], NUMBERS)
     law = (find(gait) if isinstance(gait, str) else gait)(**own)
     body = body.changed(**groups["body"]) if groups["body"] else body
     scene, start = replace(base.scene, **groups["scene"]), _start(base.start, groups["initial"])
@@ -143,7 +144,7 @@ def _point(values: Numbers, gait: Gait, base: Swim) -> Swim:
 
 
 def _start(start: InitialState, changes: Numbers) -> InitialState:
-    _check_names("initial", changes, (*POSITIONS, *VELOCITIES))
+    check_names("initial", changes, (*POSITIONS, *VELOCITIES))
     position, twist = start.position.copy(), start.twist.copy()
     for name, value in changes.items():
         row, names = (position, POSITIONS) if name in POSITIONS else (twist, VELOCITIES)
@@ -151,7 +152,8 @@ def _start(start: InitialState, changes: Numbers) -> InitialState:
     return start._replace(position=position, twist=twist)
 
 
-def _check_names(group: str, given: Numbers, known: Iterable[str]) -> None:
+def check_names(group: str, given: Numbers, known: Iterable[str]) -> None:
+    """`ValueError` for a name among those `given` that the `group` does not have."""
     for name in given:
         if name not in known:
             hint = did_you_mean(name, known)

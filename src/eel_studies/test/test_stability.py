@@ -2,19 +2,33 @@
 """The command `stability`: studies hold what was simulated, the page what was measured, bad input is one line."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from eel_dynamics.model.inertia import condition_of, straight_inertia
 from eel_dynamics.model.section_data import nose_of
-from eel_studies.stability import command, condition, drift, plane
+from eel_dynamics.runs.scene_file import swim_of
+from eel_studies.outputs import Outputs
+from eel_studies.stability import command, condition, drift, maps, plane
 from eel_studies.stability.explicit import inertias, treat
 from eel_studies.stability.extremes import maps_of
-from eel_studies.stability.maps import ACCURATE, INACCURATE, STOPPED, Axis, measure
+from eel_studies.stability.maps import (
+    ACCURATE,
+    INACCURATE,
+    REFUSED,
+    SENSITIVE,
+    SILENT,
+    STOPPED,
+    UNCHECKED,
+    Axis,
+    measure,
+)
 from eel_studies.stability.report import STUDIES, report
+from eel_studies.varied import varied
 
 from eel_dynamics import Body, Scene, Simulation
-from eel_gaits import falling
+from eel_gaits import falling, straight
 
 PART = "<!-- {0}: written by `stability` -->\n{1}<!-- end of {0} -->"  # of a page
 
@@ -22,24 +36,131 @@ PART = "<!-- {0}: written by `stability` -->\n{1}<!-- end of {0} -->"  # of a pa
 EMPTY = "stability_gait", "a map", lambda figure: figure.subplots(), (2.0, 2.0), ("svg",)
 
 
-def test_maps_keep_the_target_and_tell_what_stops():
+def test_maps_keep_the_target_and_tell_what_stops(tmp_path):
     items = {item.name: item for item in maps_of(2)}
-    coarse = replace(items.pop("method"), across=Axis("tolerance of a step", 1e-2, 1.0))
-    items.pop("preset")  # seconds for what test_accuracy shows
+    coarse = replace(items.pop("method"), across=Axis("tolerance of a step", "tolerance", 1e-2, 1.0))
+    for dear in ("preset", "vortex", "shear", "wave", "velocity"):  # seconds, for what other tests show
+        items.pop(dear)
     measured = {name: measure(item) for name, item in items.items()}
-    for name in ("gait", "wave", "water", "viscosity", "velocity", "body"):
-        assert measured[name].worst < 1.0 and not (measured[name].outcome == STOPPED).any(), name
-    step = measured["step"]
-    assert (step.outcome[:, 0] == ACCURATE).all()  # a hundredth of a period
-    assert set(step.outcome[:, 1]) <= {STOPPED, INACCURATE} and STOPPED in step.outcome[:, 1]  # a whole period
-    method = measured["method"] = measure(coarse)
-    poor = method.outcome == INACCURATE
-    assert (
-        poor.any() and ((method.cells["estimate"][poor] > 1.0) | method.cells["warned"][poor]).all()
-    )  # none of them silently
+    for name in ("gait", "water", "viscosity", "body", "gust"):
+        assert measured[name].count(ACCURATE) == 4 and measured[name].worst < 1.0, name
+    step = measured["step"].cells["outcome"]
+    assert (step[:, 0] == ACCURATE).all()  # a hundredth of a period
+    assert set(step[:, 1]) <= {STOPPED, INACCURATE, SENSITIVE} and STOPPED in step[:, 1]  # a whole period
+    measured["method"] = measure(coarse)
+    assert measured["method"].count(ACCURATE) < 14 and not any(each.count(SILENT) for each in measured.values())
     assert measured["water"].cells["limits"][1].all()  # Reynolds numbers below 1000
-    text = report(list(measured.values()))
-    assert "energy from nowhere" in text
+    outputs = Outputs("eel stability", SimpleNamespace(out=tmp_path, page=None))
+    text = report(list(measured.values()), outputs)
+    assert "Stopped: energy from nowhere" in text and "errors grow by a factor of e in" in text
+    assert (tmp_path / "stability_gust.svg").stat().st_size > 1500
+
+
+def judged(monkeypatch, swim, run, finer):
+    """The cell of a `swim` whose runs are these."""
+    monkeypatch.setattr(maps, "_swum", lambda each, target: run if each is swim else finer)
+    return maps.cell_of(lambda: swim)
+
+
+def test_each_outcome_is_told_from_the_others(monkeypatch):
+    swim = swim_of({"gait": "straight", "duration": 2, "accuracy": 1e-3, "stations": 11})
+    good, fine = swim.run(), swim.run(accuracy=1e-4)
+    far = replace(good, position=good.position + 0.01)  # ten times the target, by a body length
+    honest = replace(far, error_estimate=replace(good.error_estimate, position=0.02, growth_rate=0.0))
+    growing = replace(honest, error_estimate=replace(honest.error_estimate, growth_rate=2.0))
+    unsure = replace(fine, error_estimate=replace(fine.error_estimate, position=0.02))
+    rows = ((good, fine, ACCURATE), (far, fine, SILENT), (honest, fine, INACCURATE), (growing, fine, SENSITIVE))
+    for run, finer, outcome in (*rows, (far, unsure, UNCHECKED)):
+        cell = judged(monkeypatch, swim, run, finer)
+        assert cell["outcome"] == outcome and bool(cell["size"] > 1.0) is (outcome != ACCURATE)
+    refused = maps.cell_of(lambda: swim.with_gait(period=-1.0))
+    assert refused["outcome"] == REFUSED and "period must be" in str(refused["text"])
+
+
+SCENES = (  # words of a scene, and the numbers that its maps are drawn over
+    ({"gait": "straight"}, {"period": (0.1, 10.0), "amplitude": (1e-3, 3.0), "tolerance": (1e-9, 1e-1)}),
+    ({"gait": "falling", "body": "kern2006"}, {"scene.viscosity": (1e-9, 1e-1), "density_ratio": (1e-3, 1e6)}),
+    ({"gait": "helix", "scene": {"metacentric_height": 0.01}}, {"step": (1e-3, 0.2), "initial.v_x": (1e-2, 10.0)}),
+    ({"gait": "turning", "scene": {"planar": True}}, {"resolution": (4.0, 60.0), "scene.fluid_density": (1e-2, 1e4)}),
+    ({"gait": "straight", "flow": {"kind": "Gust"}}, {"flow.rise": (1e-3, 3.0), "flow_speed": (1e-3, 3.0)}),
+    (
+        {"gait": "straight", "flow": {"kind": "Vortex", "centre": [-0.3, 0.3, 0.0]}, "scene": {"planar": True}},
+        {"flow.core": (0.02, 3.0), "flow.circulation": (1e-3, 0.5), "spin": (1e-3, 1.0)},
+    ),
+)
+
+
+def random_maps(cells, seed):
+    """Maps of 4 by 4 cells, so many in all, over two numbers of a random scene at a random accuracy."""
+    rng = np.random.default_rng(seed)
+    for _ in range(cells // 16):
+        words, numbers = SCENES[rng.integers(len(SCENES))]
+        planar = words.get("scene", {}).get("planar", False)
+        names = [name for name in numbers if not (planar and name == "spin")]
+        axes = [Axis(name, name, *numbers[name]) for name in rng.permutation(names)[:2]]
+        accuracy = float(10.0 ** rng.uniform(-5.0, -2.0))
+        swim = swim_of({**words, "duration": float(rng.uniform(0.5, 4.0)), "accuracy": accuracy})
+        yield maps.Map("random", f"{words} {accuracy}", *axes, 4, swim)
+
+
+def check_in_silence(cells, seed):
+    unchecked = 0
+    for item in random_maps(cells, seed):
+        found = measure(item)
+        assert found.count(SILENT) == 0, (item.title, item.across, item.up, found.texts(SILENT))
+        unchecked += found.count(UNCHECKED)
+    assert unchecked <= 0.02 * cells
+
+
+def test_no_cell_of_random_maps_is_wrong_in_silence():
+    check_in_silence(64, 1)
+
+
+@pytest.mark.soak
+def test_no_cell_of_2000_is_wrong_in_silence():
+    check_in_silence(2000, 2)
+
+
+def test_numbers_of_a_scene_by_name():
+    swim = swim_of({"gait": "straight", "duration": 4, "flow": {"kind": "Gust", "velocity": [0, 0.3, 0.4]}})
+    assert varied(swim, {"period": 0.5}).duration == 2.0 and varied(swim, {"period": 0.5}).law == straight(period=0.5)
+    assert varied(swim, {"amplitude": 2.0}).law == straight() * 2.0
+    assert varied(swim, {"density_ratio": 0.1}).scene.density == 100.0
+    assert varied(swim, {"flow_speed": 5.0, "flow.rise": 0.1}).flow.velocity == pytest.approx((0.0, 3.0, 4.0))
+    both = varied(swim, {"tolerance": 1e-4, "resolution": 20.0}).accuracy
+    assert (both.tolerance, both.resolution, both.target) == (1e-4, 20.0, None)
+    assert varied(swim, {"step": 0.1, "body.lateral_drag": 0.5}).body.lateral_drag == 0.5
+    assert np.linalg.norm(varied(swim, {"spin": 1.0}).start.twist[:3]) == pytest.approx(2.0 * np.pi)
+
+
+def test_a_map_of_a_scene_of_the_users(tmp_path, capsys):
+    words = "straight --duration 3 --over step=0.01:1 --over density_ratio=0.001:10 --points 3"
+    assert command.main([*words.split(), "--out", str(tmp_path), "--page", str(tmp_path / "page.md")]) == 0
+    said = capsys.readouterr().out
+    assert "straight: step and density_ratio" in said and "stopped: energy from nowhere" in said
+    assert (tmp_path / "stability_straight.svg").exists() and "](stability_straight.svg)" in (
+        tmp_path / "page.md"
+    ).read_text()  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "words, named",
+    [
+        ("straight", "--over must be given for two numbers of the scene, got 0"),
+        ("straight --over period=1:2", "got 1"),
+        ("straight --over period=1 --over step=1:2", "--over must be NAME=LOW:HIGH, 0 < LOW < HIGH, got 'period=1'"),
+        ("straight --over period=2:1 --over step=1:2", "got 'period=2:1'"),
+        ("straight --over periode=1:2 --over step=1:2", "'periode'"),
+        ("straight --over flow.core=1:2 --over step=1:2", "flow has no field 'core': the scene has no flow"),
+        ("straight --over flow_speed=1:2 --over step=1:2", "flow_speed needs a flow with a velocity"),
+        ("straight --over scene.plane=1:2 --over step=1:2", "scene has no field 'plane'"),
+        ("straight --over period=1:2 --over step=1:2 --study drift", "--study goes without a scene, got 'drift'"),
+    ],
+)
+def test_bad_axes_are_refused_before_the_map(words, named, tmp_path, capsys):
+    assert command.main([*words.split(), "--out", str(tmp_path)]) == 2
+    said = capsys.readouterr().err
+    assert named in said and said.startswith("eel stability: ") and said.count("\n") == 1
 
 
 @pytest.fixture

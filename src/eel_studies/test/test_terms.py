@@ -10,7 +10,7 @@ from eel_dynamics.runs.scene_file import swim_of
 from eel_studies.scene_terms.command import main
 from eel_studies.scene_terms.terms import TERMS, terms_of, without
 
-from eel_dynamics import Scene, SimulationStopped, load_scene, simulate
+from eel_dynamics import Scene, load_scene, simulate
 from eel_gaits import straight
 from eel_studies import terms
 
@@ -74,7 +74,7 @@ def test_terms_that_are_small_alone_and_great_together_come_back(plain):
 
 def test_a_term_without_which_the_swim_stops_matters(monkeypatch):
     def stops(swim):
-        return swim._replace(scene=replace(swim.scene, reactive=False, density=1e-9))
+        return swim._replace(scene=replace(swim.scene, wake=False), stations=-1)
 
     monkeypatch.setitem(TERMS, "made up", stops)
     found = terms(swim_of({"gait": "straight", "duration": 1, "accuracy": 1e-2}), tolerance=0.5)
@@ -114,6 +114,5 @@ def test_bad_input_is_one_line(words, named, capsys):
 
 
 def test_a_scene_that_cannot_be_swum_is_said():
-    swim = swim_of({"gait": "straight", "scene": {"density": 1e-9, "reactive": False}, "accuracy": 1e-2})
-    with pytest.raises((SimulationStopped, ValueError)):
-        terms(swim)
+    with pytest.raises(ValueError, match="stations must be 2 or more"):
+        terms(swim_of({"gait": "straight"})._replace(stations=-1))

@@ -1,19 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel stability`: drive the simulator to its extremes, and map where it stops.
+"""`eel stability`: map where a scene is accurate, sensitive or stops, or drive the simulator to its extremes.
 
-eel stability                   # every study; pictures into out
+eel stability scene.yaml --over step=1e-3:0.1 --over density_ratio=1e-3:1e6
+eel stability                   # studies at the extremes; pictures into out
 eel stability --study drift     # one of them: maps, condition, drift, plane
 eel stability --page docs/appendix/stability.md --out docs/images
 """
 
 import argparse
+from pathlib import Path
 
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
 from eel_base.command.run_command import run_command
+from eel_base.wording import shown
+from eel_dynamics.runs.command_options import add_repeated, named_texts
 
 from eel_studies.outputs import Outputs, add_output_options
-from eel_studies.stability.report import STUDIES
+from eel_studies.scene_options import add_scene_options, swim_from
+from eel_studies.stability.maps import OUTCOMES, Axis, Map, measure
+from eel_studies.stability.report import STUDIES, counts, report
+from eel_studies.varied import varied
 
 NAME = "eel stability"
 
@@ -26,6 +33,8 @@ def main(arguments: list[str] | None = None) -> int:
 def _study(options: argparse.Namespace) -> int:
     if options.points < 2:
         raise ValueError(f"--points must be 2 or more, got {options.points}")
+    if options.swim is not None or options.over:
+        return _map(options)
     studies, progress = options.study or list(STUDIES), Progress(NAME, "")
     outputs = Outputs(NAME, options, studies)
     for name in studies:
@@ -36,12 +45,50 @@ def _study(options: argparse.Namespace) -> int:
     return 0
 
 
+def _map(options: argparse.Namespace) -> int:
+    axes = [_axis(name, text) for name, text in named_texts("--over", options.over)]
+    if len(axes) != 2:
+        raise ValueError(f"--over must be given for two numbers of the scene, got {len(axes)}")
+    if options.study:
+        raise ValueError(f"--study goes without a scene, got {shown(options.study[0])}")
+    swim = swim_from(options.swim, options)
+    for axis in axes:
+        varied(swim, {axis.name: axis.low})  # what there is not is refused before the map
+    scene = Path(options.swim or "falling").stem
+    title = f"{scene}: {axes[0].name} and {axes[1].name}"
+    item = Map(scene, title, axes[0], axes[1], options.points, swim)
+    outputs, progress = Outputs(NAME, options, [scene] if options.page else []), Progress(NAME, "")
+    progress.say(f"{options.points**2} swims, each twice")
+    found = measure(item)
+    print(counts([found]).text())
+    for outcome in OUTCOMES[1:]:
+        for text in filter(None, found.texts(outcome)):
+            print(f"{outcome}: {text}")
+    outputs.write({scene: report([found], outputs)})
+    return 0
+
+
+def _axis(name: str, text: str) -> Axis:
+    """The axis that NAME=LOW:HIGH gives, which are above 0: the map is logarithmic."""
+    try:
+        low, high = map(float, text.split(":"))
+    except ValueError:
+        low = high = 0.0
+    if not 0.0 < low < high < float("inf"):
+        raise ValueError(f"--over must be NAME=LOW:HIGH, 0 < LOW < HIGH, got {shown(f'{name}={text}')}")
+    return Axis(name, name, low, high)
+
+
 def _parser() -> Parser:
     parser = Parser(
         prog=NAME,
-        description="Drive the simulator to the extremes: maps of where a swim is accurate, inaccurate, or stops, the "
-        "condition of the inertia, drift over 100,000 periods, growth out of a plane.",
+        description="Map what becomes of a scene over two of its numbers: each cell is swum, and checked against a run "
+        "of a tenth of its target. Without a scene, drive the simulator to its extremes: such maps, the condition of "
+        "the inertia, drift over 100,000 periods, growth out of a plane.",
     )
+    add_scene_options(parser)
+    about = "a number of the map: of the gait, scene., body., initial. or flow., amplitude, density_ratio, flow_speed, "
+    add_repeated(parser, "--over", "NAME=LOW:HIGH", f"{about}step, tolerance, resolution; twice")
     parser.add_argument(
         "--study", action="append", choices=STUDIES, metavar="NAME", help=f"one of {', '.join(STUDIES)} (all)"
     )

@@ -27,8 +27,17 @@ NEEDLES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)  # greatest half-axes [m] of a ro
 def maps_of(points: int = 13) -> tuple[Map, Map]:
     """Two maps of `points` by `points` matrices each: of straight bodies, and of the swimming robot."""
     return (
-        Map("condition", "condition of the 6 x 6 matrix: straight bodies", DENSITY, SLENDERNESS, points, of_straight),
-        Map("bent", "condition of the 6 x 6 matrix: the robot as it swims", DENSITY, sized(1e-3, 4.0), points, of_bent),
+        Map(
+            "condition", "condition of the 6 x 6 matrix: straight bodies", DENSITY, SLENDERNESS, points, at=of_straight
+        ),
+        Map(
+            "bent",
+            "condition of the 6 x 6 matrix: the robot as it swims",
+            DENSITY,
+            sized(1e-3, 4.0),
+            points,
+            at=of_bent,
+        ),
     )
 
 

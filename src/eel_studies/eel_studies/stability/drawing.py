@@ -1,37 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The maps as pictures.
-
-Colour is the error relative to the target. A cross marks a stop with a message. A dot marks a warning of a limit of the
-model. A plus marks a warning of an open energy ledger.
-"""
+"""The maps as pictures. Colour is the error relative to the target; marks tell the other outcomes, and warnings."""
 
 from typing import Any
 
 import numpy as np
 
-from eel_studies.pictures import BLACK
-from eel_studies.stability.maps import STOPPED, Map, Measured
+from eel_studies.pictures import BLACK, ORANGE
+from eel_studies.stability.maps import INACCURATE, REFUSED, SENSITIVE, SILENT, STOPPED, UNCHECKED, Map, Measured
 
 DECADES = 3.0  # range of the colours, above and below the target
+MARKS = {  # outcome: mark, size, what it is called
+    STOPPED: ("x", 5, "stopped with a message"),
+    REFUSED: ("_", 5, "refused"),
+    SENSITIVE: ("^", 4, "sensitive, said"),
+    INACCURATE: ("+", 5, "inaccurate, said"),
+    UNCHECKED: ("1", 5, "no finer run to check by"),
+    SILENT: ("*", 9, "WRONG IN SILENCE"),
+}
 
 
 def draw(figure: Any, measured: Measured) -> None:
     """Draw one map into an empty matplotlib figure."""
-    item, cells, stopped = measured.map, measured.cells, measured.outcome == STOPPED
+    item, cells = measured.map, measured.cells
     colours = {"cmap": "PuOr_r", "vmin": -DECADES, "vmax": DECADES}
     axes = draw_map(figure, item, cells["size"], "error / target, log10: accurate below 0", "both", **colours)
-    for marked, mark, size, label in (
-        (stopped, "x", 5, "stopped with a message"),
-        (cells["limits"] & ~stopped, ".", 2.5, "warned: a limit of the model"),
-        (cells["warned"], "+", 5, "warned: energy ledger open"),
-    ):
-        row, column = np.nonzero(marked)
+    marked = [(cells["outcome"] == outcome, *mark) for outcome, mark in MARKS.items()]
+    for where, mark, size, label in (*marked, (cells["limits"], ".", 2.5, "warned: a limit of the model")):
+        row, column = np.nonzero(where)
         if len(row):
-            axes.plot(item.x[column], item.y[row], mark, color=BLACK, markersize=size, label=label)
+            colour = ORANGE if mark == "*" else BLACK
+            axes.plot(item.x[column], item.y[row], mark, color=colour, markersize=size, label=label)
     if axes.lines:
         figure.legend(loc="outside lower center", frameon=False, ncols=3)
-    if item.names:
-        axes.set_yticks(item.y, item.names)
+    if item.up.choices:
+        axes.set_yticks(item.y, [" ".join(map(str, each)) if isinstance(each, tuple) else each
+                                 for each in item.up.choices])  # fmt: skip
         axes.set_yticks([], minor=True)
 
 

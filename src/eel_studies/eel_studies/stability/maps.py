@@ -1,89 +1,102 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Maps of the error over two parameters of a run at a time.
+"""Maps of what becomes of a swim over two numbers at a time. No cell may be wrong in silence.
 
-Each run is compared with a finer one. The error is the greatest distance between the two heads over all samples,
-relative to the length of the head's path or of the body, whichever is longer. A run is accurate if its error meets the
-target. For an inaccurate run the map records whether the run indicates it: by a warning, or by its error estimate.
+Each cell is swum, and once more at a tenth of its target. Its error is their distance as `accuracy` has it, of position
+and torque. A cell has one of the `OUTCOMES`:
+
+accurate: the error is within the target. sensitive: it is not, the run says so, and errors grow by a factor of e or
+more. inaccurate: it is not, and the run says so, by its estimate or a warning. stopped, refused: with which message.
+unchecked: the finer run does not come to its end, or misses its own target as the run itself may. silent: the error is
+above the target by more than the finer run leaves uncertain, and the run does not say so.
 """
 
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
-from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.accuracy import FINEST, Accuracy
+from eel_dynamics.runs.companion import relative_errors
+from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.swim import Swim
 from eel_dynamics.simulation.stopping import SimulationStopped
 
+from eel_studies.varied import varied
 from eel_studies.workers import in_threads
 
-TARGET, FINER = 1e-3, 1e-6
-FINEST = Accuracy(name="finest", resolution=200.0, tolerance=1e-12)  # for comparison with the finer presets
-SAMPLES = 32  # of a run
-STATIONS = 33
-ACCURATE, INACCURATE, STOPPED = "accurate", "inaccurate", "stopped"
+TARGET = 1e-3  # of settings that have none of their own
+FINER = 0.1  # of the target
+SAMPLES, STATIONS = 32, 33
+MOST_EVALUATIONS = 1e4  # per simulated second and decade of the target: a map takes minutes, not hours
+OUTCOMES = ACCURATE, SENSITIVE, INACCURATE, STOPPED, REFUSED, UNCHECKED, SILENT = (
+    *("accurate", "sensitive", "inaccurate", "stopped", "refused", "unchecked", "silent"),
+)
+CELL = np.dtype(
+    [
+        ("outcome", object),
+        ("size", float),  # error relative to the target; NaN where there is none
+        ("text", object),  # message of a stop or a refusal, or what there is to say
+        ("rate", float),  # 1/s, at which errors grow
+        ("steps", int),  # in time
+        ("limits", bool),  # the run warns of a limit of the model
+    ]
+)
 
 
 class Axis(NamedTuple):
-    """An axis of a map: label, least and greatest value."""
+    """An axis of a map: label, name of the number (`varied`), least and greatest value, or the values of its rows."""
 
     label: str
-    low: float
-    high: float
+    name: str
+    low: float = 1.0
+    high: float = 1.0
+    choices: tuple[Any, ...] = ()
 
+    def values(self, points: int) -> np.ndarray:
+        """Places along the axis: so many `points` in geometric sequence, or powers of 2 for choices."""
+        return 2.0 ** np.arange(len(self.choices)) if self.choices else np.geomspace(self.low, self.high, points)
 
-class Cell(NamedTuple):
-    """One cell of a map: what swims, for how long [s], and the target of its relative error."""
-
-    swim: Swim
-    duration: float
-    target: float = TARGET
+    def settings(self, points: int) -> list[Any]:
+        """What the number is at these places."""
+        return list(self.choices) or self.values(points).tolist()
 
 
 @dataclass(frozen=True)
 class Map:
-    """A grid over two axes, with `points` values of each in geometric sequence.
-
-    at(x, y): what is there, a `Cell` or a number. names: labels of the rows where y is not a number, but the row.
-    """
+    """A grid of `points` by `points` over two axes, of a `swim` or of a number: at(x, y) instead."""
 
     name: str
     title: str
     across: Axis
     up: Axis
     points: int
-    at: Callable[[float, float], Any]
-    names: tuple[str, ...] = ()
+    swim: Swim | None = None
+    at: Callable[[Any, Any], Any] | None = None
 
     @property
     def x(self) -> np.ndarray:
         """Values along the map."""
-        return np.geomspace(self.across.low, self.across.high, self.points)
+        return self.across.values(self.points)
 
     @property
     def y(self) -> np.ndarray:
-        """Values of the rows; of rows with names the powers of 2."""
-        return 2.0 ** np.arange(len(self.names)) if self.names else np.geomspace(*self.up[1:], self.points)
+        """Values of the rows."""
+        return self.up.values(self.points)
 
-    def values(self, of: Callable[[Any], Any] = lambda found: found) -> np.ndarray:
-        """`of(at(x, y))` of every cell, over threads: (len(y), len(x), ...)."""
-        rows = range(len(self.names)) if self.names else self.y
-        found = in_threads(lambda cell: of(self.at(cell[1], cell[0])), product(rows, self.x))
+    def found(self, x: Any, y: Any) -> Any:
+        """What is at x and y: a swim, or a number. `ValueError` where that is refused."""
+        if self.at is not None:
+            return self.at(x, y)
+        assert self.swim is not None
+        return varied(self.swim, {self.across.name: x, self.up.name: y})
+
+    def values(self, of: Callable[[Callable[[], Any]], Any] = lambda found: found()) -> np.ndarray:
+        """`of` what finds each cell, over threads: (len(y), len(x), ...)."""
+        cells = product(self.up.settings(self.points), self.across.settings(self.points))
+        found = in_threads(lambda cell: of(lambda: self.found(cell[1], cell[0])), cells)
         return np.array(found).reshape(len(self.y), len(self.x), *np.shape(found[0]))
-
-
-CELL = np.dtype(
-    [
-        ("size", float),  # error relative to the target; NaN where the run stopped
-        ("reason", object),  # message of the stop, empty where there was none
-        ("steps", int),  # in time
-        ("limits", bool),  # the run warns of a limit of the model
-        ("warned", bool),  # inaccurate, and the run warns of an open energy ledger
-        ("estimate", float),  # error estimate of an inaccurate run relative to its target; else NaN
-    ]
-)
 
 
 @dataclass(frozen=True)
@@ -93,11 +106,9 @@ class Measured:
     map: Map
     cells: np.ndarray
 
-    @property
-    def outcome(self) -> np.ndarray:
-        """`ACCURATE`, `INACCURATE` or `STOPPED` for each run."""
-        kept = np.where(self.cells["size"] <= 1.0, ACCURATE, INACCURATE)
-        return np.where(self.cells["reason"] != "", STOPPED, kept)
+    def count(self, outcome: str) -> int:
+        """The number of cells with this outcome."""
+        return int(np.sum(self.cells["outcome"] == outcome))
 
     @property
     def worst(self) -> float:
@@ -105,31 +116,60 @@ class Measured:
         size = self.cells["size"]
         return float(np.nanmax(size)) if np.isfinite(size).any() else np.nan
 
+    def texts(self, outcome: str) -> list[str]:
+        """The different messages of this outcome, without time and value."""
+        cells = self.cells[self.cells["outcome"] == outcome]
+        if outcome == SENSITIVE:
+            return [f"errors grow by a factor of e in {1.0 / cells['rate'].max():.2g} s"] if len(cells) else []
+        return sorted({text.partition("s: ")[2].partition(" (")[0] or text for text in cells["text"] if text})
+
 
 def measure(item: Map) -> Measured:
-    """Simulate every point of the map, and again with finer settings for comparison."""
+    """Swim every cell of the map, and once more at a tenth of its target."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the runs keep them
-        found = item.values(cell_of)
-    return Measured(item, found)
+        return Measured(item, item.values(cell_of))
 
 
-def cell_of(cell: Cell) -> np.ndarray:
-    """The cell (`CELL`) of one run."""
-    how: dict[str, Any] = {"duration": cell.duration, "sample_period": cell.duration / SAMPLES, "stations": STATIONS}
-    finest = Accuracy.of(FINER) if cell.target >= TARGET else FINEST
-    steps = 0
+def cell_of(swim_of: Callable[[], Swim]) -> np.ndarray:
+    """The cell (`CELL`) of the swim that `swim_of()` gives, unless it is refused."""
     try:
-        run = cell.swim.run(**how)
-        steps = run.steps
-        finer = cell.swim._replace(accuracy=finest).run(**how, estimate=False)
+        swim = swim_of()
+        target = getattr(Accuracy.of(swim.accuracy), "target", None) or TARGET
+        run = _swum(swim, target)
+    except ValueError as error:
+        return _cell(REFUSED, str(error))
+    except SimulationStopped as stop:
+        return _cell(STOPPED, str(stop), steps=stop.run.steps if hasattr(stop, "run") else 0)
+    about: dict[str, Any] = {
+        "steps": run.steps,
+        "limits": any("ledger" not in text and "error" not in text for text in run.warnings),
+    }
+    try:
+        finer = _swum(swim._replace(accuracy=Accuracy.of(max(FINER * target, FINEST))), FINER * target)
     except (SimulationStopped, ValueError) as stop:
-        ended = getattr(stop, "run", None)
-        return np.array((np.nan, str(stop), steps or (ended.steps if ended else 0), False, False, np.nan), CELL)
-    apart = np.linalg.norm(run.position - finer.position, axis=1).max()
-    size = apart / max(finer.path_length, run.body.length) / cell.target
-    ledger = [text for text in run.warnings if "ledger" in text]
-    limits, poor = len(run.warnings) > len(ledger), size > 1.0
-    assert run.error_estimate is not None
-    estimate = run.error_estimate.worst / cell.target if poor else np.nan
-    return np.array((size, "", run.steps, limits, poor and bool(ledger), estimate), CELL)
+        return _cell(UNCHECKED, str(stop), **about)
+    own, others = run.error_estimate, finer.error_estimate
+    assert own is not None and others is not None
+    apart = relative_errors(run, finer).worst
+    about |= {"size": apart / target, "rate": own.growth_rate}
+    if apart <= target:
+        return _cell(ACCURATE, **about)
+    if own.worst > target or any("ledger" in text for text in run.warnings):
+        sensitive = own.growth_rate * float(run.time[-1]) > 1.0
+        return _cell(SENSITIVE if sensitive else INACCURATE, **about)
+    if apart <= target + others.worst:
+        return _cell(UNCHECKED, f"the finer run has an error of {others.worst:.1e}", **about)
+    return _cell(SILENT, f"the error is {apart:.1e}, the estimate {own.worst:.1e}", **about)
+
+
+def _cell(outcome: str, text: str = "", **about: Any) -> np.ndarray:
+    values = {"size": np.nan, "rate": 0.0, "steps": 0, "limits": False} | about | {"outcome": outcome, "text": text}
+    return np.array(tuple(values[name] for name in CELL.names or ()), CELL)
+
+
+def _swum(swim: Swim, target: float) -> Run:
+    most = MOST_EVALUATIONS * max(1.0, -np.log10(target)) / min(1.0, float(swim.duration))
+    how: dict[str, Any] = {"most_evaluations": most, "progress": lambda reached, left: None}
+    scene = replace(swim.scene, ledger=True)
+    return swim._replace(scene=scene).run(sample_period=float(swim.duration) / SAMPLES, stations=STATIONS, **how)

@@ -5,7 +5,6 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-import numpy as np
 from eel_base.files.markdown import table
 from eel_dynamics.model.inertia import MOST
 
@@ -14,13 +13,21 @@ from eel_studies.stability import condition, drift, plane
 from eel_studies.stability.drawing import draw, draw_map
 from eel_studies.stability.explicit import STEPS, treat
 from eel_studies.stability.extremes import maps_of
-from eel_studies.stability.maps import ACCURATE, INACCURATE, STOPPED, TARGET, Map, Measured, measure
+from eel_studies.stability.maps import (
+    OUTCOMES,
+    REFUSED,
+    SENSITIVE,
+    SILENT,
+    STOPPED,
+    TARGET,
+    UNCHECKED,
+    Map,
+    Measured,
+    measure,
+)
+from eel_studies.table import Table
 
 SIZE = 5.6, 4.2  # inches
-COLUMNS = (
-    *("map", "accurate", "inaccurate", "of them warned of", "of them shown by the estimate", "by neither", "stopped"),
-    *("beyond a limit of the model, and warned of", "worst error by target", "most steps"),
-)
 EXPLICIT_COLUMNS = (
     *("density of the body, by water's", "growth per step", "explicit acceleration, by the right one"),
     "condition of the 6 x 6 matrix",
@@ -29,10 +36,38 @@ RATIOS = (1e-3, 1e-2, 1e-1, 0.5, 1.0, 10.0, 1e3)
 
 
 def maps(points: int, outputs: Outputs) -> str:
-    """Maps of runs over two parameters, with `points` values of each: accurate, inaccurate, or stopped."""
-    found = [measure(item) for item in maps_of(points)]
+    """Maps of runs over two numbers, with `points` values of each, and the explicit treatment of the added mass."""
+    text = report([measure(item) for item in maps_of(points)], outputs)
+    explicit = [
+        (f"{each.ratio:g}", f"{each.growth:.3g}", f"{each.explicit:.3g}", f"{each.condition:.3g}")
+        for each in map(treat, RATIOS)
+    ]
+    return f"""{text}
+
+The added mass is implicit in the 6 x 6 matrix. Treated explicitly, with the acceleration of the step before, it is
+unstable wherever the growth per step exceeds 1, whatever the step; after {STEPS} steps:
+
+{table(EXPLICIT_COLUMNS, explicit)}"""
+
+
+def report(found: list[Measured], outputs: Outputs) -> str:
+    """The counts of the maps, their messages, and their pictures, as Markdown."""
     pictures = [_picture(outputs, each.map, partial(draw, measured=each)) for each in found]
-    return "\n".join([report(found), "", *pictures])
+    lines = [counts(found).markdown(), "", f"The error is by the target, {TARGET:g} where the settings have none."]
+    for outcome in (STOPPED, REFUSED, SENSITIVE, UNCHECKED, SILENT):
+        said = sorted({text for each in found for text in each.texts(outcome)})
+        lines += [f"{outcome.capitalize()}: {'; '.join(said)}."] if said else []
+    return "\n".join([*lines, "", *pictures])
+
+
+def counts(found: list[Measured]) -> Table:
+    """A row for each map: how many cells have which outcome."""
+    rows = []
+    for each in found:
+        texts = [str(each.count(outcome)) for outcome in OUTCOMES]
+        limits, steps = each.cells["limits"].sum(), each.cells["steps"].max()
+        rows.append([each.map.title, *texts, str(limits), f"{each.worst:.2g}", str(steps)])
+    return Table(("map", *OUTCOMES, "beyond a limit of the model", "worst error by target", "most steps"), rows)
 
 
 def conditions(points: int, outputs: Outputs) -> str:
@@ -63,38 +98,6 @@ STUDIES: dict[str, Callable[[int, Outputs], str]] = {
     "drift": drifts,
     "plane": planes,
 }
-
-
-def report(found: list[Measured]) -> str:
-    """Counts and greatest errors of the maps, then the explicit treatment of the added mass, as Markdown."""
-    rows = []
-    for each in found:
-        accurate, inaccurate, stopped = (each.outcome == kind for kind in (ACCURATE, INACCURATE, STOPPED))
-        cells = each.cells
-        estimated, warned = cells["estimate"] > 1.0, inaccurate & (cells["warned"] | cells["limits"])
-        neither = inaccurate & ~warned & ~estimated
-        counts = accurate, inaccurate, warned, estimated, neither, stopped, cells["limits"]
-        texts = [str(np.sum(kind)) for kind in counts]
-        rows.append([each.map.title, *texts, f"{each.worst:.2g}", str(cells["steps"].max())])
-    reasons = sorted({_reason(text) for each in found for text in each.cells["reason"].ravel() if text})
-    explicit = [
-        (f"{each.ratio:g}", f"{each.growth:.3g}", f"{each.explicit:.3g}", f"{each.condition:.3g}")
-        for each in map(treat, RATIOS)
-    ]
-    return f"""{table(COLUMNS, rows)}
-
-Accurate: the head within {TARGET:g} (a preset: its target) of its path, or of the body if longer, of a finer run's.
-Reasons of the stops: {"; ".join(reasons) or "none"}.
-
-The added mass is implicit in the 6 x 6 matrix. Treated explicitly, with the acceleration of the step before, it is
-unstable wherever the growth per step exceeds 1, whatever the step; after {STEPS} steps:
-
-{table(EXPLICIT_COLUMNS, explicit)}"""
-
-
-def _reason(text: str) -> str:
-    """The reason in a stop's message, without time and value."""
-    return text.partition("s: ")[2].partition(" (")[0]
 
 
 def _picture(outputs: Outputs, item: Map, fill: Callable[[Any], object]) -> str:

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Numbers of a swim by name, beside those of `points`: what a map can be drawn over. A further one is a line of `OWN`.
+
+| name | what it sets |
+|---|---|
+| `period`, `scene.viscosity`, `body.nose_drag`, `initial.v_x`, `accuracy` ... | as in `points` |
+| `amplitude` | factor of the law's curvature |
+| `density_ratio` | density of the body by that of the water |
+| `spin` | turns/s of the head about all three of its axes alike |
+| `flow.core`, ... | a field of the flow |
+| `flow_speed` | m/s: size of the flow's velocity |
+| `step` | s: fixed steps of the classical method |
+| `tolerance`, `resolution`, `method` | settings given one by one |
+
+Where the period changes, so does the duration: a map shows as many periods everywhere.
+"""
+
+from collections.abc import Callable
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+from eel_base.quantity import number
+from eel_base.wording import shown
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.runs.swim import Swim
+
+from eel_studies.points import GROUPS, check_names, point_at
+
+RESOLUTION = 36.0  # points per body length where a setting in time is given: the error in space stays below 1e-3
+FLOW = "flow."
+
+
+def varied(swim: Swim, values: dict[str, Any]) -> Swim:
+    """The `swim` with these `values` by name. `ValueError` for what does not fit."""
+    period = _longest_period(swim)
+    shared = {name: value for name, value in values.items() if name.startswith(GROUPS) or name == "accuracy"}
+    gait = {name: value for name, value in values.items() if name not in {*shared, *OWN} and not name.startswith(FLOW)}
+    if gait:
+        swim = swim.with_gait(**{name: number(name, value) for name, value in gait.items()})
+    if shared:
+        swim = point_at(shared, lambda: swim.law, {}, swim)
+    for name, value in values.items():
+        if name in OWN:
+            swim = swim._replace(**OWN[name](swim, value))
+        elif name.startswith(FLOW):
+            swim = _with_flow(swim, {name.removeprefix(FLOW): value})
+    if period and isinstance(swim.duration, float) and (now := _longest_period(swim)) != period:
+        swim = swim._replace(duration=swim.duration * now / period)
+    return swim
+
+
+def _longest_period(swim: Swim) -> float:
+    return max((term.period for term in getattr(swim.law, "waves", ())), default=0.0)
+
+
+def _with_flow(swim: Swim, changes: dict[str, Any]) -> Swim:
+    if swim.flow is None:
+        raise ValueError(f"flow has no field {shown(next(iter(changes)))}: the scene has no flow")
+    check_names("flow", changes, [item.name for item in fields(swim.flow)])  # type: ignore[arg-type]
+    return swim._replace(flow=replace(swim.flow, **changes))  # type: ignore[type-var]
+
+
+def _flow_speed(swim: Swim, value: float) -> dict[str, Any]:
+    velocity = np.array(getattr(swim.flow, "velocity", (0.0, 0.0, 0.0)))
+    if not velocity.any():
+        raise ValueError(f"flow_speed needs a flow with a velocity, got {shown(swim.flow)}")
+    return {"flow": _with_flow(swim, {"velocity": tuple(value * velocity / np.linalg.norm(velocity))}).flow}
+
+
+def _settings(swim: Swim, **changes: Any) -> dict[str, Any]:
+    given = Accuracy.of(swim.accuracy)
+    if given.target is not None:
+        given = Accuracy(name="settings", resolution=RESOLUTION)
+    return {"accuracy": replace(given, **changes)}
+
+
+OWN: dict[str, Callable[[Swim, Any], dict[str, Any]]] = {  # name: (swim, value) -> fields of the swim
+    "amplitude": lambda swim, value: {"law": swim.law * value},
+    "density_ratio": lambda swim, value: {"scene": replace(swim.scene, density=value * swim.scene.fluid_density)},
+    "spin": lambda swim, value: {
+        "start": swim.start._replace(
+            twist=np.concatenate((np.full(3, 2.0 * np.pi * value / np.sqrt(3.0)), swim.start.twist[3:]))
+        )
+    },
+    "flow_speed": _flow_speed,
+    "step": lambda swim, value: _settings(swim, step=number("step", value), order=None),
+    "tolerance": lambda swim, value: _settings(swim, tolerance=number("tolerance", value)),
+    "resolution": lambda swim, value: _settings(swim, resolution=number("resolution", value)),
+    "method": lambda swim, value: _settings(swim, method=value[0], order=value[1]),
+}
