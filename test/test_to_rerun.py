@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """`Run.to_rerun`: bit by bit what the visualiser makes of the node's own messages of the same run."""
 
+import json
 import os
 import re
 import subprocess
 import sys
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,6 +15,7 @@ from eel_dynamics.ros.messages import SampleMessages, body_message, diagnostic_a
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.runs.command import main
 from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
+from eel_dynamics.runs.storage.plain import law_of
 from eel_viz.recording.dispatcher import READERS
 from eel_viz.recording.reading import read
 from rclpy.serialization import deserialize_message
@@ -84,6 +87,38 @@ def test_numbers_are_those_of_the_run(run, tmp_path):
     text = read(tmp_path / "run.rrd", entities.RUN)["text"][-1][0]
     assert "accuracy standard" in text
     assert "worst residual" in text
+
+
+def properties(path, group):
+    found = read(path, f"/__properties/{group}", static=True)
+    return {name: rows[-1][0] for name, rows in found.values.items()}
+
+
+def test_a_recording_says_what_it_is_of(tmp_path):
+    swim = simulate(straight(period=0.5), duration=3.0, accuracy=1e-3, scene=Scene(friction="laminar"))
+    swim.to_rerun(tmp_path / "swim.rrd", load=False, numbers={"colour": "red", "trial": 3})
+    of = partial(properties, tmp_path / "swim.rrd")
+    assert of("numbers") == {"colour": "red", "trial": 3.0}
+    assert of("swim")["gait"] == "straight" and of("swim")["duration"] == 3.0
+    assert of("swim")["version"].startswith("eel_dynamics")
+    assert law_of(json.loads(of("law")["json"])) == swim.law and of("law")["period"] == 0.5
+    assert (of("body")["length"], of("body")["mass"]) == (1.0, pytest.approx(swim.body_mass))
+    assert of("scene")["friction"] == "laminar" and of("scene")["wake"] is True
+    assert of("accuracy")["target"] == 1e-3
+    assert of("error_estimate")["position"] == swim.error_estimate.position
+    assert of("ledger")["actuator_work"] == swim.energy.actuator_work[-1]
+    assert of("measures")["cost_of_transport"] == swim.analysis().cost_of_transport
+    assert of("diagnostics")["closure_torque_relative"] < 1e-9
+
+
+def test_entities_of_others_may_be_in_the_named_frames(run, tmp_path):
+    run.to_rerun(tmp_path / "run.rrd")
+    for path, parent, child in (
+        (f"{entities.WORLD}/frames", "tf#/world", "odom"),
+        (f"{entities.HEAD}/frame", "tf#/world/eel/head", "base_link"),
+    ):
+        frame = read(tmp_path / "run.rrd", path, static=True).values
+        assert (frame["parent_frame"][0], frame["child_frame"][0]) == ([parent], [child])
 
 
 def test_a_stream_of_the_caller_s_stays_open(run, tmp_path):
@@ -181,7 +216,7 @@ def test_what_cannot_be_is_said(run, tmp_path):
 @pytest.mark.parametrize("form", ["rrd", "npz", "csv"])
 def test_a_full_disk_leaves_the_older_file(form, small_disk, capsys):
     out = small_disk / f"run.{form}"
-    words = ["falling", "--duration", "0.5", "--sample-period", "0.01", "--load", "--out", str(out)]
+    words = ["falling", "--duration", "0.3", "--sample-period", "0.01", "--load", "--out", str(out)]
     assert main([*words, "--stations", "11"]) == 0
     older = out.read_bytes()
     (small_disk / "other").write_bytes(bytes(2**20 - len(older) - 3 * 4096))

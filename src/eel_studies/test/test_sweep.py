@@ -441,6 +441,24 @@ def test_runs_without_an_error_estimate(tmp_path, capsys):
     assert "head_x" in capsys.readouterr().out
 
 
+def test_each_point_has_a_recording_with_its_values_and_measures(tmp_path):
+    reading = pytest.importorskip("eel_viz.recording.reading")
+    folder = tmp_path / "swims"
+    grid = {"period": [0.5, 0.25], "scene.friction": ["printed", "laminar"], "accuracy": ["draft"]}
+    data = sweep(grid, duration=1.0, estimate=False, recordings=folder)
+    assert sorted(path.name for path in folder.iterdir()) == [f"00000{k}.rrd" for k in range(4)]
+
+    def told(index, group):
+        found = reading.read(folder / f"00000{index}.rrd", f"/__properties/{group}", static=True)
+        return {name: rows[-1][0] for name, rows in found.values.items()}
+
+    assert told(2, "numbers") == {"period": 0.25, "scene.friction": "printed", "accuracy": "draft"}
+    speeds = [told(k, "measures")["mean_speed"] for k in range(4)]
+    np.testing.assert_array_equal(speeds, data.mean_speed.values.ravel())
+    with pytest.raises(ValueError, match=r"recordings .* cannot be written"):
+        sweep(grid, duration=1.0, recordings=tmp_path / "nowhere" / "swims")
+
+
 @pytest.mark.parametrize("kind", [Run, Batch])
 def test_a_file_of_a_sweep_says_what_opens_it(kind, tmp_path):
     xarray = pytest.importorskip("xarray")

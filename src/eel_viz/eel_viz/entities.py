@@ -13,6 +13,7 @@ TIMELINE = "sim_time"  # duration since the start of the simulation, from header
 
 # --- three dimensions, world frame [m] ---------------------------------------------------------------------------
 WORLD = "/world"
+WORLD_FRAME, HEAD_FRAME = "odom", "base_link"  # names of the world's frame and the head's, for what others log
 FOLLOW = "/world/follow"  # a frame that moves with the swimmer, and never turns; radius and centre: see scene3d.camera
 WHOLE_PATH = "/world/whole_path"  # the frame of all places so far
 BOTH = "/world/both"  # the frame that moves with two swimmers

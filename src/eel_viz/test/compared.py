@@ -8,6 +8,7 @@ import pyarrow as pa
 from rerun.chunk import RrdReader
 
 ALWAYS = 2**63 - 1  # ns
+OWN = "/__properties"  # what a recording says of itself
 TEXT = "/run/"  # what topics tell each other there depends on the order in which they come
 
 
@@ -44,9 +45,9 @@ def differences(
     no torque, and its colour lies on an edge of the rounding.
     """
     first, second = contents(one, until), contents(other, until)
-    said = [f"{key} is in one alone" for key in sorted(first.keys() ^ second.keys())]
+    said = [f"{key} is in one alone" for key in sorted(first.keys() ^ second.keys()) if not key[0].startswith(OWN)]
     for key in sorted(first.keys() & second.keys()):
-        if key[0].startswith("/__properties") or (key[0].startswith(TEXT) and not texts):
+        if key[0].startswith(OWN) or (key[0].startswith(TEXT) and not texts):
             continue
         (times, values), (other_times, other_values) = first[key], second[key]
         if not np.array_equal(times, other_times):

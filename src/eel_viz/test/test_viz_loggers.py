@@ -357,6 +357,8 @@ def test_notes_say_how_fast_the_head_is_and_where_the_greatest_torque_was(long_s
     path, samples = long_swim
     stamps = sorted(stamp for stamp, topics in samples.items() if "internal_wrench" in topics)
     note, place = (read(path, entity) for entity in (f"{entities.TORQUE_NOTE}/words", entities.TORQUE_NOTE))
+    follow = read(path, entities.FOLLOW)
+    frames = dict(zip(follow.stamps.tolist(), zip(follow["translation"], follow["scale"], strict=True), strict=True))
     middles = dict(zip(place.stamps.tolist(), place["translation"], strict=True))
     for stamp, (words,) in zip(note.stamps.tolist(), note.values["labels"], strict=True):
         assert stamp > 0
@@ -369,7 +371,9 @@ def test_notes_say_how_fast_the_head_is_and_where_the_greatest_torque_was(long_s
         assert min(abs(float(told) - size) / size for size in known) < 0.051
         backbone = samples[stamp]["backbone"][0]
         at = [np.interp(float(x), backbone.x, column) for column in backbone.position.T]
-        np.testing.assert_allclose(middles[stamp][0], at, atol=0.006 * backbone.x[-1])
+        centre, radius = np.array(frames[stamp][0][0]), frames[stamp][1][0][0]
+        seen = [camera.in_picture((np.array(each) - centre) / radius) for each in (middles[stamp][0], at)]
+        np.testing.assert_allclose(seen[0], seen[1], atol=0.006)
     speeds = read(path, f"{entities.SPEED_NOTE}/words")
     for stamp, (words,) in zip(speeds.stamps.tolist(), speeds.values["labels"], strict=True):
         near = [np.linalg.norm(samples[at]["head_twist"][0].linear) for at in stamps if stamp - 10**8 <= at <= stamp]

@@ -33,6 +33,7 @@ from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.companion import stable_step, with_error_estimate
 from eel_dynamics.runs.exchange.eel_viz_functions import recorder_of_runs
 from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
+from eel_dynamics.runs.exchange.properties_of_run import properties_of_run
 from eel_dynamics.runs.exchange.recorded_run import fields_of_bag
 from eel_dynamics.runs.motions import Motion, SmoothingEffect, effect_of_smoothing, law_from
 from eel_dynamics.runs.progress_monitor import ProgressMonitor
@@ -275,17 +276,27 @@ class Run:
         """
         return frame_of(self)
 
-    def to_rerun(self, target: Any, compare: "Run | None" = None, *, load: bool = True, **settings: Any) -> None:
-        """Record the run to Rerun, as the visualiser shows a swimmer.
+    def to_rerun(
+        self,
+        target: Any,
+        compare: "Run | None" = None,
+        *,
+        load: bool = True,
+        numbers: dict[str, Any] | None = None,
+        **settings: Any,
+    ) -> None:
+        """Record the run to Rerun, as the visualiser shows a swimmer, with its figures as properties.
 
         target: a file (.rrd) or a `rerun.RecordingStream`. compare: another run, drawn over this one. load: show the
-        water's force and the wake; a run without them is simulated again for them. settings: of the visualiser, such
-        as blueprint="torques", skin_rate=50. `ImportError` without the package eel_viz and rerun-sdk.
+        water's force and the wake; a run without them is simulated again for them. numbers: numbers and texts of your
+        own, by name, as the properties `numbers`. settings: of the visualiser, such as blueprint="torques",
+        skin_rate=50. `ImportError` without the package eel_viz and rerun-sdk.
         """
         record, runs = recorder_of_runs(), [self] if compare is None else [self, compare]
         runs = [run.with_load() if load else run for run in runs]
         names = [f"{run.law.name} {run.accuracy.name}" for run in runs]
-        record(target, [messages_of_run(run) for run in runs], names, **settings)
+        properties = properties_of_run(runs[0]) | ({"numbers": numbers} if numbers else {})
+        record(target, [messages_of_run(run) for run in runs], names, properties, **settings)
 
     @cached_property
     def refined(self) -> "Run":

@@ -56,6 +56,7 @@ def _sweep(options: argparse.Namespace) -> int:
         measure=options.measures and options.measures.split(","),
         progress=Progress(NAME, "points"),
         overwrite=options.overwrite,
+        recordings=options.recordings,
     )
     points = int(np.prod([len(values) for values in grid.values()]))
     print(f"points                      {points}, of which {int(data.stopped.sum())} stopped")
@@ -65,6 +66,8 @@ def _sweep(options: argparse.Namespace) -> int:
             unit = "" if unit == "1" else f" {unit}"
             print(f"{name:<28s}{float(array.min()):.4g} to {float(array.max()):.4g}{unit}")
     print(f"wall time                   {time.perf_counter() - start:.1f} s")
+    if options.recordings:
+        print(f"recordings in               {options.recordings}")
     print(f"written to                  {written_as(options.out)}")
     return 0
 
@@ -84,6 +87,7 @@ def _parser() -> Parser:
     parser.add_argument("--measures", metavar="NAMES", help=f"what to keep, with commas: {', '.join(MEASURES)} (all)")
     parser.add_argument("-o", "--out", required=True, metavar="FILE.nc", help="NetCDF file; parts lie in FILE.nc.parts")
     parser.add_argument("--overwrite", action="store_true", help="replace what the output holds of another sweep")
+    parser.add_argument("--recordings", metavar="FOLDER", help="a Rerun recording of each point, to ask and to look at")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask scheduler, or processes; without: threads")
     parser.add_argument("--workers", type=int, metavar="N", help="threads, or processes (one per core)")
     return parser

@@ -50,6 +50,7 @@ from eel_studies.points import (
 )
 from eel_studies.sweeps.sweep_key import key_of
 from eel_studies.sweeps.sweep_parts import Parts, Results
+from eel_studies.sweeps.sweep_recordings import SweepRecordings
 from eel_studies.workers import workers_of
 
 LONGEST_CHUNK = 64  # points
@@ -81,6 +82,7 @@ def sweep(
     chunk: int | None = None,
     progress: Progress = None,
     overwrite: bool = False,
+    recordings: str | Path | None = None,
     most_evaluations: float = MOST_EVALUATIONS,
 ) -> Any:
     """Simulate every combination of the values in `grid`.
@@ -108,6 +110,9 @@ def sweep(
         chunk: points per task.
         progress: progress(done, points) is called after each chunk; True: a bar; None: a bar on a terminal.
         overwrite: replace another sweep in `out` and its parts.
+        recordings: folder, made where there is none, for a Rerun recording of each point that is swum: 000000.rrd ...,
+            with the values of the grid as the properties `numbers`, its figures as others, and without the water's
+            forces.
         most_evaluations: of each point, as in `simulate`.
 
     `ValueError` names the point or the measure that is invalid. `ImportError`: a package is missing. `OSError`: the
@@ -133,6 +138,7 @@ def sweep(
     except ValueError as error:
         raise ValueError(f"sweep {error}") from None
     how = SwimSettings(duration, sample_period, stations, measure, bool(estimate), limit)
+    record = None if recordings is None else SweepRecordings(recordings, dict(zip(names, axes, strict=True)))
     key = "" if out is None else key_of(points, how)
     parts = Parts(out, key, len(points), overwrite)
     complete = parts.complete()
@@ -147,7 +153,8 @@ def sweep(
         with workers_of(scheduler, workers or available_cores()) as found:
             size = chunk or min(LONGEST_CHUNK, max(1, math.ceil(len(left) / (8 * max(1, found.parallel)))))
             chunks = [left[start : start + size] for start in range(0, len(left), size)]
-            for swum, result, failure in found.results(partial(swim_points, how=how), chunks):
+            task = partial(swim_points, how=how, record=record)
+            for swum, result, failure in found.results(task, chunks):
                 if result is None:
                     failures.append((swum[0][0], failure))
                     continue
@@ -175,8 +182,8 @@ def _warned(data: Any) -> Any:
     return data
 
 
-def swim_points(points: list[tuple[int, Swim]], how: SwimSettings) -> Results:
-    """The task of a worker: simulate the points, given with their indices, and measure each.
+def swim_points(points: list[tuple[int, Swim]], how: SwimSettings, record: SweepRecordings | None = None) -> Results:
+    """The task of a worker: simulate the points, given with their indices, measure and `record` each.
 
     Returns the measures of each point by its index, with "error": the message of a point that stopped, else empty.
     """
@@ -185,6 +192,8 @@ def swim_points(points: list[tuple[int, Swim]], how: SwimSettings) -> Results:
         batch = batch_of_points([point], how, threads=1)
         (error,) = batch.error
         result[index] = {"error": ""} | how.measured(batch[0]) if error is None else {"error": str(error)}
+        if record is not None and error is None:
+            record.record(index, batch[0])
     return result
 
 

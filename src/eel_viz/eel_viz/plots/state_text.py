@@ -106,6 +106,16 @@ class Summary:
             lines.append(f"body {self.body.length:.3g} m, {self.body.mass:.4g} kg")
         return "  \n".join(line for line in lines if line)
 
+    def numbers(self) -> dict[str, float | str]:
+        """The values of the diagnostics, as numbers where they are some."""
+        found: dict[str, float | str] = {}
+        for name, value in self.values.items():
+            try:
+                found[name] = float(value)
+            except ValueError:
+                found[name] = value[:LONGEST_TEXT]
+        return found
+
     def figures(self) -> dict[str, str]:
         """The main figures by name, for the comparison of two runs."""
         shown = {"law": plain(self.law or "")}

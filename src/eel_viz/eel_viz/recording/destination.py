@@ -6,7 +6,10 @@ import pathlib
 import threading
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from typing import Any
 
+import numpy as np
+import pyarrow as pa
 import rerun as rr
 import rerun.blueprint as rrb
 
@@ -30,6 +33,7 @@ class Destination(ABC):
 
     Attributes:
         incomplete: part of a recording is missing here.
+        properties: of each recording: numbers and texts by group and name.
     """
 
     def __init__(
@@ -38,6 +42,7 @@ class Destination(ABC):
         self.settings, self.rates, self.log_info, self.log_warning = settings, rates, log_info, log_warning
         self.live = live
         self.incomplete = False
+        self.properties: dict[str, dict[str, Any]] = {}
         self._blueprint_sent = False  # sent once: later recordings keep the user's changes in the viewer
 
     @abstractmethod
@@ -58,8 +63,14 @@ class Destination(ABC):
         if self.live and not self._blueprint_sent:  # viewers ignore a default blueprint that comes after the first data
             stream.send_blueprint(self.blueprint(), make_active=True, make_default=True)
             self._blueprint_sent = True
-        stream.send_recording_name(name)
+        self.describe(stream, name)
         return stream
+
+    def describe(self, stream: rr.RecordingStream, name: str) -> None:
+        """Send the recording's name and properties."""
+        stream.send_recording_name(name)
+        for group, values in self.properties.items():
+            send_properties(stream, group, values)
 
     def blueprint(self, end: float = 0.0) -> rrb.Blueprint:
         """The arrangements of a recording that ends at `end` [s]; 0: it has not ended."""
@@ -91,6 +102,25 @@ class Destination(ABC):
     def close(self) -> None:
         """Close what outlives the recordings, such as a server."""
         return
+
+
+def send_properties(stream: rr.RecordingStream, group: str, values: dict[str, Any]) -> None:
+    """Send properties of a recording: numbers, texts and truths, or rows of them, by name."""
+    stream.send_property(
+        group, [rr.DescribedComponentBatch(Value(each), rr.ComponentDescriptor(name)) for name, each in values.items()]
+    )
+
+
+class Value:
+    """A component of a type of its own: in `rr.AnyValues`, a name has the same type all through a process."""
+
+    def __init__(self, value: Any) -> None:
+        row = [value] if isinstance(value, (str, bytes)) or not np.iterable(value) else list(value)
+        self._row = [float(each) if type(each) is int else each for each in row]  # files of a sweep have equal types
+
+    def as_arrow_array(self) -> pa.Array:
+        """Its row."""
+        return pa.array(self._row)
 
 
 def close_stream(stream: rr.RecordingStream) -> None:

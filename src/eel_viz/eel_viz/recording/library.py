@@ -33,7 +33,7 @@ class CallerStream(Destination):
     def open(self, number: int, name: str) -> rr.RecordingStream:
         """Send blueprint and name, and return the stream."""
         self._stream.send_blueprint(self.blueprint())
-        self._stream.send_recording_name(name)
+        self.describe(self._stream, name)
         return self._stream
 
     def close_recording(self, stream: rr.RecordingStream) -> None:
@@ -45,11 +45,13 @@ def to_rerun(
     target: str | os.PathLike[str] | rr.RecordingStream,
     runs: Sequence[Messages],
     names: Sequence[str],
+    properties: dict[str, dict[str, Any]] | None = None,
     **settings: Any,
 ) -> None:
     """Record one run, or two that are compared, to `target`: a stream, or a file, which is replaced if it exists.
 
-    `settings` are those of the visualiser, such as blueprint or skin_rate. Data that cannot be shown give a warning.
+    properties: of the recording, numbers and texts by group and name. settings: those of the visualiser, such as
+    blueprint or skin_rate. Data that cannot be shown give a warning.
     `ValueError` for a bad setting; `OSError` if the file cannot be written completely, an older file then stays.
     """
 
@@ -71,6 +73,7 @@ def to_rerun(
         destination = FileDestination(
             chosen, lambda text: None, lambda text: None
         )  # no warning that the file is replaced
+    destination.properties = properties or {}
     record_messages(runs, [destination], names=names, namespaces=[NAMESPACE] * len(runs), log_warning=log_warning)
     if not isinstance(target, rr.RecordingStream) and written_as(target) != Path(target):
         log_warning(appeared(Path(target), written_as(target)))

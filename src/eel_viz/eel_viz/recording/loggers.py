@@ -24,6 +24,7 @@ from eel_viz.plots.limit import Limit
 from eel_viz.plots.profile_plot import ProfilePlot
 from eel_viz.plots.series import Attitude, log_styles
 from eel_viz.plots.state_text import Summary, look_text
+from eel_viz.recording.destination import send_properties
 from eel_viz.recording.rates import Rates, Slots, period_of
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.swimmer_scene import SwimmerScene
@@ -44,6 +45,7 @@ class Loggers:
     """
 
     def __init__(self, recording: rr.RecordingStream, settings: Settings, rates: Rates, name: str = "eel") -> None:
+        self._recording = recording
         self._stream = stream = BatchedStream(recording, tick=rates.tick)
         self._number_period = period_of(rates.numbers)
         self._drawing_period = period_of(rates.drawings)
@@ -95,14 +97,17 @@ class Loggers:
         self._stream.send_due()
 
     def flush(self) -> None:
-        """Send all rows, before the recording is closed."""
+        """Send all rows, and what the diagnostics said last, before the recording is closed."""
         self._stream.flush()
+        if self.summary.values:
+            send_properties(self._recording, "diagnostics", self.summary.numbers())
 
     # --- the swimmer ---------------------------------------------------------------------------------------------
     def body(self, stamp: int, body: Body) -> None:
         """Log the geometry, valid at all times."""
         self._scene.body(body)
         self.summary.body = body
+        send_properties(self._recording, "body", {"length": float(body.length), "mass": float(body.mass)})
         values = {name: getattr(body, name) for name in ("length", "mass", "x", "half_width", "half_height")}
         self._stream.log_static(entities.BODY_NUMBERS, rr.DynamicArchetype("BodyGeometry", components=values))
 
@@ -203,6 +208,7 @@ class Loggers:
     def curvature_law(self, stamp: int, name: str) -> None:
         """Log the name of the published law."""
         self.summary.law = name
+        send_properties(self._recording, "swim", {"gait": SHORT.repr(name).strip("'")})
         self._event(stamp, f"law {SHORT.repr(name)} published", "INFO")
 
     def diagnostics(self, stamp: int, statuses: list[Status]) -> None:

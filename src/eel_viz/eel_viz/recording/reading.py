@@ -60,7 +60,7 @@ def read(path: str | os.PathLike[str], entity: str, *, static: bool = False) -> 
         batch = chunk.to_record_batch()
         at = [0] * chunk.num_rows if static else batch.column(TIMELINE).cast("int64").to_pylist()
         for name in batch.schema.names:
-            if ":" not in name:
+            if name.startswith("rerun.") or (":" not in name and not static):  # a row's number, or its time
                 continue
             for stamp, row in zip(at, batch.column(name).to_pylist(), strict=True):
                 if row is not None:

@@ -41,6 +41,10 @@ class SwimmerScene:
         stream.log_static(entities.BACKBONE, rr.LineStrips3D.from_fields(colors=[colours.LABEL], radii=[0.0004]))
         shadow = rr.Mesh3D.from_fields(triangle_indices=tiles(SHADOW_POINTS, 2), albedo_factor=(0, 0, 0, 130))
         stream.log_static(entities.SHADOW, shadow)
+        world = rr.Transform3D(parent_frame=f"tf#{entities.WORLD}", child_frame=entities.WORLD_FRAME)
+        stream.log_static(f"{entities.WORLD}/frames", world)
+        head = rr.Transform3D(parent_frame=f"tf#{entities.HEAD}", child_frame=entities.HEAD_FRAME)
+        stream.log_static(f"{entities.HEAD}/frame", head)
         for path in (entities.HEAD, entities.TAIL):
             stream.log_static(path, rr.TransformAxes3D(AXES_LENGTH))
 
@@ -73,7 +77,7 @@ class SwimmerScene:
         """Draw skin, tail, water and arrows, and move the cameras' frames."""
         position, length = backbone.position, float(backbone.x[-1] - backbone.x[0])
         frame = self._frame.follow(stamp, in_sight(position), length)
-        self._notes.draw(stamp, backbone, self._frame.filter.velocity, frame[1])
+        self._notes.draw(stamp, backbone, self._frame.filter.velocity, frame)
         self._water.draw(stamp, *frame)
         log_frame(self._stream, stamp, entities.FOLLOW, *frame)
         frame = self._path_frame.include(position, length)

@@ -73,6 +73,8 @@ def _three_dimensions(
         contents=[f"{entities.WORLD}/**", *(f"- {path}/**" for path in left_out)],
         background=colours.WATER_BACKGROUND,
         line_grid=rrb.LineGrid3D(visible=False),
+        # else the viewer takes another one as soon as somebody logs an entity in a named frame
+        spatial_information=rrb.SpatialInformation(target_frame=f"tf#{origin}"),
         eye_controls=rrb.EyeControls3D(position=camera.EYE, look_target=(0, 0, 0), eye_up=(0, 0, 1)),
         overrides=overrides,
     )

@@ -14,7 +14,7 @@ def messages_of_bag() -> Callable:
 
 
 def recorder_of_runs() -> Callable:
-    """The function (target, records of each run, names, **settings) that records runs to Rerun.
+    """The function (target, messages of each run, names, properties, **settings) that records runs to Rerun.
 
     `ImportError` where eel_viz is not installed, or cannot be imported.
     """

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rerun recordings of the points of a sweep, one file each, that can be asked like a table."""
+
+import itertools
+from pathlib import Path
+from typing import Any
+
+from eel_base.wording import shown
+from eel_dynamics.runs.exchange.eel_viz_functions import recorder_of_runs
+from eel_dynamics.runs.run import Run
+
+from eel_studies.points import label_of
+
+RATE = 12.5  # Hz: of skin and curves, half as often as in a recording of one run
+
+
+class SweepRecordings:
+    """Records points of a `grid`, values by name, into `folder`, which is made in one that exists.
+
+    `ValueError` where it cannot be written; `ImportError` without the package eel_viz.
+    """
+
+    def __init__(self, folder: str | Path, grid: dict[str, list[Any]]) -> None:
+        recorder_of_runs()
+        self.folder, self._grid = Path(folder), grid
+        try:
+            self.folder.mkdir(exist_ok=True)
+        except OSError as error:
+            raise ValueError(f"recordings {shown(str(folder))} cannot be written: {error.strerror}") from None
+
+    def record(self, index: int, run: Run) -> None:
+        """Record the `run` of the point number `index`, without the water's forces."""
+        values = next(itertools.islice(itertools.product(*self._grid.values()), index, None))
+        numbers = {name: label_of(value) for name, value in zip(self._grid, values, strict=True)}
+        if "accuracy" in numbers:
+            numbers["accuracy"] = str(numbers["accuracy"])  # a name or a number
+        run.to_rerun(self.folder / f"{index:06d}.rrd", load=False, numbers=numbers, skin_rate=RATE)
