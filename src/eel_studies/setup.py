@@ -46,6 +46,7 @@ setup(
             "stability = eel_studies.stability.command",
             "midlines = eel_studies.midlines.command",
             "life = eel_studies.life.command",
+            "replay-joints = eel_studies.replay.command",
             "figures = eel_studies.figures.command",
         ],
     },

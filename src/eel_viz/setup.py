@@ -33,6 +33,9 @@ setup(
             "render = eel_viz.pictures.render",
         ],
         "eel_dynamics.drawing": ["rerun = eel_viz.recording.library:to_rerun"],
-        "eel_dynamics.bags": ["messages = eel_viz.bags.swimmer_messages:swimmer_messages"],
+        "eel_dynamics.bags": [
+            "messages = eel_viz.bags.swimmer_messages:swimmer_messages",
+            "joints = eel_viz.bags.joint_states:joint_states",
+        ],
     },
 )

@@ -17,16 +17,19 @@ OWN = {  # relative: below the swimmer's namespace
     "hydrodynamic_load": "eel_msgs/msg/HydrodynamicLoad",
     "energy": "eel_msgs/msg/EnergyLedger",
     "swim_state": "eel_msgs/msg/SwimState",
+    "flow_at_head": "geometry_msgs/msg/Vector3Stamped",
     "joint_states": "sensor_msgs/msg/JointState",
     "body": "eel_msgs/msg/BodyGeometry",
     "curvature_law": "eel_msgs/msg/CurvatureLaw",
     "curvature_samples": "eel_msgs/msg/CurvatureSamples",
+    "current": "geometry_msgs/msg/Vector3Stamped",
     "goal": "nav_msgs/msg/Path",
 }
 DIAGNOSTICS = "/diagnostics"
 GLOBAL = {"/clock": "rosgraph_msgs/msg/Clock", DIAGNOSTICS: "diagnostic_msgs/msg/DiagnosticArray"}
 LATCHED = ("body", "curvature_law", "goal")  # transient local
-SAMPLED = tuple(name for name in OWN if name not in (*LATCHED, "curvature_samples"))  # once a sample
+INPUTS = ("curvature_samples", "current")  # of a controller or a sensor, by its own clock
+SAMPLED = tuple(name for name in OWN if name not in (*LATCHED, *INPUTS))  # once a sample
 SWIMMER = "head_pose"  # without publishers of this topic the swimmer has gone
 ENERGY_FIELDS = (  # of an EnergyLedger, in its order
     *("kinetic_body", "kinetic_fluid", "potential"),

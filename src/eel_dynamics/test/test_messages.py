@@ -49,7 +49,8 @@ def filled(sample, name, snapshot):
 
 def with_errors(simulation, errors):
     """What `SampleMessages` reads of a simulation whose errors are estimated."""
-    return SimpleNamespace(x=simulation.x, scene=simulation.scene, head_errors=errors)
+    water = simulation.water_at
+    return SimpleNamespace(x=simulation.x, scene=simulation.scene, head_errors=errors, water_at=water)
 
 
 @pytest.fixture(scope="module")

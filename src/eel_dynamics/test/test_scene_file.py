@@ -57,12 +57,12 @@ def test_what_is_written_comes_back_equal(tmp_path):
 
 
 def test_the_words_are_parameters_of_the_nodes(tmp_path):
-    """All but the period of samples and the flow, which the nodes have otherwise or not."""
+    """All but the period of samples; the flow as a text (test_node_water.py)."""
     save_scene(load_scene(scene_in(tmp_path)), tmp_path / "again.yaml")
     words = yaml.safe_load((tmp_path / "again.yaml").read_text())["/**"]["ros__parameters"]
-    named = {name for name in WORDS if name not in ("scene", "sample_period", "flow")}
+    named = {name for name in WORDS if name not in ("scene", "sample_period")}
     assert named <= {*vars(DynamicsParameters()), *Settings.known_names()}
-    values = DynamicsParameters.among(words)
+    values = DynamicsParameters.among({**words, "flow": ""})
     assert (values.accuracy, values.duration, values.body) == (1e-3, 2.0, "kern2006")
     assert Settings.start(words).law() == straight(period=0.8)
     assert not set(words["scene"]) - set(vars(Scene()))

@@ -20,7 +20,7 @@ def read_grid(source: Any, velocity: tuple[str, str, str | None]) -> tuple[np.nd
     source, velocity: as in `GriddedFlow.of`. `ValueError` for what does not fit.
     """
     if isinstance(source, (str, os.PathLike)):
-        with InputFile(source) as content, reading(f"flow file {os.fspath(source)}"):
+        with reading(f"flow file {os.fspath(source)}"), InputFile(source) as content:
             start = content.read(4)
         source = _dataset(os.fspath(source)) if start[:3] != b"CDF" else _classic(os.fspath(source))
     elif hasattr(source, "data_vars"):

@@ -30,7 +30,8 @@ from eel_dynamics.model.shapes import KINKS, NamedHalfAxis
 
 PANEL_OF_NOSE = 0.05  # of the length, where a body names no kinks
 LONGEST = 100.0  # m, of a body from a file; one that is longer may be in mm
-NUMBERS = ("density", "nose_added_mass", "nose_drag", "roll_drag", "lateral_drag", "vertical_drag")
+DRAGS = ("roll_drag", "lateral_drag", "vertical_drag", "friction_factor", "lateral_added_mass")
+NUMBERS = ("density", "nose_added_mass", "nose_drag", *DRAGS)
 COLUMNS, WHAT = ("x", "half_width", "half_height"), "body file "  # of a body in a file; WHAT begins an error
 MASSES = "mass_per_length", "centre_of_mass_offset"  # columns that it may have besides
 WATER = 1000.0  # kg/m^3, density of a body that gives none
@@ -60,6 +61,10 @@ class Body:
         nose_added_mass: k.
         nose_drag: c_p.
         roll_drag, lateral_drag, vertical_drag: c_1, c_2, c_3.
+        friction_factor: times the friction of a smooth plate at rest: a body that beats has a thinner boundary layer
+            (Lighthill, Proc. R. Soc. B 179 (1971): up to 4), and joints and gaps are rough.
+        lateral_added_mass: times that of the ellipse, along axis 2: below 1 for gaps between links and round ends, 1.51
+            for a square section in place of the circle within it (Newman, Marine Hydrodynamics, 1977, table 4.3).
         name: what messages call the body.
     """
 
@@ -80,6 +85,8 @@ class Body:
         roll_drag: float = 1.0,
         lateral_drag: float = 1.98,
         vertical_drag: float = 1.0,
+        friction_factor: float = 1.0,
+        lateral_added_mass: float = 1.0,
         name: str = "body",
     ) -> None:
         if x is not None:
@@ -124,6 +131,8 @@ class Body:
         self.roll_drag = number("body roll_drag", roll_drag, minimum=0.0)
         self.lateral_drag = number("body lateral_drag", lateral_drag, minimum=0.0)
         self.vertical_drag = number("body vertical_drag", vertical_drag, minimum=0.0)
+        self.friction_factor = number("body friction_factor", friction_factor, minimum=0.0)
+        self.lateral_added_mass = number("body lateral_added_mass", lateral_added_mass, minimum=0.0)
         numbers = tuple(getattr(self, name) for name in NUMBERS[1:])
         self._hash = hash((self.name, self.length, self.kinks, self.nose, self._density, numbers))
 

@@ -40,7 +40,8 @@ def added_masses(body: Body, scene: Scene, a_squared, b_squared):
     """
     rho = scene.fluid_density if scene.reactive else 0.0
     along2, along3 = (a_squared, b_squared) if scene.added_mass == "corrected" else (b_squared, a_squared)
-    return rho * np.pi * along2, rho * np.pi * along3, rho * np.pi / 8.0 * (a_squared - b_squared) ** 2
+    lateral = rho * np.pi * along2 * body.lateral_added_mass
+    return lateral, rho * np.pi * along3, rho * np.pi / 8.0 * (a_squared - b_squared) ** 2
 
 
 class SectionData(NamedTuple):
@@ -218,7 +219,7 @@ def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionData:
     c, d = (a, b) if np.array_equal(behind, x) else (body.half_height(behind), body.half_width(behind))
     perimeter = np.pi * (1.5 * (c + d) - np.sqrt(c * d)) * (0.5 if scene.perimeter == "printed" else 1.0)
     across = half_rho if scene.cross_flow else 0.0
-    rubbed = 0.0 if scene.friction == "none" else half_rho
+    rubbed = 0.0 if scene.friction == "none" else half_rho * body.friction_factor
     critical_speed = CRITICAL_REYNOLDS * scene.viscosity / behind  # m/s, |V1| at which Re = 8e4
     with np.errstate(divide="ignore"):
         by_critical_speed = np.where(critical_speed > 0.0, 1.0 / critical_speed, 0.0)

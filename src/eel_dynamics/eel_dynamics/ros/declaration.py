@@ -13,11 +13,13 @@ from rcl_interfaces.msg import SetParametersResult
 from rclpy.parameter import Parameter
 
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.flow.plain import flow_of
+from eel_dynamics.flow.text import flow_from_text, text_of_flow
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.parameters import FRAMES, ROOT, DynamicsParameters
 from eel_dynamics.ros.simulation_from_parameters import body_of
 
-SCENE, USE_SIM_TIME = "scene.", "use_sim_time"
+SCENE, FLOW, USE_SIM_TIME = "scene.", "flow.", "use_sim_time"
 
 
 class Declaration:
@@ -37,6 +39,7 @@ class Declaration:
         frames = {name: frame_in(space, getattr(DynamicsParameters, name)) for name in FRAMES}
         if space.strip("/") and overrides.get("world_frame") != ROOT:
             frames["root_frame"] = ROOT
+        overrides = with_flow_as_text(overrides)
         self.values = DynamicsParameters.among(frames | overrides)
         self.scene = replace(Scene(), **_checked({SCENE + item.name: item for item in fields(Scene)}, overrides))
         declare(node, self.values)
@@ -82,6 +85,8 @@ class Declaration:
             self._check_clock(values, given.get(USE_SIM_TIME, self._node.get_parameter(USE_SIM_TIME).value))
             if "body" in found:
                 body_of(values.body)
+            if "flow" in found:
+                flow_from_text(values.flow)
             if "accuracy" in found:
                 Accuracy.of(values.accuracy)
             self._planned = values, scene
@@ -101,6 +106,20 @@ class Declaration:
         self.next_values, self.next_scene = self._planned
         names = [each.name for each in parameters if each.name in self._fields and self._acts_at_once(each.name)]
         self.values = replace(self.values, **{name: getattr(self.next_values, name) for name in names})
+
+
+def with_flow_as_text(overrides: dict[str, Any]) -> dict[str, Any]:
+    """The `overrides` with those of a scene's file, flow.kind ... or flow.NAME.kind ..., as the parameter `flow`."""
+    fields: dict[str, dict[str, Any]] = {}
+    for name in [name for name in overrides if name.startswith(FLOW)]:
+        part, _, field = name.removeprefix(FLOW).rpartition(".")
+        fields.setdefault(part, {})[field] = overrides[name]
+    if not fields:
+        return overrides
+    flow = flow_of(list(fields.values()))
+    assert flow is not None
+    rest = {name: value for name, value in overrides.items() if not name.startswith(FLOW)}
+    return {"flow": text_of_flow(flow), **rest}
 
 
 def _checked(of_scene: Mapping[str, Field[Any]], given: Mapping[str, Any]) -> dict[str, Any]:

@@ -22,7 +22,7 @@ from eel_ros.loop.serialised_message import SerialisedMessage
 from eel_ros.serialised import Beginning
 from eel_ros.serving import read_message
 from eel_ros.stamps import seconds_of
-from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped
+from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped, Vector3Stamped
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
@@ -68,6 +68,7 @@ class SampleMessages:
             "hydrodynamic_load": (msg.HydrodynamicLoad(), section, self._fill_load),
             "energy": (msg.EnergyLedger(), world, self._fill_energy),
             "swim_state": (msg.SwimState(), world, self._fill_state),
+            "flow_at_head": (Vector3Stamped(), world, self._fill_flow),
         }
         for name, computed in (("internal_wrench", scene.internal_wrench), ("energy", scene.ledger)):
             if not computed:
@@ -183,6 +184,9 @@ class SampleMessages:
             math.nan if errors is None else errors.relative,
         )
 
+    def _fill_flow(self, numbers: Numbers, snapshot: Snapshot) -> None:
+        numbers["vector"][:] = self._simulation.water_at(self._head[POSITION])
+
     def _fill_joints(self, numbers: Numbers, snapshot: Snapshot) -> None:
         for axis, place, joints in self._joints:
             numbers["position"][place] = joints.angle(snapshot.curvature)[:, axis]
@@ -246,7 +250,7 @@ def read_law(data: bytes) -> msg.CurvatureLaw:
     return read_message(data, msg.CurvatureLaw)
 
 
-def stamped(message: msg.CurvatureLaw | msg.CurvatureSamples, now: float) -> float:
+def stamped(message: Any, now: float) -> float:
     """The stamp [s] of a `message` that comes at simulation time `now` [s]. `ValueError` for one that is not valid."""
     stamp = seconds_of(message.header.stamp)
     if stamp > now + FAR_AHEAD:
@@ -264,6 +268,18 @@ def samples_from_message(message: msg.CurvatureSamples, now: float) -> dict[str,
     """
     check_points(len(message.x))
     return {"time": stamped(message, now)} | {name: np.array(getattr(message, name)) for name in ("x", *ROWS)}
+
+
+def current_from_message(message: Vector3Stamped, now: float, world_frame: str) -> tuple[float, np.ndarray]:
+    """Stamp [s] and velocity (3,) [m/s], world, of a current that comes at simulation time `now` [s].
+
+    `ValueError` for a stamp or a frame that does not fit. A stamp of 0 is now.
+    """
+    frame, stamp = message.header.frame_id, stamped(message, now)
+    if frame not in ("", world_frame):
+        raise ValueError(f"header.frame_id must be {world_frame}, got {shown(frame)}")
+    velocity = np.array([message.vector.x, message.vector.y, message.vector.z])
+    return stamp or now, velocity
 
 
 def refused(error: Exception, driven: bool = False) -> str:

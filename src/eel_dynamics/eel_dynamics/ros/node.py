@@ -32,6 +32,7 @@ from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.ros.current_subscription import CurrentSubscription
 from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.law_subscription import LawSubscription
@@ -74,6 +75,7 @@ class DynamicsNode(ParameterNode):
         self._root: Any = None  # publisher of /tf_static
         self._ended: float | None = None  # s, steady clock: when the end of the run was seen
         self._laws = LawSubscription(self, self.run_loop, self._report)
+        self._current = CurrentSubscription(self, self.run_loop, self.parameters.values.world_frame, self._report)
         pace, requests = self.run_loop.pace, self.run_loop.requests
         self._followed_clock = ClockSubscription(self, pace, requests) if isinstance(pace, FollowedClock) else None
         self._other_nodes = OtherNodes(self, self.resolve_topic_name("head_pose"), Identity.own(), self._report)

@@ -54,6 +54,13 @@ class DynamicsParameters(Quantities):
     body: str = quantity(
         "boyer2010", "", "name of a body, or a .csv or .npz file with columns x, half_width, half_height [m]", **LATER
     )
+    flow: str = quantity(
+        "",
+        "",
+        "how the water moves: a name with numbers (shear velocity=0.1,0,0 width=0.5), a .nc file of a grid, or several "
+        "with ' + ' between; empty: not by itself",
+        **LATER,
+    )
     default_transition: float = quantity(1.0, "s", "blending time of a law that names none", 0.0, 1e4, exclusive=True)
     initial_position: tuple[float, ...] = quantity(
         (0.0, 0.0, 0.0), "m", "of the head at the start, in the world frame", **LATER

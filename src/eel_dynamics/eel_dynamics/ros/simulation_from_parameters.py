@@ -3,6 +3,7 @@
 
 from pathlib import Path
 
+from eel_dynamics.flow.text import flow_from_text
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.parameters import DynamicsParameters
@@ -22,6 +23,7 @@ def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene) -> 
         default_transition=parameters.default_transition,
         most_evaluations=parameters.most_evaluations,
         measure_error=parameters.estimate_error,
+        flow=flow_from_text(parameters.flow),
     )
 
 

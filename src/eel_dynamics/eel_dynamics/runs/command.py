@@ -31,6 +31,7 @@ from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.actuators import MOST_JOINTS
+from eel_dynamics.flow.text import flow_from_text
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.command_options import add_options, body_of, scene_of, set_numbers
@@ -100,13 +101,26 @@ def _swim_of(options, beat: Beat | None) -> Swim:
         duration = UNTIL_SETTLED
     elif duration is None:
         duration = law.duration if isinstance(law, SampledLaw) else DURATION
-    more = {"duration": duration, "sample_period": options.sample_period, "stations": options.stations or STATIONS}
+    more = {
+        "flow": flow_from_text(options.flow),
+        "duration": duration,
+        "sample_period": options.sample_period,
+        "stations": options.stations or STATIONS,
+    }
     return Swim(law, body, scene_of(options.scene), options.accuracy or "standard", **more)
 
 
 def _scene_of_file(options) -> Swim:
     """The swim of a scene's file, with the duration, accuracy and samples of the options where they are given."""
-    others = [*options.set, *options.scene, options.body, options.file, options.midlines, options.sequence]
+    others = [
+        *options.set,
+        *options.scene,
+        options.flow,
+        options.body,
+        options.file,
+        options.midlines,
+        options.sequence,
+    ]
     for given in filter(None, others):
         raise ValueError(f"{options.gait} has gait, body and scene of its own, got {shown(given)} too")
     found = {name: getattr(options, name) for name in ("duration", "accuracy", "sample_period", "stations")}
@@ -176,7 +190,7 @@ def _parser() -> Parser:
     parser.add_argument("--unsmoothed", action="store_true", help="do not smooth what was measured")
     duration = None, f"{DURATION:g}; of a file: all of it; of midlines: {UNTIL_SETTLED}"
     add_options(
-        parser, "--scale", "--duration", "--accuracy", "--bare", "--body", "--scene", "--sample-period",
+        parser, "--scale", "--duration", "--accuracy", "--bare", "--body", "--scene", "--flow", "--sample-period",
         duration=duration, accuracy=(None, "standard"),
         body=(None, f"boyer2010; with --midlines {EEL}, as long as the swimmer in the film"),
     )  # fmt: skip

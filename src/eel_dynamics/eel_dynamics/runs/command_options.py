@@ -17,6 +17,7 @@ from eel_base.wording import did_you_mean, shown
 from eel_gaits.gaits.registry import GAITS, find
 
 from eel_dynamics.accuracy.accuracy import PRESETS
+from eel_dynamics.flow.text import NAMES
 from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, until_settled
@@ -162,6 +163,12 @@ OPTIONS = {  # what argparse takes
     "--gait": {"metavar": "GAIT", "help": f"one of {', '.join(sorted(GAITS))}"},
     "--set": _repeated("NAME=VALUE", "a number of the gait, listed by --help GAIT"),
     "--scene": _repeated("NAME=VALUE", "physics, a field of the list that eel simulate --help ends with"),
+    "--flow": {
+        "default": "",
+        "metavar": "FLOW",
+        "help": f"how the water moves: {', '.join(NAMES)} with numbers, as 'shear velocity=0.1,0,0 width=0.5', a .nc "
+        "file of a grid, or several with ' + ' between: docs/howto/flow.md",
+    },
     "--body": {"default": "boyer2010", "help": f"{', '.join(NAMED)}, or a .csv or .npz file of half-axes"},
     "--accuracy": {
         "default": "standard",

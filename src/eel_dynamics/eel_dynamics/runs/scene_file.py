@@ -10,7 +10,7 @@ Its words are the names of the nodes' parameters, below `/**: ros__parameters:` 
     accuracy: 1e-4
     duration: 10.0            # s; of the library "settled" too
     initial_linear_velocity: [0.3, 0, 0]
-    flow: {kind: Shear, ...}  # fields of a flow, or several such flows by names of their own, which are added
+    flow: {kind: Shear, ...}  # fields of a flow, or several such by names of their own, which are added; or a text
 
 A further word is a line of `WORDS`.
 """
@@ -32,6 +32,7 @@ from eel_gaits.gaits.settings import SEQUENCES, Settings
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.flow.plain import KINDS, flow_of, plain_of_flow
+from eel_dynamics.flow.text import flow_from_text
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.settled_duration import until_settled
@@ -125,6 +126,8 @@ def _duration(swim: Swim, value: Any) -> dict[str, Any]:
 
 
 def _flow(swim: Swim, value: Any) -> dict[str, Any]:
+    if isinstance(value, str):
+        return {"flow": flow_from_text(value)}
     given = checked_instance("flow", value, Mapping)
     parts = [given] if "kind" in given else list(given.values())
     return {"flow": flow_of([dict(checked_instance("flow", each, Mapping)) for each in parts])}

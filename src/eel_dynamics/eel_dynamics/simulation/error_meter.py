@@ -25,6 +25,7 @@ from eel_dynamics.accuracy.error_estimate import (
 )
 from eel_dynamics.accuracy.grid_settings import ShapeNeeds
 from eel_dynamics.curvature.curvature_samples import CurvatureSample
+from eel_dynamics.flow.flow import Flow
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
@@ -60,7 +61,7 @@ class ErrorMeter:
 
     def restart(self, march: March):
         """Measure a `march` that has been reset."""
-        self.lost_at = None
+        self.lost_at, self._setup = None, replace(self._setup, flow=march.setup.flow)
         self.begin_again(march)
 
     def begin_again(self, march: March, growth_rate: float = 0.0):
@@ -93,6 +94,11 @@ class ErrorMeter:
         self._repeat(lambda companion: companion.change_law(law, origin, transition, needs))
         if self._has_same_grid(march):
             self.begin_again(march)
+
+    def change_flow(self, flow: Flow | None):
+        """As the march has done: `March.change_flow`."""
+        self._setup = replace(self._setup, flow=flow)
+        self._repeat(lambda companion: companion.change_flow(flow))
 
     def begin_with(self, march: March, law: Law | SampledLaw, origin: float):
         """As the `march` has done before its start: `March.from_start`."""

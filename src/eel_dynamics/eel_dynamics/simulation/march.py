@@ -3,6 +3,7 @@
 
 from collections.abc import Callable
 from copy import deepcopy
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
 from eel_dynamics.accuracy.step_bounds import step_bounds_of
 from eel_dynamics.curvature.curvature_samples import CurvatureSample
 from eel_dynamics.curvature.law_follower import LawFollower
+from eel_dynamics.flow.flow import Flow
 from eel_dynamics.model.initial_state import InitialState, time_scale
 from eel_dynamics.simulation.discretisation import Discretisation, discretise
 from eel_dynamics.simulation.observations import Observations, Snapshot
@@ -110,6 +112,12 @@ class March:
         self.follower.blend_into(law, origin=origin, time=self.time, transition=transition)
         self._hand_over_law()
         self._needs = needs
+
+    def change_flow(self, flow: Flow | None):
+        """Let the water move by `flow` from now on, at present with the same velocity as before."""
+        self.setup = replace(self.setup, flow=flow)
+        self._use(self.settings.at_least(self.setup.grid_for(self._needs)))
+        self._hand_over_law()
 
     def _fit(self, needs: ShapeNeeds):
         """Make the grid fine enough for the `needs` and, once no finer motion is left, not much finer."""

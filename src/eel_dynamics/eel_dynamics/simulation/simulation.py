@@ -4,11 +4,12 @@
 import math
 import time as clock
 from collections.abc import Callable, Sequence
+from copy import deepcopy
 from dataclasses import replace
 from functools import cache, partial
 
 import numpy as np
-from eel_base.quantity import is_finite
+from eel_base.quantity import checked_row, is_finite
 from eel_base.wording import shown
 from eel_gaits.gaits.diving import falling
 from eel_gaits.gaits.swimming import straight
@@ -24,6 +25,7 @@ from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 from eel_dynamics.flow.flow import Flow
+from eel_dynamics.flow.stream import CurrentStream
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.grid import Grid
 from eel_dynamics.model.initial_state import InitialState
@@ -95,6 +97,7 @@ class Simulation:
         self.body, self.scene, self.x = setup.body, setup.scene, setup.x
         self._march = march_of(setup).from_start(setup, law)
         self.ready, self._started = law is not None, False
+        self.currents = CurrentStream(setup.default_transition)
         self._meter = ErrorMeter(self._march, setup) if measure_error else None
 
     @property
@@ -172,7 +175,7 @@ class Simulation:
             if meter is not None:
                 meter.change_law(march, law, origin, blend, needs)
         else:
-            self._march = march = march_of(self._setup).from_start(self._setup, law, origin, march.settings)
+            self._march = march = march_of(self._setup).from_start(march.setup, law, origin, march.settings)
             if meter is not None:
                 meter.begin_with(march, law, origin)
         self.ready = True
@@ -220,10 +223,36 @@ class Simulation:
             self._meter.add(sample)
         self.ready = True
 
+    def add_current(self, time: float, velocity: ArrayLike) -> None:
+        """Add a sample of a current: the `velocity` (3,) [m/s], world, that it has at `time` [s], everywhere.
+
+        The water then moves with the course through the samples (`CurrentStream`), besides the scene's current and the
+        flow. A sample no newer than the last is left out. A reset forgets them. `ValueError` for what does not fit.
+        """
+        if not is_finite(time):
+            raise ValueError(f"current time must be finite, got {shown(time)} s")
+        row = checked_row("current velocity", velocity, 3)
+        if self.scene.planar and row[2] != 0.0:
+            raise ValueError(f"current velocity must have no part along z in a planar scene, got {row[2]:g} m/s")
+        if (course := self.currents.add(self.time, float(time), row)) is None:
+            return
+        flow = course if self._setup.flow is None else self._setup.flow + course
+        if self._meter is not None:
+            self._meter.catch_up(self._march)
+        self._march.change_flow(flow)
+        if self._meter is not None:
+            self._meter.change_flow(flow)
+
+    def water_at(self, place: ArrayLike) -> np.ndarray:
+        """Velocity (3,) [m/s], world, that the water has at a `place` (3,) [m] at present, without the swimmer."""
+        flow = self._march.setup.flow
+        return self._setup.current if flow is None else self._setup.current + flow.sample(place, self.time).velocity
+
     def copy_with(self, accuracy: Accuracy) -> "Simulation":
         """A copy in the present state that continues with the settings `accuracy`."""
         other = Simulation(**self._setup.arguments | {"accuracy": accuracy})
-        other._march = self._march.copy_with(other._setup)
+        other._march = self._march.copy_with(replace(other._setup, flow=self._march.setup.flow))
+        other.currents = deepcopy(self.currents)
         other.ready, other._started = self.ready, self._started
         return other
 
@@ -262,6 +291,7 @@ class Simulation:
         `ValueError` for a law that cannot begin from the initial state; the simulation then stays as it is.
         """
         self._march = march_of(self._setup).from_start(self._setup, self.law)
+        self.currents = CurrentStream(self._setup.default_transition)
         self.ready, self._started = self.law is not None, False
         if self._meter is not None:
             self._meter.restart(self._march)

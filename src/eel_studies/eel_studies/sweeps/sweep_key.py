@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from eel_base.wording import shown
-from eel_dynamics.model.body import MASSES, Body
+from eel_dynamics.model.body import DRAGS, MASSES, Body
 from eel_dynamics.model.shapes import NamedHalfAxis
 from eel_dynamics.runs.storage.plain import plain_of
 from eel_dynamics.runs.storage.tables import needed
@@ -80,7 +80,7 @@ def _content_of_body(body: Body) -> bytes:
     """The body's numbers, its half-axes as given, and their values at 201 points: a function may read other data."""
     x = np.linspace(0.0, body.length, 201)
     numbers = body.length, body.density, *body.nose, body.nose_added_mass, body.nose_drag
-    drags = body.roll_drag, body.lateral_drag, body.vertical_drag
+    drags = [getattr(body, name) for name in DRAGS]
     content = np.concatenate((body.half_width(x), body.half_height(x), body.kinks, numbers, drags)).tobytes()
     masses = {name: body.arguments[name] for name in MASSES if np.any(body.arguments[name])}
     for name in masses:

@@ -20,12 +20,14 @@ from eel_base.files.input_file import InputFile, reading
 from eel_base.wording import one_line, shown
 from rosbags.interfaces import Connection, MessageDefinitionFormat
 from rosbags.rosbag2 import Reader
+from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_types_from_msg, get_typestore
 
 from eel_viz.bags.mcap_file import RecordReader, damage_of
 from eel_viz.bags.metadata import NAME, check_metadata
 
 SUFFIXES = (".mcap", ".db3")
+PADDING = 8  # bytes, of a double
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,11 +104,20 @@ class Bag:
                         f"bag {shown(str(self._path))} is damaged: {self.damage or _line(error)}"
                     ) from error
                 try:
-                    message = self._store.deserialize_cdr(raw, connection.msgtype)
+                    message = self._deserialised(raw, connection.msgtype)
                 except Exception as error:  # rosbags' own, struct.error, ValueError of numpy or of text
                     unreadable(connection.topic, _line(error))
                     continue
                 yield connection.topic, stamp, message
+
+    def _deserialised(self, raw: Any, kind: str) -> object:
+        """The message. An empty sequence of doubles at its end, as of a JointState, may have some bytes behind it."""
+        try:
+            return self._store.deserialize_cdr(raw, kind)
+        except SerdeError:
+            if kind != "sensor_msgs/msg/JointState" or len(raw) <= PADDING:
+                raise
+            return self._store.deserialize_cdr(raw[:-PADDING], kind)
 
     def _open(self) -> None:
         if self._path.is_file() or (self._path / NAME).exists():

@@ -26,6 +26,7 @@ from eel_ros.loop.requests import Answer, RequestQueue
 
 from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration
+from eel_dynamics.ros.loop.current_taker import CurrentTaker
 from eel_dynamics.ros.loop.law_adopter import LawAdopter
 from eel_dynamics.ros.loop.run_gate import RunGate
 from eel_dynamics.ros.loop.sample_output import SampleOutput, nanoseconds
@@ -67,7 +68,7 @@ class RunLoop:
         self.requests = RequestQueue(inbox)
         self.gate = RunGate(simulation, publishers, values.wait_for_subscribers)
         self.pace = (FollowedClock if values.follow_clock else Pace)(1.0 / values.rate, values.real_time_factor)
-        self.laws = LawAdopter(simulation, report)
+        self.laws, self._current = LawAdopter(simulation, report), CurrentTaker(report)
         self.output = SampleOutput(simulation, parameters, publishers, report)
         self._sample_begun: float | None = None  # s, steady clock: when the computation of the next sample began
         self.time, self.samples_published, self.standing = 0.0, 0, ""
@@ -170,6 +171,7 @@ class RunLoop:
         self.time, now = self._next_time, time.monotonic()
         self.wall_time, self._lap = self.wall_time + now - self._lap, now
         self.laws.report_samples(self.time)
+        self._current.look(self._simulation)
         delay = self.pace.give_up_delay(self.samples_published, now)
         if delay > 0.0:
             lost, given_up = self.pace.lost(self.samples_published), self.pace.given_up
@@ -215,6 +217,11 @@ class RunLoop:
     def take_law(self, law: Law, origin: float) -> None:
         """Adopt a law whose own t = 0 lies at simulation time `origin` [s]."""
         self.laws.try_law(law, origin)
+        self.output.forget_start()
+
+    def take_current(self, stamp: float, velocity: np.ndarray) -> None:
+        """Take a sample of a current, as `Simulation.add_current` does."""
+        self._current.take(self._simulation, stamp, velocity)
         self.output.forget_start()
 
     def pause(self, paused: bool) -> None:

@@ -13,6 +13,11 @@ def messages_of_bag() -> Callable:
     return _function("eel_dynamics.bags", "messages", "from_bag", "rosbags and rerun-sdk")
 
 
+def joints_of_bag() -> Callable:
+    """The function (path, topic) that gives time, angles and names of the joints in a bag. `ImportError` as above."""
+    return _function("eel_dynamics.bags", "joints", "a bag of joint angles", "rosbags")
+
+
 def recorder_of_runs() -> Callable:
     """The function (target, messages of each run, names, properties, **settings) that records runs to Rerun.
 

@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`eel replay-joints`: swim by the log of a robot's joints: path, speed and torques, with bands.
+
+eel replay-joints log.csv --links 0.18x9 --section 0.055,0.05 --mass 7.2
+eel replay-joints amphibot.csv --columns 8-13 --units deg --links 0.097x7 --section 0.0285,0.0165 --speed 0.58
+eel replay-joints bag/ --topic joint_states --body robot.csv --links 0.2,0.1,0.1,0.2 --out path.csv --out path.png
+"""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+from eel_base.command.command_line import Parser
+from eel_base.command.run_command import checked_out, run_command
+from eel_base.files.output_file import written_as
+from eel_base.quantity import positive
+from eel_base.wording import shown
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.command_options import add_options, add_repeated, body_of, named_texts, scene_of
+from eel_dynamics.runs.exchange.eel_viz_functions import joints_of_bag
+from eel_dynamics.runs.storage.tables import write_columns
+from eel_gaits.sources.joint_log import JointLog, joint_log, law_of_links, read_joint_log
+
+from eel_studies.pictures import BLUE, PALE_BLUE, Figure, legend_above, plain, write_picture
+from eel_studies.replay.band import UNCERTAIN, Replayed, replay, robot_body, with_factors
+from eel_studies.table import Table
+
+NAME = "eel replay-joints"
+SUFFIXES = (".csv", ".png", ".svg", ".pdf")
+FITTING = 1e-6  # part of the length by which the links' sum may miss the body's
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit status as of `run_command`."""
+    return run_command(_parser(), _replay, arguments)
+
+
+def _replay(options: argparse.Namespace) -> int:
+    outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
+    log = _log(options)
+    links = _links(options.links, log.angles.shape[1])
+    body = _body(options, float(links.sum()))
+    joints = np.cumsum(links)[:-1]
+    law = law_of_links(log, joints, body.length)
+    scene = scene_of(options.scene, Scene(planar=True, friction="blended"))
+    first, alone, drawn = replay(
+        law, body, joints, scene, uncertain=_uncertain(options.vary), samples=options.samples,
+        duration=options.duration, accuracy=options.accuracy,
+    )  # fmt: skip
+    for note in (law.about, *log.notes, _about(body, links)):
+        print(note)
+    print(table_of(first, drawn, options.speed).text())
+    if alone:
+        print(effects_of(first, alone).text())
+    for out in outs:
+        if out.suffix == ".csv":
+            write_columns(columns_of(first, drawn), out)
+        else:
+            write_picture(lambda figure: draw(figure, first, drawn), (6.8, 6.0), out)
+        print(f"written to {written_as(out)}")
+    return 0
+
+
+def _log(options: argparse.Namespace) -> JointLog:
+    path = Path(options.file)
+    if path.is_dir() or path.suffix in (".mcap", ".db3"):
+        if options.columns:
+            raise ValueError("--columns belong to a .csv file; joints of a bag have names")
+        time, angles, names = joints_of_bag()(path, options.topic)
+        return joint_log(path.name, time, angles, tuple(names), unit=options.units, tail_first=options.tail_first)
+    if options.topic is not None:
+        raise ValueError("--topic belongs to a bag")
+    return read_joint_log(path, columns=options.columns, unit=options.units, tail_first=options.tail_first)
+
+
+def _links(text: str, joints: int) -> np.ndarray:
+    """Lengths [m] of the links, from nose to tail: one more than joints."""
+    found: list[float] = []
+    for part in text.split(","):
+        length, _, count = part.partition("x")
+        try:
+            found += [float(length)] * int(count or 1)
+        except ValueError:
+            raise ValueError(
+                f"--links must be lengths such as 0.18x9 or 0.2,0.1x5,0.2 [m], got {shown(text)}"
+            ) from None
+    if len(found) != joints + 1:
+        raise ValueError(f"--links must be {joints + 1} lengths for {joints} joints, got {len(found)}")
+    return np.array([positive("link", each, "m") for each in found])
+
+
+def _body(options: argparse.Namespace, length: float) -> Body:
+    if (options.body is None) == (options.section is None):
+        raise ValueError("one of --body and --section must be given")
+    if options.section is not None:
+        try:
+            half_height, half_width = map(float, options.section.split(","))
+        except ValueError:
+            raise ValueError(f"--section must be half-height,half-width [m], got {shown(options.section)}") from None
+        body = robot_body(length, half_height, half_width)
+    else:
+        body = body_of(options.body)
+        if abs(body.length - length) > FITTING * length:
+            raise ValueError(f"--links must add up to the body's length, {body.length:g} m, got {length:g} m")
+    body = with_factors(body, {})
+    for name, text in named_texts("--set", options.set):
+        try:
+            body = body.changed(**{name: float(text)})
+        except ValueError as error:
+            raise ValueError(f"--set {name}={text}: {error}") from None
+    return body if options.mass is None else body.changed(density=positive("mass", options.mass, "kg") / body.volume)
+
+
+def _uncertain(texts: list[str]) -> dict[str, tuple[float, float]] | None:
+    found = {}
+    for name, text in named_texts("--vary", texts):
+        try:
+            low, high = map(float, text.split(":"))
+        except ValueError:
+            raise ValueError(f"--vary must be NAME=LOW:HIGH, factors, got {shown(f'{name}={text}')}") from None
+        found[name] = (low, high)
+    return found or None
+
+
+def _about(body: Body, links: np.ndarray) -> str:
+    return f"{len(links)} links, {body.length:.4g} m, {body.mass:.4g} kg, {body.volume * 1e3:.4g} l"
+
+
+def table_of(first: Replayed, drawn: list[Replayed], measured: float | None) -> Table:
+    """Figures of the first swim, and between which the drawn ones lie."""
+    figures, others = first.figures, [each.figures for each in drawn]
+    rows = []
+    for place, (name, value) in enumerate(figures.items()):
+        all_of_them = [value, *(each[name] for each in others)]
+        rows.append([name, f"{value:.4g}", f"{min(all_of_them):.4g} to {max(all_of_them):.4g}", ""])
+        if place == 0 and measured is not None:
+            low, high = (end / measured - 1.0 for end in (min(all_of_them), max(all_of_them)))
+            rows[-1][-1] = f"{measured:.4g}: {value / measured - 1.0:+.0%}, band {low:+.0%} to {high:+.0%}"
+    return Table(("", "ours", f"band of {len(drawn)} bodies", "measured"), rows)
+
+
+def effects_of(first: Replayed, alone: dict[str, tuple[Replayed | None, Replayed | None]]) -> Table:
+    """What each uncertain number does to the speed, alone, at its two ends."""
+
+    def cell(end: Replayed | None) -> str:
+        return "stops" if end is None else f"{end.speed / first.speed - 1.0:+.1%}"
+
+    rows = [(name, *(cell(end) for end in ends)) for name, ends in alone.items()]
+    return Table(("speed, one number at an end of its range", "low", "high"), rows)
+
+
+def columns_of(first: Replayed, drawn: list[Replayed]) -> dict[str, np.ndarray]:
+    """Columns over time: the head, the centre of mass and the torques, each with its band."""
+    series = [_series(each) for each in (first, *drawn)]
+    found = {"time": first.run.time}
+    for name, values in series[0].items():
+        all_of_them = np.array([each[name] for each in series])
+        found |= {name: values, f"{name}_low": all_of_them.min(axis=0), f"{name}_high": all_of_them.max(axis=0)}
+    return found
+
+
+def _series(swim: Replayed) -> dict[str, np.ndarray]:
+    run = swim.run
+    speed = np.linalg.norm(np.gradient(run.center_of_mass, run.time, axis=0), axis=1)
+    found = {"x": run.position[:, 0], "y": run.position[:, 1], "speed": speed}
+    return found | {f"torque_{place + 1}": each for place, each in enumerate(swim.torque.T)}
+
+
+def draw(figure: Figure, first: Replayed, drawn: list[Replayed]) -> None:
+    """Path of the centre of mass, speed, and the torque of the middle joint, with the band."""
+    panels = figure.subplots(3, 1, height_ratios=(1.2, 1.0, 1.0))
+    columns = columns_of(first, drawn)
+    for each in drawn:
+        panels[0].plot(*each.run.center_of_mass[:, :2].T, color=PALE_BLUE, linewidth=0.8)
+    panels[0].plot(*first.run.center_of_mass[:, :2].T, color=BLUE, label="computed")
+    panels[0].set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
+    middle = f"torque_{len(first.joints) // 2 + 1}"
+    for axes, name, label in ((panels[1], "speed", "speed [m/s]"), (panels[2], middle, f"{middle} [N m]")):
+        low, high = columns[f"{name}_low"], columns[f"{name}_high"]
+        axes.fill_between(columns["time"], low, high, color=PALE_BLUE, label="band")
+        axes.plot(columns["time"], columns[name], color=BLUE, label="computed")
+        axes.set(xlabel="time [s]", ylabel=label)
+        plain(axes)
+    legend_above(figure, 2)
+
+
+def _parser() -> Parser:
+    ranges = ", ".join(f"{name}={low:g}:{high:g}" for name, (low, high) in UNCERTAIN.items())
+    parser = Parser(
+        prog=NAME,
+        description="Swim by the joint angles in a robot's log. Path, speed and torques come with a band from what is "
+        "uncertain: bodies whose numbers lie anywhere in their ranges.",
+    )
+    parser.add_argument("file", metavar="LOG", help=".csv, or a bag (folder, .mcap, .db3) with sensor_msgs/JointState")
+    parser.add_argument("--columns", default="", metavar="WHICH", help='joints of a .csv: "8-13", names, "*Fbck*"')
+    parser.add_argument("--units", default="", metavar="UNIT", help="rad or deg (as the columns' names say, or rad)")
+    parser.add_argument("--topic", metavar="TOPIC", help="of a bag with several of them")
+    parser.add_argument("--tail-first", action="store_true", help="the first joint is that at the tail")
+    parser.add_argument(
+        "--links", required=True, metavar="LENGTHS", help="m, from nose to tail: 0.18x9, or 0.2,0.1x5,0.2"
+    )
+    parser.add_argument("--section", metavar="A,B", help="m, half-height and half-width of all links")
+    add_options(parser, "--body", "--scene", "--duration", "--accuracy", "--out", body=(None, "or --section"),
+                duration=(None, "all of the log"), accuracy="1e-3")  # fmt: skip
+    parser.add_argument("--mass", type=float, metavar="KG", help="(that of the water in the body's place)")
+    add_repeated(parser, "--set", "NAME=VALUE", "a number of the body")
+    add_repeated(parser, "--vary", "NAME=LOW:HIGH", f"factors of a number that is uncertain, in place of {ranges}")
+    parser.add_argument("--samples", type=int, default=32, metavar="N", help="bodies of the band (32)")
+    parser.add_argument("--speed", type=float, metavar="M/S", help="as measured, to stand beside ours")
+    return parser
