@@ -121,11 +121,18 @@ def folder(tmp_path, monkeypatch):
         yield tmp_path
 
 
+def write_scene(page: Path, folder: Path):
+    """The scene that the page `scenes` shows, as the file that its examples read."""
+    if page.stem == "scenes":
+        (folder / "scene.yaml").write_text(blocks(page, "yaml")[0])
+
+
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("page", with_blocks("python"))
 def test_python_of_a_page_runs(page, folder):
     if page.stem == "bag_to_figure":
         write_bag(folder / "bag", simulate(straight(period=0.8), 4.0, sample_period=0.02, load=True))
+    write_scene(page, folder)
     space = run_python(page)
     if page.stem == "own_controller":
         assert space["heading"] > 0.3  # it turns left
@@ -136,6 +143,7 @@ def test_shell_of_a_page_names_what_exists(page, folder):
     if page.stem in ("motions", "own_body", "identify"):
         run_python(page)  # writes the file that its commands read
         (folder / "docs").symlink_to(ROOT / "docs")  # the measured files
+    write_scene(page, folder)
     for block in blocks(page, ""):
         for words in lines_of(block):
             check(words)

@@ -9,13 +9,13 @@ import inspect
 import io
 import math
 import sys
+from dataclasses import fields
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 from eel_base.attitude import heading
 from eel_base.files import markdown
-from eel_base.quantity import described_fields
 from eel_gaits.gaits.registry import GAITS
 from eel_studies.pictures import BLUE, ORANGE, SETTINGS
 from PIL import Image
@@ -231,11 +231,11 @@ def section(swim, swims):
     """What the page says of one gait."""
     function = GAITS[swim.name]
     about = (inspect.getdoc(function) or "").split("\n\nNumbers")[0]
-    numbers = described_fields(function.numbers)
-    listed = f"```text\n{inspect.cleandoc(numbers)}\n```\n" if numbers else "It has no numbers.\n"
+    numbers = ", ".join(item.name for item in fields(function.numbers))
+    listed = f"Its numbers: `{numbers}`.\n" if numbers else "It has no numbers.\n"
     picture = f"![{swim.name}](../images/manoeuvres/{swim.name}.png)\n"
     note = f" {NOTES[swim.name](swim, swims)}" if swim.name in NOTES else ""
-    return f"### {swim.name}\n{about}{note}\n\n{picture}\n{listed}\n"
+    return f"### {swim.name}\n{about}{note}\n{listed}\n{picture}\n"
 
 
 def formulas():

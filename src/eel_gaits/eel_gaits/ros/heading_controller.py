@@ -52,7 +52,6 @@ class HeadingParameters(Quantities):
     length: float = quantity(1.0, "m", "body length", 1e-4, 1e3)
 
 
-# [controller]
 class HeadingController(ParameterNode):
     """A node with the topics `odom` (in) and `curvature_samples` (out)."""
 
@@ -96,9 +95,6 @@ class HeadingController(ParameterNode):
         yaw = [rows[:, 2] + bend for rows, bend in zip(self.gait.curvature(time, self.x), self.bend, strict=True)]
         pitch = np.zeros((3, len(self.x)))
         return samples_to_message(time, self.x, np.vstack((pitch, *yaw)))
-
-
-# [end of controller]
 
 
 def main(args: list[str] | None = None) -> int:

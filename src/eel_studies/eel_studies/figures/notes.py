@@ -41,13 +41,10 @@ def values_of(
         "end_y": f"{y:+.2f}",
         "control_y": f"{control.position[-1, 1]:+.2f}",
         "printed_z": f"{printed.position[-1, 2]:+.2f}",
-        **_along(run, printed),
-        **_in_time(run, printed),
+        **_along(run),
+        **_in_time(run),
         "speed": f"{run.twist[-1, 3]:.2f}",
-        "printed_speed": f"{printed.twist[-1, 3]:.2f}",
         "roll": f"{_greatest(run.twist[:, 0]):.1f}",
-        "printed_roll": f"{_greatest(printed.twist[:, 0]):.1f}",
-        "path": f"{run.path_length:.2f}",
         "mean_speed": f"{run.analysis().mean_speed:.3f}",
         **_ledger(run),
         **_orders(errors["in_space"], errors["in_time"]),
@@ -56,7 +53,7 @@ def values_of(
     }
 
 
-def _along(run: Run, printed: Run) -> dict[str, str]:
+def _along(run: Run) -> dict[str, str]:
     """The greatest force and torques along the body at `INSTANT`, and where the friction jumps."""
     k = int(np.argmin(np.abs(run.time - INSTANT)))
     force, torque = (field[k] for field in wrench_of(run))
@@ -64,21 +61,18 @@ def _along(run: Run, printed: Run) -> dict[str, str]:
     for name, values in (("axial", force[:, 0]), ("pitch", torque[:, 1]), ("yaw", torque[:, 2])):
         place = np.argmax(np.abs(values))
         found |= {name: f"{values[place]:+.3f}", f"{name}_at": f"{run.x[place]:.2f}"}
-    return found | {"pitch_share": _share(wrench_of(printed)[1][k, :, 1], torque[:, 1])}
+    return found
 
 
-def _in_time(run: Run, printed: Run) -> dict[str, str]:
+def _in_time(run: Run) -> dict[str, str]:
     """The extremes of force and torque at `PLACE`, and the greatest torque of all."""
     station = int(np.argmin(np.abs(run.x - PLACE)))
-    axial, yaw = wrench_of(run)[0][:, station, 0], wrench_of(run)[1][:, station, 2]
+    yaw = wrench_of(run)[1][:, station, 2]
     torque, place, time = run.greatest_torque()
     return {
         "yaw_least": f"{yaw.min():.2f}",
         "yaw_most": f"{yaw.max():.2f}",
         "yaw_late": f"{_greatest(yaw[run.time >= 0.5 * run.time[-1]]):.2f}",
-        "axial_least": f"{axial.min():.2f}",
-        "axial_most": f"{axial.max():.2f}",
-        "yaw_share": _share(wrench_of(printed)[1][:, station, 2], yaw),
         "peak": f"{torque:.3f}",
         "peak_at": f"{place:.2f}",
         "peak_time": f"{time:.2f}",
@@ -94,31 +88,21 @@ def _ledger(run: Run) -> dict[str, str]:
 
 
 def _orders(space: dict[bool, ConvergenceErrors], time: dict[bool, ConvergenceErrors]) -> dict[str, str]:
-    found = {
-        "fine_from": f"{space[False].against[FINE]:g}",
-        "most_points": f"{space[True].against[-1]:g}",
-        "drag_least": f"{space[True].motion[-1]:.0e}",
-    }
+    found = {}
     for drag, prefix in ((False, ""), (True, "drag_")):
-        for name in ("motion", "torque"):
-            found[f"{prefix}{name}_by_points"] = f"{space[drag].order(name, slice(FINE, None)):.1f}"
-            found[f"{prefix}{name}_by_step"] = f"{time[drag].order(name):.1f}"
+        found[f"{prefix}motion_by_points"] = f"{space[drag].order('motion', slice(FINE, None)):.1f}"
+        found[f"{prefix}motion_by_step"] = f"{time[drag].order('motion'):.1f}"
     return found
 
 
 def _corrections(readings: list[Correction]) -> dict[str, str]:
-    own, perimeter, blended, laminar, mass, _ = readings
+    own, perimeter, _, laminar, mass, _ = readings
     return {
         "exchanged_share": f"{mass.run.greatest_torque()[0] / own.run.greatest_torque()[0]:.0%}",
         "perimeter_speed": f"{perimeter.mean_speed / own.mean_speed - 1.0:+.0%}",
         "laminar_speed": f"{laminar.mean_speed / own.mean_speed - 1.0:+.0%}",
-        "blended_apart": f"{1e3 * blended.apart:.1f}",
     }
 
 
 def _greatest(values: np.ndarray) -> float:
     return float(np.max(np.abs(values)))
-
-
-def _share(part: np.ndarray, whole: np.ndarray) -> str:
-    return f"{_greatest(part) / _greatest(whole):.0%}"
