@@ -25,7 +25,7 @@ NAME = "eel figures"
 Drawing = Callable[[Figure, Run, Run, orders.Errors], None]  # of our run, the one as printed, and the errors
 FIGURES: dict[str, tuple[Drawing, float, float]] = {  # name of the file: drawing, width and height [inches]
     "figure5_body": (paper_drawings.draw_body, 7.0, 3.6),
-    "figure6_configurations": (paper_drawings.draw_configurations, 9.0, 4.8),
+    "figure6_configurations": (paper_drawings.draw_configurations, 5.4, 7.8),
     "figure7_wrench_along_the_body": (paper_drawings.draw_wrench_along_the_body, 6.4, 5.0),
     "figure8_wrench_in_time": (paper_drawings.draw_wrench_in_time, 6.8, 5.0),
     "figure9_head_velocity": (paper_drawings.draw_head_velocity, 6.8, 3.8),
@@ -36,7 +36,7 @@ FIGURES: dict[str, tuple[Drawing, float, float]] = {  # name of the file: drawin
 }
 FORMATS, KNOWN_FORMATS = ("svg", "png"), ("svg", "png", "pdf")
 COLUMN, PAGE = 3.4, 7.0  # inches: widths of a journal's column, and of its page
-PAGE_WIDE = ("figure5_body", "figure6_configurations", "torque_surface", "convergence")  # whatever the columns
+PAGE_WIDE = ("figure5_body", "torque_surface", "convergence")  # whatever the columns
 JOURNAL = {"font.size": 8.0, "lines.linewidth": 1.0, "pdf.fonttype": 42}  # letters as letters, not as curves
 
 

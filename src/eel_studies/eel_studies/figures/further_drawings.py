@@ -8,7 +8,19 @@ from eel_dynamics.runs.run import Run
 
 from eel_studies.figures.orders import Errors
 from eel_studies.figures.paper_drawings import wrench_of
-from eel_studies.pictures import BLACK, BLUE, GREEN, ORANGE, PURPLE, Axes, Figure, legend_above, mark_pitch, plain
+from eel_studies.pictures import (
+    BLACK,
+    BLUE,
+    COLOUR_BAR,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    Axes,
+    Figure,
+    legend_above,
+    mark_pitch,
+    plain,
+)
 
 PERIOD = 1.0  # s, of the falling gait
 
@@ -17,48 +29,47 @@ def draw_torque_surface(figure: Figure, run: Run, *_: object) -> None:
     """Draw the internal torques C2 and C3 [N m] over time and X, each as a surface and, below it, as a map."""
     from matplotlib.ticker import MaxNLocator
 
-    grid = figure.add_gridspec(2, 2, height_ratios=(1.9, 1.0))
+    grid = figure.add_gridspec(2, 2, width_ratios=(1.15, 1.0))
     torques = ((1, "$C_2$, pitch [N m]"), (2, "$C_3$, yaw [N m]"))
-    spaces = [figure.add_subplot(grid[0, k], projection="3d") for k in range(2)]
-    maps = [figure.add_subplot(grid[1, k]) for k in range(2)]
-    for (column, name), space, axes in zip(torques, spaces, maps, strict=True):
+    for row, (column, name) in enumerate(torques):
+        space, axes = figure.add_subplot(grid[row, 0], projection="3d"), figure.add_subplot(grid[row, 1])
         values = wrench_of(run)[1][..., column].T  # (M, T)
         size = np.max(np.abs(values))
-        _draw_surface(space, run, values, size, name)
+        _draw_surface(space, run, values, size)
         levels = np.linspace(-size, size, 20)  # an even number: no line at 0, where the water is still
         drawn = axes.contourf(run.time, run.x, values, levels=levels, cmap="PuOr")
         drawn.set_rasterized(True)
         axes.set(xlabel="time t [s]", ylabel="$X_1$ [m], nose to tail")
         axes.invert_yaxis()
         ticks = MaxNLocator(5, symmetric=True)
-        figure.colorbar(drawn, ax=axes, label=name, pad=0.02, ticks=ticks, format="%+.2f")
+        bar = figure.colorbar(drawn, ax=axes, label=name, pad=0.02, ticks=ticks, format="%+.2f")
+        bar.ax.set_label(COLOUR_BAR)
 
 
-def _draw_surface(axes: Axes, run: Run, values: np.ndarray, size: float, name: str) -> None:
+def _draw_surface(axes: Axes, run: Run, values: np.ndarray, size: float) -> None:
     """Draw the surface of `values` (M, T) [N m] into 3D `axes`, coarse enough for a small file."""
     from matplotlib.ticker import MaxNLocator
 
-    time, x = run.time[::4], run.x[::5]
+    time, x = run.time[::5], run.x[::5]
     surface = axes.plot_surface(
         *np.meshgrid(time, x),
-        values[::5, ::4],
+        values[::5, ::5],
         cmap="PuOr",
         vmin=-size,
         vmax=size,
         rcount=len(x),
         ccount=len(time),
-        edgecolor=(0.25, 0.25, 0.25, 0.35),
-        linewidth=0.25,
+        edgecolor=(0.2, 0.2, 0.2, 0.5),
+        linewidth=0.3,
     )
     surface.set_rasterized(True)
-    axes.view_init(elev=38, azim=-62)
-    axes.set_box_aspect((1.5, 1.0, 0.9), zoom=1.3)
+    axes.view_init(elev=34, azim=-66)
+    axes.set_box_aspect((1.7, 0.9, 0.9), zoom=1.2)
     axes.set(xticks=[0, 2, 4, 6, 8, 10], yticks=[0.0, 0.5, 1.0], zlim=(-size, size))
     axes.zaxis.set_major_locator(MaxNLocator(4, symmetric=True))
-    axes.set_xlabel("time t [s]", labelpad=4)
-    axes.set_ylabel("$X_1$ [m]", labelpad=0)
-    axes.set_zlabel(name, labelpad=2)
-    axes.tick_params(pad=0)
+    axes.set_xlabel("time t [s]", labelpad=-2)
+    axes.set_ylabel("$X_1$ [m]", labelpad=-4)
+    axes.tick_params(pad=-2)
 
 
 def draw_head_path(figure: Figure, run: Run, *_: object) -> None:

@@ -56,9 +56,9 @@ def draw_configurations(figure: Figure, run: Run, *_: object) -> None:
     from matplotlib.colors import Normalize
 
     figure.set_layout_engine("none")  # the layout engine does not suit 3D axes
-    space = figure.add_axes((0.01, 0.1, 0.54, 0.84), projection="3d")
-    above, side = figure.add_axes((0.65, 0.68, 0.34, 0.26)), figure.add_axes((0.65, 0.12, 0.34, 0.44))
-    bar = figure.add_axes((0.09, 0.13, 0.4, 0.025), label=COLOUR_BAR)
+    space = figure.add_axes((0.0, 0.67, 0.93, 0.29), projection="3d")
+    above, side = figure.add_axes((0.19, 0.5, 0.78, 0.12)), figure.add_axes((0.19, 0.19, 0.78, 0.27))
+    bar = figure.add_axes((0.19, 0.08, 0.78, 0.015), label=COLOUR_BAR)
     colours = ScalarMappable(Normalize(run.time[0], run.time[-1]), "cividis")
     for time in np.arange(run.time[0], run.time[-1] + 1e-9, FRAME_PERIOD):
         x, y, z = run.backbone[np.argmin(np.abs(run.time - time)), ::2].T
@@ -67,19 +67,24 @@ def draw_configurations(figure: Figure, run: Run, *_: object) -> None:
         for axes, across in ((above, y), (side, z)):
             axes.plot(x, across, **line)
             axes.plot(x[0], across[0], "o", color=line["color"], markersize=3.5)
-    space.set_xlabel("x [m]", labelpad=12)
-    space.set_ylabel("y [m]", labelpad=2)
-    space.set_zlabel("z, up [m]", labelpad=-2)
+    space.set_xlabel("x [m]", labelpad=6)
+    space.set_ylabel("y [m]", labelpad=-4)
+    space.set_zlabel("z [m]", labelpad=-4)
+    space.tick_params(pad=0)
     space.set_aspect("equal", adjustable="box")
     space.view_init(elev=24, azim=-64)
     space.set_xticks(range(-4, 2))
     space.set_yticks([0.0, 1.0])
     space.set_zticks([-2.0, -1.0, 0.0])
-    for axes, name in ((above, "y [m], from above"), (side, "z, up [m], from the side")):
+    space.set_box_aspect([high - low for low, high in (space.get_xlim(), space.get_ylim(), space.get_zlim())], zoom=1.4)
+    for axes, name in ((above, "y [m]\nfrom above"), (side, "z [m]\nfrom the side")):
         axes.set(ylabel=name, xlim=(-4.3, 1.2))
-        axes.set_aspect("equal", adjustable="datalim")
+        axes.set_aspect("equal", adjustable="box")
         axes.grid(alpha=0.3)
+    above.tick_params(labelbottom=False)
     side.set_xlabel("x [m]; a dot marks the head")
+    side.set_yticks([-2.0, -1.0, 0.0], ["-2", "-1", "0"])
+    figure.align_ylabels((above, side))
     figure.colorbar(colours, cax=bar, orientation="horizontal", label="time [s]")
 
 
