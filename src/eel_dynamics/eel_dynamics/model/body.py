@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from eel_base.cell import cell_of
 from eel_base.files.input_file import reading
 from eel_base.quantity import checked_instance, checked_row, number, positive
 from eel_base.wording import not_one_of, shown
@@ -21,6 +22,7 @@ from eel_gaits.sources.tables import read_table
 from numpy.typing import ArrayLike
 
 from eel_dynamics.model.along import AlongBody
+from eel_dynamics.model.body_picture import lines_of_body, picture_of_body
 from eel_dynamics.model.equality import same
 from eel_dynamics.model.grid import Grid
 from eel_dynamics.model.half_axis import ArrayHalfAxis, FunctionHalfAxis
@@ -135,6 +137,13 @@ class Body:
         self.lateral_added_mass = number("body lateral_added_mass", lateral_added_mass, minimum=0.0)
         numbers = tuple(getattr(self, name) for name in NUMBERS[1:])
         self._hash = hash((self.name, self.length, self.kinks, self.nose, self._density, numbers))
+
+    def plot(self) -> Any:
+        """A matplotlib figure of the outlines, from above and from the side. `ImportError` without matplotlib."""
+        return picture_of_body(self)
+
+    def _repr_html_(self) -> str:
+        return cell_of(self.plot, lines_of_body(self))
 
     def half_width(self, x: ArrayLike) -> np.ndarray:
         """b(X) [m] along E2 at `x` [m]."""

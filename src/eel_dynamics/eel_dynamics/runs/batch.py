@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
+from eel_base.cell import cell_of
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
@@ -36,6 +37,7 @@ from eel_dynamics.runs.broadcast import swimmers_of
 from eel_dynamics.runs.companion import with_error_estimate
 from eel_dynamics.runs.motions import check_duration
 from eel_dynamics.runs.run import Run, SwimRequest, run_of
+from eel_dynamics.runs.run_picture import lines_of_batch, picture_of_batch
 from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
 from eel_dynamics.runs.settled_duration import duration_of
 from eel_dynamics.runs.storage import plain
@@ -106,6 +108,13 @@ class Batch:
             f"Batch({len(self)} swimmers, {len(self.time)} samples, {self.x.shape[1]} stations, "
             f"{np.count_nonzero(self.stopped)} stopped)"
         )
+
+    def plot(self) -> Any:
+        """A matplotlib figure: paths and speeds of the heads. `ImportError` without matplotlib."""
+        return picture_of_batch(self)
+
+    def _repr_html_(self) -> str:
+        return cell_of(self.plot, lines_of_batch(self))
 
     @property
     def valid(self) -> np.ndarray:

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from eel_base.attitude import world_from_section
+from eel_base.cell import cell_of
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
@@ -37,6 +38,7 @@ from eel_dynamics.runs.exchange.properties_of_run import properties_of_run
 from eel_dynamics.runs.exchange.recorded_run import fields_of_bag
 from eel_dynamics.runs.motions import Motion, SmoothingEffect, effect_of_smoothing, law_from
 from eel_dynamics.runs.progress_monitor import ProgressMonitor
+from eel_dynamics.runs.run_picture import picture_of_run
 from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
 from eel_dynamics.runs.settled_duration import period_of, settling_time, until_settled
 from eel_dynamics.runs.storage.netcdf import loaded, write
@@ -118,6 +120,13 @@ class Run:
             f"Run({self.law.name!r}, {self.body.name!r}, {end}, {len(self.time)} samples, {len(self.x)} stations, "
             f"accuracy {self.accuracy.name!r})"
         )
+
+    def plot(self) -> Any:
+        """A matplotlib figure: body and path from above, speed, yaw torque. `ImportError` without matplotlib."""
+        return picture_of_run(self)
+
+    def _repr_html_(self) -> str:
+        return cell_of(self.plot, self.summary())
 
     def __post_init__(self) -> None:
         if not (self.time[1:] > self.time[:-1]).all():

@@ -19,9 +19,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from eel_base.cell import cell_of
 from eel_base.quantity import number, numbers, positive
 from eel_base.wording import not_one_of, shown
 
+from eel_gaits.laws.law_picture import lines_of_law, picture_of_law
 from eel_gaits.laws.term import SECTION_COLUMN, Term
 
 MAXIMUM_TERMS = 1000
@@ -69,6 +71,18 @@ class Law:
     def __repr__(self) -> str:
         count = f"{len(self.terms)} term{'' if len(self.terms) == 1 else 's'}"
         return f"Law({shown(self.name)}, {count}{f', transition={self.transition:g} s' if self.transition else ''})"
+
+    def plot(self, length: float = 1.0) -> Any:
+        """A matplotlib figure: the curvature along a body of `length` [m] over a period, when all ramps have ended.
+
+        `ImportError` without matplotlib.
+        """
+        period = max((abs(term.period) for term in self.terms), default=0.0) or 1.0
+        settled = max((ramp.end for term in self.terms for ramp in term.envelope), default=0.0)
+        return picture_of_law(self, positive("length", length, "m"), settled, period)
+
+    def _repr_html_(self) -> str:
+        return cell_of(self.plot, lines_of_law(self))
 
     @property
     def in_plane(self) -> bool:
