@@ -12,7 +12,7 @@ setup(
         ("share/eel_base", ["package.xml"]),
     ],
     install_requires=["setuptools", "numpy", "PyYAML"],
-    extras_require={"test": ["pytest"]},
+    extras_require={"test": ["pytest"], "pictures": ["matplotlib"]},
     zip_safe=False,
     maintainer="Eel simulator maintainers",
     maintainer_email="maintainers@eel-simulator.example.org",
