@@ -9,7 +9,6 @@ import inspect
 import io
 import math
 import sys
-from dataclasses import fields
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -229,19 +228,9 @@ NOTES = {  # what was measured, beside the table
 
 def section(swim, swims):
     """What the page says of one gait."""
-    function = GAITS[swim.name]
-    about = (inspect.getdoc(function) or "").split("\n\nNumbers")[0]
-    numbers = ", ".join(item.name for item in fields(function.numbers))
-    listed = f"Its numbers: `{numbers}`.\n" if numbers else "It has no numbers.\n"
-    picture = f"![{swim.name}](../images/manoeuvres/{swim.name}.png)\n"
+    about = (inspect.getdoc(GAITS[swim.name]) or "").split("\n\nNumbers")[0]
     note = f" {NOTES[swim.name](swim, swims)}" if swim.name in NOTES else ""
-    return f"### {swim.name}\n{about}{note}\n{listed}\n{picture}\n"
-
-
-def formulas():
-    """The docstring of each file of gaits: formulas and sources."""
-    modules = dict.fromkeys(inspect.getmodule(inspect.unwrap(GAITS[name])) for row in FAMILIES.values() for name in row)
-    return "".join(f"```text\n{(inspect.getdoc(module) or '').strip()}\n```\n" for module in modules).rstrip()
+    return f"### {swim.name}\n{about}{note}\n\n![{swim.name}](../images/manoeuvres/{swim.name}.png)\n\n"
 
 
 def main() -> int:
@@ -258,7 +247,6 @@ def main() -> int:
     parts = {
         "table": markdown.table(head, [swim.row() for swim in swims.values()]),
         "gaits": gaits.rstrip(),
-        "formulas": formulas(),
     }
     page = PAGE.read_text()
     for name, text in parts.items():

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The reference pages that follow from the code, for `make docs`: messages, parameters and commands.
+"""The reference pages that follow from the code, for `make docs`: messages, parameters, commands, formulas of gaits.
 
 The messages are their files. Parameters come from the dataclasses that the nodes declare them from; commands and nodes
 tell their own `--help`. The pages are not kept in the repository.
 """
 
+import inspect
 import subprocess
 import sys
 from dataclasses import dataclass, field, fields
@@ -98,9 +99,16 @@ def commands() -> str:
     return "\n".join(parts)
 
 
+def formulas() -> str:
+    """The docstring of each file of gaits: formulas and sources."""
+    modules = dict.fromkeys(inspect.getmodule(inspect.unwrap(gait)) for gait in GAITS.values())
+    blocks = [f"```text\n{(inspect.getdoc(module) or '').strip()}\n```\n" for module in modules]
+    return "\n".join(["# Formulas of the gaits", "", "Each block is the docstring of a file of gaits.", "", *blocks])
+
+
 def main() -> int:
-    """Write the three pages."""
-    for page in (messages, parameters, commands):
+    """Write the four pages."""
+    for page in (messages, parameters, commands, formulas):
         path = REFERENCE / f"{page.__name__}.md"
         path.write_text(page(), encoding="utf-8")
         print(path.relative_to(ROOT))
