@@ -26,13 +26,10 @@ PAGE = KEPT.with_suffix(".md")
 COLUMNS = "identity", "compared", "measured", "tolerance", "cases", "share of tolerance", "test"
 
 IDENTITIES = {
-    "Energy ledger": "The change of kinetic energy of body and water is the integral of the four powers: actuators, "
-    "wake, nose, drag.",
-    "Closure": "What the internal wrench leaves over at the nose and at the tail; and, since closure follows from how "
-    "the acceleration was solved, that acceleration against the motion that was marched.",
-    "Lighthill": "Planar motion without drag is Lighthill's theory: large amplitude (1971; eqs (1), (61) of the paper) "
-    "and, in the limit, the linear one (1960).",
-    "No water": "Momentum and angular momentum stay; kinetic energy is the work of the actuators.",
+    "Energy ledger": "The change of the energy of body and water is the integral of the powers.",
+    "Closure": "What the internal wrench leaves over at nose and tail; accelerations against the motion marched.",
+    "Lighthill": "Planar motion without drag is Lighthill's theory, large amplitude (1971) and linear (1960).",
+    "No water": "Momentum stays; kinetic energy is the work of the actuators.",
     "Righting moment": "Weight below buoyancy: a pendulum in water, a torque from a potential, no direction special "
     "but up.",
     "Bodies that weigh": "Gravity, buoyancy, mass along the body, a centre of mass off the axis: closed forms at "
@@ -41,9 +38,7 @@ IDENTITIES = {
     "Symmetry": "Another pose, a mirror, the plane, rest, a current.",
     "Convergence": "Orders in time and in space, and what the presets reach on the falling gait over 10 s.",
     "Scaling": "Similar swimmers at equal Reynolds number swim alike.",
-    "Second implementation": "The equations again from the kinetic energy alone, differentiated numerically, in "
-    "another direction of integration, by code that shares nothing with the package "
-    "(`reference.py`).",
+    "Second implementation": "The equations again from the kinetic energy alone, by other code (`reference.py`).",
     "Pressure at the tail": "Lumped at the tail or distributed along the body: the same resultant and moment.",
     "Bodies": "Geometry and section data against what is printed or known.",
     "Read off a run": "Figures of `Run.analysis()` and `Run.actuators()` against the same, computed another way.",
