@@ -36,7 +36,8 @@ docs: build   ## the site of docs/ in out/docs, links checked
 notebook: build   ## run docs/tutorials/swim.ipynb anew, with its outputs in out/notebook
 	@$(RUN) tools/docs.sh notebook
 
-pictures: build   ## draw the pictures of the visualiser in docs/images
+pictures: build   ## draw the pictures of the tutorials and of the visualiser in docs/images
+	@$(RUN) python tools/tutorial_pictures.py
 	@$(RUN) python tools/pictures.py
 
 manoeuvres: build   ## swim every gait, and write docs/reference/manoeuvres.md with its pictures
