@@ -17,6 +17,7 @@ OWN = {  # relative: below the swimmer's namespace
     "hydrodynamic_load": "eel_msgs/msg/HydrodynamicLoad",
     "energy": "eel_msgs/msg/EnergyLedger",
     "swim_state": "eel_msgs/msg/SwimState",
+    "flow_vectors": "eel_msgs/msg/FlowVectors",
     "flow_at_head": "geometry_msgs/msg/Vector3Stamped",
     "joint_states": "sensor_msgs/msg/JointState",
     "body": "eel_msgs/msg/BodyGeometry",

@@ -10,6 +10,7 @@ from swim_client import LIMIT, nanoseconds
 
 from eel_dynamics import Scene, Shear, Simulation
 from eel_gaits import straight
+from eel_msgs.msg import FlowVectors
 
 FAST = ("--ros-args", "-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=1")
 LAYER = Shear(velocity=(0.2, 0.0, 0.0), width=1.0, centre=(0.0, 0.3, 0.0))
@@ -46,6 +47,7 @@ class Sensor:
 def test_a_swimmer_in_the_flow_of_a_parameter_swims_as_in_the_library(start, client):
     swim = client(topics=("head_pose",))
     swim.listen("flow_at_head", Vector3Stamped)
+    swim.listen("flow_vectors", FlowVectors)
     text = "shear velocity=0.2,0,0 width=1.0 centre=0,0.3,0"
     swim.laws.publish(law_to_message(straight()))
     node = start("dynamics", *FAST, "-p", f"flow:={text}", "-p", "scene.current:=[0.0, 0.1, 0.0]", "-p", "duration:=1")
@@ -55,6 +57,10 @@ def test_a_swimmer_in_the_flow_of_a_parameter_swims_as_in_the_library(start, cli
     for pose in poses[1:]:
         place = [getattr(pose.pose.position, axis) for axis in "xyz"]
         assert np.allclose(water[seconds(pose)], LAYER.sample(place).velocity + np.array(CURRENT), atol=1e-12)
+    assert len(swim.received["flow_vectors"]) >= 100  # the first may come before the subscription
+    for message in swim.received["flow_vectors"][-3:]:
+        points, velocity = (np.array(part).reshape(-1, 3) for part in (message.position, message.velocity))
+        assert np.allclose(velocity, LAYER.sample(points).velocity + np.array(CURRENT)) and np.ptp(points[:, 2]) == 0.0
     library = Simulation(law=straight(), flow=LAYER, scene=Scene(current=CURRENT))
     library.advance(1.0)
     assert np.allclose(place, library.head.position, atol=1e-5)

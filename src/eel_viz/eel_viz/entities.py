@@ -39,6 +39,7 @@ TORQUE_NOTE = "/world/notes/torque"  # words at the place of the greatest C3
 TRAIL = "/world/trail"  # its last seconds, fading
 LOAD = "/world/load/distributed"
 LOAD_ENDS = "/world/load/ends"
+FLOW = "/world/flow"  # arrows: how the water moves without the swimmer
 WAKE = "/world/wake"  # a ribbon: momentum that the tail gave to the wake per time, in the last seconds
 
 # --- drawings against X ------------------------------------------------------------------------------------------

@@ -185,6 +185,17 @@ def read_load(message: Any) -> Load:
     )
 
 
+def read_flow(message: Any) -> tuple[np.ndarray, np.ndarray]:
+    """From eel_msgs/FlowVectors: points (n, 3) [m] and the water's velocities (n, 3) [m/s], world."""
+    count = len(message.position)
+    if count % 3 or count > 3 * MOST_STATIONS:
+        raise BadMessage("position", f"must have 3 numbers for each of {MOST_STATIONS} points at most, got {count}")
+    position, velocity = (
+        _finite(name, _sized(name, getattr(message, name), count)).reshape(-1, 3) for name in ("position", "velocity")
+    )
+    return position, velocity
+
+
 def read_energy(message: Any) -> dict[str, float]:
     """From eel_msgs/EnergyLedger: one number per field [J], [W]."""
     values = {name: getattr(message, name) for name in ENERGY_FIELDS}

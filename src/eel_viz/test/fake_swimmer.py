@@ -51,6 +51,8 @@ def messages(swimmer: made_up.Swimmer, nanoseconds: int) -> dict:
         for name, array in values.items():
             vector = name in ("tail_force", "nose_force", "wake_momentum_rate")
             setattr(out[topic], name, Vector3(x=array[0], y=array[1], z=array[2]) if vector else array.tolist())
+    out["flow_vectors"].position = backbone["position"].ravel().tolist()
+    out["flow_vectors"].velocity = swimmer.water(t).ravel().tolist()
     for name, value in swimmer.energy(t).items():
         setattr(out["energy"], name, float(value))
     return out

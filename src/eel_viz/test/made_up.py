@@ -121,6 +121,10 @@ class Swimmer:
             "nose_force": np.array([0.1, 0.0, 0.0]) * ramp,
         }
 
+    def water(self, t: float) -> np.ndarray:
+        """Velocities at the backbone's points."""
+        return np.stack([0.1 * np.sin(self.x - t), 0.05 * np.cos(self.x + t), 0.0 * self.x], axis=1)
+
     def energy(self, t: float) -> dict:
         ramp = min(t, 1.0) ** 2
         actuator = ramp * (1.1 + np.sin(4 * np.pi * t))

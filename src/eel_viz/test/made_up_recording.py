@@ -33,6 +33,7 @@ def sample(swimmer: made_up.Swimmer, stamp: int) -> dict:
                 wake=load["wake_momentum_rate"],
             ),
         ),
+        "flow_vectors": (swimmer.backbone(t)["position"], swimmer.water(t)),
         "energy": (swimmer.energy(t),),
     }
 

@@ -306,7 +306,14 @@ def test_nothing_is_shown_that_no_test_compares_with_the_messages(made):
     compared = {*TIME_SERIES, *NUMBERS, entities.BACKBONE, entities.SKIN, entities.HEAD, entities.TAIL, entities.FOLLOW}
     compared |= {entities.TRACK, entities.STROBES, entities.TRAIL, entities.HEADING, entities.SPEED_NOTE}
     compared |= {entities.TORQUE_NOTE, *(f"{note}/words" for note in (entities.SPEED_NOTE, entities.TORQUE_NOTE))}
-    compared |= {entities.LOAD, entities.LOAD_ENDS, entities.WAKE, entities.WAKE_LEGEND, entities.HEAT_MAP_IMAGE}
+    compared |= {
+        entities.FLOW,
+        entities.LOAD,
+        entities.LOAD_ENDS,
+        entities.WAKE,
+        entities.WAKE_LEGEND,
+        entities.HEAT_MAP_IMAGE,
+    }
     compared |= {f"{root}/{part}" for root in plots for part in (entities.CURVES, entities.ENVELOPE, entities.TICKS)}
     compared |= {
         f"{root}/{part}" for root in (entities.WATER, entities.PATH_WATER) for part in (GRID, LABELS, WALLS, FLOOR)
@@ -333,6 +340,17 @@ def test_arrows_are_the_load_in_the_world(record_made_up):
         both = world_from_section(backbone.orientation[[0, -1]], np.stack([load.nose, load.tail]))
         np.testing.assert_allclose(ends["vectors"][k], 2.0 * both, atol=SINGLE)
         np.testing.assert_allclose(ends["origins"][k], backbone.position[[0, -1]], atol=SINGLE)
+
+
+def test_arrows_of_the_water_are_its_velocity_and_the_fastest_so_far_has_a_fixed_length(record_made_up):
+    path, samples = record_made_up(0.4, 100.0)
+    stamps, arrows, fastest = drawn_stamps(samples), read(path, entities.FLOW), 0.0
+    np.testing.assert_array_equal(arrows.stamps, stamps)
+    for k, stamp in enumerate(stamps):
+        position, velocity = samples[stamp]["flow_vectors"]
+        fastest = max(fastest, np.linalg.norm(velocity, axis=1).max())
+        np.testing.assert_allclose(arrows["origins"][k], position, atol=SINGLE)
+        np.testing.assert_allclose(arrows["vectors"][k], 0.16 / fastest * velocity, atol=SINGLE)
 
 
 def test_the_wake_shows_what_the_tail_gave_and_fades(record_made_up):

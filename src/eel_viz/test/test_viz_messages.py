@@ -30,6 +30,7 @@ READERS = {
     "curvature": reading.read_curvature,
     "internal_wrench": reading.read_wrench,
     "hydrodynamic_load": reading.read_load,
+    "flow_vectors": reading.read_flow,
     "energy": reading.read_energy,
     "body": reading.read_body,
 }
@@ -107,6 +108,9 @@ BAD = [
     ("hydrodynamic_load", "resistive_2[5]", math.nan, "resistive_2"),
     ("hydrodynamic_load", "tail_force.x", math.nan, "tail_force"),
     ("hydrodynamic_load", "wake_momentum_rate.y", math.nan, "wake_momentum_rate"),
+    ("flow_vectors", "velocity[4]", math.nan, "velocity"),
+    ("flow_vectors", "velocity", [0.0] * 3, "velocity"),
+    ("flow_vectors", "position", [0.0] * 4, "position"),
     ("energy", "residual", math.nan, "residual"),
     ("body", "half_width[3]", -0.01, "half_width"),
     ("body", "half_height[3]", math.nan, "half_height"),

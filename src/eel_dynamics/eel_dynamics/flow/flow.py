@@ -75,13 +75,18 @@ class Flow:
             raise ValueError(f"places must be finite, of shape (n, 3), got {shown(x.shape)}")
         if not is_finite(time):
             raise ValueError(f"time must be finite, got {shown(time)} s")
-        rows = np.zeros((*x.shape[:-1], ROWS))
-        rows[..., :3] = x
-        core_flow(self, False).at(float(time), rows)
+        rows = self.rows_at(x, float(time))
         for place in rows[np.isnan(rows[..., 3]), :3]:
             if found := self.outside(time, place):
                 raise ValueError(f"places must lie in the grid of the flow, {found[0]}, got {shown(place.tolist())}")
         return FlowSample(rows[..., 3:6], rows[..., 6:9], rows[..., 9:].reshape(*x.shape, 3))
+
+    def rows_at(self, places: np.ndarray, time: float) -> np.ndarray:
+        """(..., 18): place, velocity, rate and Jacobian, at `places` (..., 3) [m]; NaN where they are not known."""
+        rows = np.zeros((*places.shape[:-1], ROWS))
+        rows[..., :3] = places
+        core_flow(self, False).at(time, rows)
+        return rows
 
     def __add__(self, other: "Flow") -> "Flow":
         if not isinstance(other, Flow):

@@ -30,6 +30,7 @@ from tf2_msgs.msg import TFMessage
 from eel_dynamics.accuracy.error_estimate import HeadErrors
 from eel_dynamics.analysis.actuators import Joints
 from eel_dynamics.curvature.curvature_samples import LateSample, check_points
+from eel_dynamics.flow.lattice import lattice_around, velocities_at
 from eel_dynamics.model.axes import with_section_axes
 from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
 from eel_dynamics.runs.exchange.messages_of_run import outline
@@ -76,6 +77,11 @@ class SampleMessages:
         for message, frame, _ in topics.values():
             message.header.frame_id = frame
             _lengthen(message, np.asarray(x, dtype=float))
+        if (flow := simulation.flow) is not None:
+            zero = array.array("d", bytes(8 * lattice_around(np.zeros(3), simulation.body.length, flow).size))
+            vectors = msg.FlowVectors(position=zero, velocity=zero)
+            vectors.header.frame_id = world
+            topics["flow_vectors"] = vectors, world, self._fill_vectors
         stations = len(x) if parameters.publish_tf_stations else 0
         children = [head, *(f"{section}_{k}" for k in range(stations))]
         transforms = [TransformStamped(child_frame_id=child) for child in children]
@@ -186,6 +192,13 @@ class SampleMessages:
 
     def _fill_flow(self, numbers: Numbers, snapshot: Snapshot) -> None:
         numbers["vector"][:] = self._simulation.water_at(self._head[POSITION])
+
+    def _fill_vectors(self, numbers: Numbers, snapshot: Snapshot) -> None:
+        simulation, flow = self._simulation, self._simulation.flow
+        assert flow is not None
+        points = lattice_around(snapshot.backbone.mean(axis=0), simulation.body.length, flow)
+        velocity = velocities_at(flow, points, simulation.time) + simulation.setup.current
+        numbers["position"][:], numbers["velocity"][:] = points.ravel(), velocity.ravel()
 
     def _fill_joints(self, numbers: Numbers, snapshot: Snapshot) -> None:
         for axis, place, joints in self._joints:

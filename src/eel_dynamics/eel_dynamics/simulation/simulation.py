@@ -245,8 +245,13 @@ class Simulation:
 
     def water_at(self, place: ArrayLike) -> np.ndarray:
         """Velocity (3,) [m/s], world, that the water has at a `place` (3,) [m] at present, without the swimmer."""
-        flow = self._march.setup.flow
-        return self._setup.current if flow is None else self._setup.current + flow.sample(place, self.time).velocity
+        u = None if self.flow is None else self.flow.sample(place, self.time).velocity
+        return self._setup.current if u is None else self._setup.current + u
+
+    @property
+    def flow(self) -> Flow | None:
+        """How the water moves at present, beside the scene's current."""
+        return self._march.setup.flow
 
     def copy_with(self, accuracy: Accuracy) -> "Simulation":
         """A copy in the present state that continues with the settings `accuracy`."""

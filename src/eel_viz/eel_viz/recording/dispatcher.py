@@ -33,6 +33,7 @@ READERS: dict[str, Callable[[Any], tuple[Any, ...]]] = {
     "curvature": lambda message: (messages.read_curvature(message),),
     "internal_wrench": lambda message: (messages.read_wrench(message),),
     "hydrodynamic_load": lambda message: (messages.read_load(message),),
+    "flow_vectors": lambda message: messages.read_flow(message),
     "energy": lambda message: (messages.read_energy(message),),
     "diagnostics": lambda message: (messages.read_diagnostics(message),),
 }

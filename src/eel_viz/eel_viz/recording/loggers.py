@@ -196,6 +196,11 @@ class Loggers:
         if self._due("arrows", stamp, self._drawing_period):
             self._scene.load(stamp, load)
 
+    def flow_vectors(self, stamp: int, position: np.ndarray, velocity: np.ndarray) -> None:
+        """Log how the water moves around the swimmer."""
+        if self._due("flow", stamp, self._drawing_period):
+            self._scene.flow(stamp, position, velocity)
+
     def energy(self, stamp: int, energy: dict[str, float]) -> None:
         """Log the terms of the energy ledger [W], [J]."""
         if self._due("energy", stamp, self._number_period):

@@ -15,6 +15,7 @@ ACTUATORS = (236, 84, 72)  # red: their power
 FORCE = (240, 218, 66)  # yellow: of the water along the body, and its power
 ENDS = (222, 80, 150)  # magenta: of the water at nose and tail, and its power
 WAKE = (150, 120, 235)  # violet: what the tail leaves in it, and its power
+FLOW = (112, 190, 216)  # pale blue: of the water without the swimmer
 PATH = (150, 172, 192)  # blue-grey: of the head
 COURSE = (150, 232, 196)  # mint: way points of a goal
 OTHER = (244, 244, 240)  # white: the run that is laid over this one

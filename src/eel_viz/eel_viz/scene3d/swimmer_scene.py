@@ -18,6 +18,7 @@ from eel_viz.scene3d.track import Strobes, Track
 from eel_viz.scene3d.water import WaterBox
 
 AXES_LENGTH = 0.12  # m
+LONGEST = 0.16  # m: arrow of the water's velocity
 SHADOW_POINTS = 24
 BEHIND = 0.22  # of the distance from head to tail: how much of the wake is in the picture
 PATH_WATER_PERIOD = 400_000_000  # ns: its frame changes slowly
@@ -30,7 +31,7 @@ class SwimmerScene:
         self._stream = stream
         self._skin: Skin | None = None
         self._torque_limit = 0.0  # N m: of the colours in the legend
-        self._loaded = False
+        self._loaded, self._fastest = False, 0.0  # m/s: of the water so far
         self._frame, self._path_frame = FollowFrame(), PathFrame()
         self._water, self._path_water = (WaterBox(stream, root) for root in (entities.WATER, entities.PATH_WATER))
         self._path_water_stamp: int | None = None  # ns
@@ -45,6 +46,7 @@ class SwimmerScene:
         stream.log_static(f"{entities.WORLD}/frames", world)
         head = rr.Transform3D(parent_frame=f"tf#{entities.HEAD}", child_frame=entities.HEAD_FRAME)
         stream.log_static(f"{entities.HEAD}/frame", head)
+        stream.log_static(entities.FLOW, rr.Arrows3D.from_fields(colors=[colours.FLOW], radii=[0.0018]))
         for path in (entities.HEAD, entities.TAIL):
             stream.log_static(path, rr.TransformAxes3D(AXES_LENGTH))
 
@@ -119,6 +121,12 @@ class SwimmerScene:
         if self._skin is not None:
             shades = self._skin.coloured(x, torque, limit)
             self._stream.add_row(stamp, entities.SKIN, rr.Mesh3D, vertex_colors=shades)
+
+    def flow(self, stamp: int, position: np.ndarray, velocity: np.ndarray) -> None:
+        """Draw the water's velocities (n, 3) [m/s] at points (n, 3) [m] as arrows; the longest so far is `LONGEST`."""
+        self._fastest = max(self._fastest, float(np.linalg.norm(velocity, axis=1).max(initial=0.0)))
+        vectors = (LONGEST / max(self._fastest, 1e-9) * velocity).astype(np.float32)
+        self._stream.add_row(stamp, entities.FLOW, rr.Arrows3D, origins=position.astype(np.float32), vectors=vectors)
 
     def speed(self, speed: float) -> None:
         """Take the speed of the head [m/s], for the words beside its arrow."""

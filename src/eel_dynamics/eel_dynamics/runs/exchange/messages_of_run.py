@@ -7,6 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 from eel_base.topics import ENERGY_FIELDS
 
+from eel_dynamics.flow.lattice import lattice_around, velocities_at
+
 SECOND = 1_000_000_000  # ns
 
 
@@ -78,6 +80,10 @@ def _sample(run, k: int) -> dict[str, dict]:
         }
         if run.wake_momentum_rate is not None:  # a file of an older version has none
             found["hydrodynamic_load"]["wake_momentum_rate"] = _named("xyz", run.wake_momentum_rate[k])
+    if run.flow is not None:
+        points = lattice_around(run.backbone[k].mean(axis=0), run.body.length, run.flow)
+        velocity = velocities_at(run.flow, points, run.time[k]) + run.scene.current
+        found["flow_vectors"] = {"position": points.ravel(), "velocity": velocity.ravel()}
     if run.energy is not None:
         found["energy"] = {name: float(run.energy[name][k]) for name in ENERGY_FIELDS}
     return found
