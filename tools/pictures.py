@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The pictures of the visualiser in docs/images, and a film of the swimmer: `make pictures`.
+"""The pictures of the visualiser in docs/images, and films of the swimmer and of a course: `make pictures`.
 
 What the node `markers` publishes is drawn as RViz would draw it: the skin is shaded, arrows keep their colours, the
 midline is black; one square of the grid is 0.1 m. Then come one picture for each arrangement, and the film: the falling
@@ -11,14 +11,20 @@ import io
 import sys
 import tempfile
 from pathlib import Path
+from types import SimpleNamespace as NS
 from typing import Any
 
 import numpy as np
 from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
+from eel_gaits.pilot.goals import path
+from eel_gaits.pilot.pilot import Pilot
+from eel_gym.episode_recording import STACKED
+from eel_studies.pilot.closed_loop import STEP, swim_with
 from eel_viz.messages import read_backbone, read_body, read_load, read_wrench
 from eel_viz.pictures.drawing import drawn
 from eel_viz.pictures.film import film
 from eel_viz.pictures.render import frames, times
+from eel_viz.recording.library import to_rerun
 from eel_viz.ros.marker_messages import ForceMarkers, SkinMarker, midline
 from eel_viz.settings import BLUEPRINTS, MarkerSettings
 from eel_viz.viewer import CannotRender
@@ -29,8 +35,8 @@ from PIL import Image
 from std_msgs.msg import Header
 from visualization_msgs.msg import Marker
 
-from eel_dynamics import simulate
-from eel_gaits import falling
+from eel_dynamics import Run, Scene, Simulation, simulate
+from eel_gaits import Law, falling
 
 FOLDER = Path(__file__).resolve().parent.parent / "docs" / "images"
 MOMENT = 8.3  # s: a strong bend
@@ -38,6 +44,8 @@ SIZE, BAR = (1280, 720), 36  # pixels: window, and the empty bar at its top
 COLOURS = 256
 FILM, FILM_SIZE, FPS, QUALITY = "falling.webp", (800, 450), 10.0, 36
 FILMED = (4.0, 9.9)  # s: start and end
+COURSE_FILM, COURSE_SIZE, COURSE_FPS, COURSE_SPEED = "pilot.webp", (640, 360), 7.0, 3.0  # the last: of the film's time
+COURSE, COURSE_START, COURSE_END = [(4.0, 0.0, 0.0), (7.0, 2.0, -0.4), (10.0, 1.5, 0.0)], 4.0, 23.0  # m; s
 SQUARE, BACKGROUND = 0.1, "#303030"  # m; RViz's own colour
 SIDES, PARTS, HEAD = 8, 8, 0.23  # of an arrow: sides, parts of its shaft, RViz's length of its head by its own
 
@@ -56,17 +64,54 @@ def main() -> int:
             with drawn(recording, size=SIZE) as drawing:
                 for name in BLUEPRINTS:
                     drawing.arrange(name)
-                    path = keep(drawing.png(MOMENT), name)
-                    tell(path)
+                    tell(keep(drawing.png(MOMENT), name))
             with drawn(recording, size=FILM_SIZE, bare=True) as drawing:
                 at = times(drawing, fps=FPS, start=FILMED[0], end=FILMED[1], speed=1.0)
                 frames(drawing, Path(folder), at)
             film(folder, len(at), FOLDER / FILM, fps=FPS, quality=QUALITY)
             tell(FOLDER / FILM)
+            draw_course(Path(folder))
+            tell(FOLDER / COURSE_FILM)
         except CannotRender as reason:
             print(f"pictures: {reason}", file=sys.stderr)
             return 3
     return 0
+
+
+def draw_course(folder: Path) -> None:
+    """The film of a swim past way points, by the pilot; `folder` takes the recording and the pictures."""
+    pilot, snapshots = Pilot(), []
+    simulations: list[Simulation] = []
+    pilot.follow(path(COURSE, 0.5, pilot.settings.limits))
+
+    def observe(simulation: Simulation) -> None:
+        simulations[:] = [simulation]
+        if round(simulation.time / STEP) % 2 == 0:
+            snapshots.append(simulation.observe())
+
+    swim_with(pilot, COURSE_END, scene=Scene(ledger=False), stations=51, each=observe)
+    columns: dict[str, Any] = {name: np.array([getattr(each, name) for each in snapshots]) for name in STACKED}
+    setup = simulations[0].setup
+    swum = Run(
+        law=Law(name="pilot"),
+        body=setup.body,
+        scene=setup.scene,
+        accuracy=simulations[0].accuracy,
+        x=setup.x,
+        energy=None,
+        steps=0,
+        evaluations=0,
+        nodes=0,
+        **columns,
+    )
+    points = [NS(pose=NS(position=NS(x=x, y=y, z=z))) for x, y, z in [(0.0, 0.0, 0.0), *COURSE]]
+    messages = [("goal", NS(poses=points)), *messages_of_run(swum)]
+    recording = folder / "course.rrd"
+    to_rerun(recording, [messages], ["pilot"])
+    with drawn(recording, size=COURSE_SIZE, bare=True) as drawing:
+        at = times(drawing, fps=COURSE_FPS, start=COURSE_START, end=COURSE_END, speed=COURSE_SPEED)
+        frames(drawing, folder, at)
+    film(folder, len(at), FOLDER / COURSE_FILM, fps=COURSE_FPS, quality=QUALITY)
 
 
 def tell(path: Path) -> None:

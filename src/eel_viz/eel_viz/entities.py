@@ -33,6 +33,7 @@ STROBES = "/world/strobes"  # the midline, once a second
 COURSE = "/world/course/legs"  # between the way points of a goal
 TUBE = "/world/course/tube"  # about the legs, as wide as the spheres
 WAY_POINTS = "/world/course/points"  # spheres within which they count as reached
+NOTES = "/world/notes"
 HEADING = "/world/notes/heading"  # an arrow ahead of the head
 SPEED_NOTE = "/world/notes/speed"  # words beside it
 TORQUE_NOTE = "/world/notes/torque"  # words at the place of the greatest C3

@@ -44,7 +44,7 @@ class Notes:
             begin, end = (backbone.position[0] + share * length / speed * velocity for share in AHEAD)
             ends = {"origins": begin[None].astype(np.float32), "vectors": (end - begin)[None].astype(np.float32)}
             self._stream.add_row(stamp, entities.HEADING, rr.Arrows3D, **ends)
-            self._write(stamp, entities.SPEED_NOTE, f"{self.speed:.2f} m/s", (begin + end) / 2, frame, BESIDE)
+            self._write(stamp, entities.SPEED_NOTE, f"{self.speed:.2f} m/s", end, frame, BESIDE)
         if self.peak is not None and self.peak[1] > 0.0:
             x, torque = self.peak
             place = np.array([np.interp(x, backbone.x, column) for column in backbone.position.T])

@@ -56,7 +56,7 @@ class Track:
         self._stream = stream
         self._places = RecentRows(3)  # m
         self._ages = _ages() * 1e9  # ns, (PIECES, POINTS), from the present backwards
-        stream.log_line_style(entities.TRACK, colours.dim(colours.PATH), width=0.8)
+        stream.log_line_style(entities.TRACK, colours.dim(colours.PATH, 0.8), width=1.0)
         left = 1.0 - np.arange(PIECES) / PIECES  # of the colour
         stream.log_line_style(entities.TRAIL, colours.faded(colours.PATH, left), width=0.5 + 1.1 * left)
 
@@ -98,7 +98,7 @@ class Strobes:
     def __init__(self, stream: BatchedStream) -> None:
         self._stream = stream
         self._last: int | None = None  # number of the last strobe
-        stream.log_line_style(entities.STROBES, colours.dim(colours.LABEL), width=0.6)
+        stream.log_line_style(entities.STROBES, colours.dim(colours.LABEL, 0.65), width=0.8)
 
     def draw(self, stamp: int, midline: np.ndarray) -> None:
         """Draw `midline`, (M, 3) [m] in the world, if it is the first at or after a strobe's time; stamp [ns]."""

@@ -97,7 +97,7 @@ def compare(look: Look) -> rrb.Container:
             following_view(look, both=True),
             rrb.Horizontal(
                 series_view(look, "Heads apart [m]", entities.DISTANCE),
-                series_view(look, "Speed of both heads [m/s]: this grey, the other white", *speeds),
+                series_view(look, "Speeds [m/s]: this grey, other white", *speeds),
             ),
             row_shares=[1.9, 1.0],
         ),

@@ -53,7 +53,7 @@ def path_view(look: Look) -> rrb.Spatial3DView:
     return _three_dimensions(
         "Path so far",
         entities.WHOLE_PATH,
-        left_out=(entities.WATER, entities.BOTH_WATER, entities.LEGEND, entities.OTHER),
+        left_out=(entities.WATER, entities.BOTH_WATER, entities.LEGEND, entities.OTHER, entities.NOTES),
         hidden=(*LOADS, *WAKE, *look.hidden),
         with_past=(entities.TRACK, entities.STROBES),
     )
