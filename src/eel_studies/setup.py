@@ -47,6 +47,7 @@ setup(
             "midlines = eel_studies.midlines.command",
             "life = eel_studies.life.command",
             "replay-joints = eel_studies.replay.command",
+            "laws = eel_studies.laws.command",
             "figures = eel_studies.figures.command",
         ],
     },

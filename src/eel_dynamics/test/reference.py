@@ -237,7 +237,13 @@ class Reference:
         a, b = self.body.half_height(x), self.body.half_width(x)
         perimeter = np.pi * (1.5 * (a + b) - np.sqrt(a * b)) * (0.5 if settings.perimeter == "printed" else 1.0)
         square = eta * np.abs(eta)
-        friction = skin_friction(np.abs(eta[:, 3]) * x / settings.viscosity, settings.friction)
+        if settings.friction == "taylor":  # c_f by the squares of the plate's and the oblique cylinder's
+            ahead, across = np.abs(eta[:, 3]), np.hypot(eta[:, 4], eta[:, 5])
+            rub = (0.664 * perimeter) ** 2 * settings.viscosity / x * ahead
+            rub += 5.4**2 * settings.viscosity * perimeter / np.pi * across
+            friction = np.sqrt(rub) / (perimeter * np.maximum(ahead, 1e-300))
+        else:
+            friction = skin_friction(np.abs(eta[:, 3]) * x / settings.viscosity, settings.friction)
         factors = -0.5 * self.water * settings.resistive
         roll = DRAG_ROLL * np.pi * (a**2 - b**2) ** 2 * square[:, 0]
         forces = friction * perimeter, 2 * DRAG_LATERAL * a, 2 * DRAG_VERTICAL * b

@@ -51,6 +51,7 @@ SMOOTH_SCENES = [
 DRAG_SCENES = [
     ({"friction": "laminar"}, KINKS),
     ({"friction": "blended", "perimeter": "printed"}, KINKS),
+    ({"friction": "taylor"}, KINKS),
     ({"friction": "none", "current": (0.3, -0.2, 0.1)}, KINKS),
     ({"friction": "laminar", "wake": False, "tail_pressure": "distributed"}, KINKS),
     ({"friction": "laminar", "viscosity": 1e-4, "reactive": False}, KINKS),

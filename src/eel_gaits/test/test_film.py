@@ -231,3 +231,23 @@ def test_the_figures_of_a_swimmer_are_those_of_its_wave():
     assert found.wavelength * found.length == pytest.approx(0.6, rel=4e-2)  # along the arc, which is 2 % longer
     assert found.slip == pytest.approx(0.4 * 0.5 / 0.6, rel=4e-2)
     assert found.strouhal == pytest.approx(0.1 / 0.5 / 0.4, rel=2e-2)
+
+
+@pytest.mark.parametrize("form", ["table", "fixed"])
+def test_an_h5_file_of_deeplabcut_swims(tmp_path, form):
+    pandas = pytest.importorskip("pandas")
+    pytest.importorskip("tables")
+    points = swimming(noise=1e-3)
+    heads, values = deeplabcut_rows({"": 1e3 * points})
+    columns = pandas.MultiIndex.from_arrays([row[1:] for row in heads], names=[row[0] for row in heads])
+    path = tmp_path / "fishDLC_resnet50.h5"
+    pandas.DataFrame(values, columns=columns).to_hdf(path, key="df_with_missing", format=form, mode="w")
+    found = read_film(path, units="px", scale=1e-3, rate=50.0)
+    assert np.allclose(found.points, points, atol=1e-9) and np.allclose(np.diff(found.time), 0.02)
+
+
+def test_an_h5_file_that_is_none_is_told(tmp_path):
+    pytest.importorskip("tables")
+    (tmp_path / "fish.h5").write_bytes(b"no HDF")
+    with pytest.raises(ValueError, match=r"fish.h5.*cannot be read as HDF5"):
+        read_film(tmp_path / "fish.h5", units="px", scale=1.0, rate=50.0)

@@ -84,7 +84,8 @@ void set_load_weights(const Swimmer& swimmer, Workspace<M>& work)
 {
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
         const Lanes weight = swimmer.grid.weight[k];
-        const AxialFriction friction = axial_friction(swimmer.sections.drag(k), swimmer.friction, work.speed[axial][k]);
+        const AxialFriction friction =
+            axial_friction(swimmer.sections.drag(k), swimmer.friction, speeds_from(work, width * k));
         work.friction_laminar.store(k, friction.laminar);
         work.friction_excess.store(k, friction.excess);
         work.turbulent_share.store(k, friction.turbulent_share);

@@ -155,7 +155,7 @@ class Accuracy:
             return self
         decades = math.log10(1.0 / self.target)
         points = POINTS_PER_DECADE * decades
-        if self.refinable and scene.friction != "blended":  # which needs points where it changes its law
+        if self.refinable and scene.friction not in ("blended", "taylor"):  # which are not analytic along the body
             points = min(points, COARSE_POINTS[0] * decades + COARSE_POINTS[1])
         resolution = max(LEAST_POINTS, points)
         if self.fixed is not None:

@@ -30,6 +30,7 @@ GRAVITY = 9.80665  # m/s^2, standard
 NEUTRAL = 1e-9  # of the mass: greater differences from the displaced water are a net weight
 LEAST = 1e-9  # of the greatest drag by length: no drag at a node is smaller
 PLACES = 8  # by node of the largest panel, at which integrals up to a kink are tabulated
+TAYLOR = 5.4  # of the friction along a cylinder in oblique flow: eel_core/model/friction.hpp
 CRITICAL_REYNOLDS = 8.0e4  # Reynolds number at which the printed friction law jumps from laminar to turbulent
 
 
@@ -61,7 +62,9 @@ class SectionData(NamedTuple):
     drag3: np.ndarray  # kg/m^2, 1/2 rho_f k3
     drag_roll: np.ndarray  # kg, 1/2 rho_f k4
     laminar: np.ndarray  # friction force per length = -laminar |V1|^(1/2) V1
-    turbulent: np.ndarray  # friction force per length = -turbulent (Re/8e4)^(4/5) V1
+    turbulent: (
+        np.ndarray
+    )  # friction force per length = -turbulent (Re/8e4)^(4/5) V1; by Taylor -turbulent |Vn|^(1/2) V1
     by_critical_speed: np.ndarray  # s/m, Re/8e4 per |V1|
 
     def of_water(self) -> "SectionData":
@@ -223,6 +226,10 @@ def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionData:
     critical_speed = CRITICAL_REYNOLDS * scene.viscosity / behind  # m/s, |V1| at which Re = 8e4
     with np.errstate(divide="ignore"):
         by_critical_speed = np.where(critical_speed > 0.0, 1.0 / critical_speed, 0.0)
+    if scene.friction == "taylor":
+        oblique = TAYLOR * np.sqrt(scene.viscosity * perimeter / np.pi)
+    else:
+        oblique = perimeter * 0.059 * (scene.viscosity / behind) * CRITICAL_REYNOLDS**0.8
     table = SectionData(
         mass=mass,
         added2=added2,
@@ -238,7 +245,7 @@ def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionData:
         drag3=across * 2.0 * body.vertical_drag * b,
         drag_roll=across * body.roll_drag * np.pi * (a**2 - b**2) ** 2,
         laminar=rubbed * perimeter * 0.664 * np.sqrt(scene.viscosity / behind),
-        turbulent=rubbed * perimeter * 0.059 * (scene.viscosity / behind) * CRITICAL_REYNOLDS**0.8,
+        turbulent=rubbed * oblique,
         by_critical_speed=by_critical_speed,
     )
     return SectionData(*(np.ascontiguousarray(row, dtype=float) for row in table))

@@ -60,7 +60,7 @@ def with_error_estimate(swim: Any, request: Any) -> Any:
         error = ErrorEstimate(np.inf, None) if companion is None else relative_errors(swim.run, companion.run)
         if refinement and companion is not None:  # it falls no faster than this: else the two agree by chance
             share = swim.run.accuracy.tolerance / companion.run.accuracy.tolerance
-            if request.setup.scene.friction == "blended":
+            if request.setup.scene.friction in ("blended", "taylor"):
                 share = max(share, (companion.run.nodes / swim.run.nodes) ** BLENDED_ORDER)
             error = error.at_least(share, companion.run.error_estimate)
         others += [] if companion is None else [companion.run]

@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from eel_base.files.input_file import InputFile, Misplaced
-from eel_base.wording import shown
+from eel_base.wording import one_line, shown
 
 from eel_gaits.sources.tables import LARGEST, MOST_BYTES, MOST_NUMBERS, lines_of
 
@@ -187,7 +187,12 @@ def _of_hdf(path: Path) -> Tracks:
         raise ValueError(
             "an .h5 file of DeepLabCut needs pandas and PyTables (pip install pandas tables); its .csv needs neither"
         ) from None
-    return tracks_of_frame(pandas.read_hdf(path))
+    with InputFile(path, MOST_BYTES):
+        pass
+    try:
+        return tracks_of_frame(pandas.read_hdf(path))
+    except Exception as error:  # PyTables' own, KeyError, and what its pickles raise
+        raise ValueError(f"it cannot be read as HDF5 of DeepLabCut: {one_line(error)}") from None
 
 
 def tracks_of_frame(frame: Any) -> Tracks:

@@ -2,7 +2,7 @@
 """`eel replay-joints`: swim by the log of a robot's joints: path, speed and torques, with bands.
 
 eel replay-joints log.csv --links 0.18x9 --section 0.055,0.05 --mass 7.2
-eel replay-joints amphibot.csv --columns 8-13 --units deg --links 0.097x7 --section 0.0285,0.0165 --speed 0.58
+eel replay-joints amphibot.csv --columns 8-13 --units deg --links 0.094x7 --section 0.0275,0.0165 --seen leds.csv
 eel replay-joints bag/ --topic joint_states --body robot.csv --links 0.2,0.1,0.1,0.2 --out path.csv --out path.png
 """
 
@@ -22,8 +22,9 @@ from eel_dynamics.runs.exchange.eel_viz_functions import joints_of_bag
 from eel_dynamics.runs.storage.tables import write_columns
 from eel_gaits.sources.joint_log import JointLog, joint_log, law_of_links, read_joint_log
 
-from eel_studies.pictures import BLUE, PALE_BLUE, Figure, legend_above, plain, write_picture
+from eel_studies.pictures import write_picture
 from eel_studies.replay.band import UNCERTAIN, Replayed, replay, robot_body, with_factors
+from eel_studies.replay.drawing import Seen, draw
 from eel_studies.table import Table
 
 NAME = "eel replay-joints"
@@ -38,6 +39,9 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _replay(options: argparse.Namespace) -> int:
     outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
+    seen = None if options.seen is None else Seen.of_file(Path(options.seen))
+    if seen and options.speed is not None:
+        raise ValueError("--seen gives the measured speed: leave out --speed")
     log = _log(options)
     links = _links(options.links, log.angles.shape[1])
     body = _body(options, float(links.sum()))
@@ -50,14 +54,15 @@ def _replay(options: argparse.Namespace) -> int:
     )  # fmt: skip
     for note in (law.about, *log.notes, _about(body, links)):
         print(note)
-    print(table_of(first, drawn, options.speed).text())
+    print(table_of(first, drawn, seen.speed if seen else options.speed).text())
     if alone:
         print(effects_of(first, alone).text())
+    columns = columns_of(first, drawn)
     for out in outs:
         if out.suffix == ".csv":
-            write_columns(columns_of(first, drawn), out)
+            write_columns(columns, out)
         else:
-            write_picture(lambda figure: draw(figure, first, drawn), (6.8, 6.0), out)
+            write_picture(lambda figure: draw(figure, first, drawn, columns, seen), (6.8, 7.0), out)
         print(f"written to {written_as(out)}")
     return 0
 
@@ -167,24 +172,6 @@ def _series(swim: Replayed) -> dict[str, np.ndarray]:
     return found | {f"torque_{place + 1}": each for place, each in enumerate(swim.torque.T)}
 
 
-def draw(figure: Figure, first: Replayed, drawn: list[Replayed]) -> None:
-    """Path of the centre of mass, speed, and the torque of the middle joint, with the band."""
-    panels = figure.subplots(3, 1, height_ratios=(1.2, 1.0, 1.0))
-    columns = columns_of(first, drawn)
-    for each in drawn:
-        panels[0].plot(*each.run.center_of_mass[:, :2].T, color=PALE_BLUE, linewidth=0.8)
-    panels[0].plot(*first.run.center_of_mass[:, :2].T, color=BLUE, label="computed")
-    panels[0].set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
-    middle = f"torque_{len(first.joints) // 2 + 1}"
-    for axes, name, label in ((panels[1], "speed", "speed [m/s]"), (panels[2], middle, f"{middle} [N m]")):
-        low, high = columns[f"{name}_low"], columns[f"{name}_high"]
-        axes.fill_between(columns["time"], low, high, color=PALE_BLUE, label="band")
-        axes.plot(columns["time"], columns[name], color=BLUE, label="computed")
-        axes.set(xlabel="time [s]", ylabel=label)
-        plain(axes)
-    legend_above(figure, 2)
-
-
 def _parser() -> Parser:
     ranges = ", ".join(f"{name}={low:g}:{high:g}" for name, (low, high) in UNCERTAIN.items())
     parser = Parser(
@@ -207,5 +194,8 @@ def _parser() -> Parser:
     add_repeated(parser, "--set", "NAME=VALUE", "a number of the body")
     add_repeated(parser, "--vary", "NAME=LOW:HIGH", f"factors of a number that is uncertain, in place of {ranges}")
     parser.add_argument("--samples", type=int, default=32, metavar="N", help="bodies of the band (32)")
+    parser.add_argument(
+        "--seen", metavar="FILE", help="points that a camera saw: .csv with time_s, x_m, y_m, unordered"
+    )
     parser.add_argument("--speed", type=float, metavar="M/S", help="as measured, to stand beside ours")
     return parser

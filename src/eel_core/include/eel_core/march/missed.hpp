@@ -66,7 +66,8 @@ class MissedWrench {
     {
         for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
             const DragSection<Lanes> rough{0.0, 0.0, 0.0, 1.0, 1.0, swimmer.sections.by_critical_speed[k]};
-            const AxialFriction friction = axial_friction(rough, swimmer.friction, work.speed[axial][k]);
+            const auto v = speeds_from(work, width * k);
+            const AxialFriction friction = axial_friction(rough, swimmer.friction, v);
             const Lanes turned = jumps(swimmer.friction) ? Lanes(1.0) : friction.turbulent_share;
             const Lanes kept = jumps(swimmer.friction) ? Lanes(1.0) : 1.0 - friction.turbulent_share;
             const LoadSigns<Lanes> sign{1.0, 0.0, 1.0, 1.0, 1.0};
@@ -78,6 +79,13 @@ class MissedWrench {
             store(Part::drag2, {1.0, 0.0, 0.0, 0.0, 0.0, 0.0}, 0.0);
             store(Part::drag3, {0.0, 1.0, 0.0, 0.0, 0.0, 0.0}, 0.0);
             store(Part::drag_roll, {0.0, 0.0, 1.0, 0.0, 0.0, 0.0}, 0.0);
+            if (swimmer.friction == Friction::taylor) {  // a root of a sum of squares: its derivatives by both parts
+                const DragSection<Lanes> own = swimmer.sections.drag(k);
+                const Lanes all = axial_friction(own, swimmer.friction, v).laminar + 1e-300;
+                store(Part::laminar, {}, own.laminar * abs(v.x) / all);
+                store(Part::turbulent, {}, own.turbulent * speed_across(v) / all);
+                continue;
+            }
             store(Part::laminar, {}, kept * friction.laminar);
             store(Part::turbulent, {}, turned * (friction.excess + friction.laminar));
         }
@@ -109,7 +117,7 @@ class MissedWrench {
         for (std::size_t k = 0; k < blocks_of(swimmer.stations); ++k) {
             const Frame3<Lanes> there = frame[k];
             const Vector3<Lanes> v = there.local(velocity[k]);
-            const Lanes share = axial_friction(swimmer.at_station.drag(k), swimmer.friction, v.x).turbulent_share;
+            const Lanes share = axial_friction(swimmer.at_station.drag(k), swimmer.friction, v).turbulent_share;
             for (std::size_t part = 0; part < Part::drag2; ++part) factor_[part].store(k, 1.0);
             factor_[Part::drag2].store(k, with_sign_of(1.0, v.y));
             factor_[Part::drag3].store(k, with_sign_of(1.0, v.z));

@@ -267,7 +267,7 @@ class Observer {
             Vector3<Lanes> resistive{};
             if (swimmer_.resistive) {
                 const DragSection<Lanes> drag = swimmer_.at_station.drag(k);
-                const AxialFriction friction = axial_friction(drag, swimmer_.friction, v.x);
+                const AxialFriction friction = axial_friction(drag, swimmer_.friction, v);
                 resistive = local_resistive_load<Space>(drag, friction.laminar, friction.excess,
                                                         friction.turbulent_share, v, turning)
                                 .linear;

@@ -4,6 +4,10 @@
 // A new law is an entry of `Friction` and `friction_names`, and a case of `axial_friction`; `Scene.friction` takes its
 // name. Its coefficients come from `sections_of` in eel_dynamics/model/section_data.py. One that is not analytic along
 // the body, as `blended`, wants more points: `Accuracy.in_scene`, and eel_dynamics/runs/companion.py.
+//
+// `taylor`: flow across a cylinder keeps its boundary layer thin, so that the friction along it is
+// 1/2 rho_f 5.4 (nu d)^(1/2) V1 |Vn|^(1/2), with the diameter d and the speed Vn across (Taylor, Proc. R. Soc. A 214
+// (1952), doi:10.1098/rspa.1952.0159). Where it goes straight the laminar plate's remains: the squares of both add up.
 #pragma once
 
 #include <numbers>
@@ -12,8 +16,8 @@
 
 namespace eel_core {
 
-enum class Friction : std::size_t { printed, laminar, blended };
-inline constexpr std::array friction_names{"printed", "laminar", "blended"};  // as in Python
+enum class Friction : std::size_t { printed, laminar, blended, taylor };
+inline constexpr std::array friction_names{"printed", "laminar", "blended", "taylor"};  // as in Python
 
 // Whether the friction jumps where Re is critical, 8e4; the place of the jump is then integrated exactly
 // (`find_kinks`).
@@ -37,9 +41,20 @@ inline double turbulent_share(double ratio)
     return part - std::sin(turn * part) / turn;
 }
 
-inline AxialFriction axial_friction(const DragSection<Lanes>& section, Friction law, Lanes v1)
+// Speed across the section.
+inline Lanes speed_across(const Vector2<Lanes>& v) { return abs(v.y); }
+inline Lanes speed_across(const Vector3<Lanes>& v) { return sqrt(v.y * v.y + v.z * v.z); }
+
+// By the velocity v of the section through the water, in its axes.
+template <class V>
+AxialFriction axial_friction(const DragSection<Lanes>& section, Friction law, const V& v)
 {
-    const Lanes speed = abs(v1), laminar = section.laminar * sqrt(speed);
+    const Lanes speed = abs(v.x);
+    if (law == Friction::taylor) {
+        const Lanes straight = section.laminar * section.laminar * speed;
+        return {sqrt(straight + section.turbulent * section.turbulent * speed_across(v)), 0.0, 0.0, -1.0};
+    }
+    const Lanes laminar = section.laminar * sqrt(speed);
     if (law == Friction::laminar) return {laminar, 0.0, 0.0, -1.0};
     const Lanes ratio = speed * section.by_critical_speed;
     const Lanes turbulent = section.turbulent * ratio * inverse_fifth_root(ratio + 1e-30);

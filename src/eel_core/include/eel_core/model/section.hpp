@@ -92,7 +92,7 @@ template <Number T>
 struct DragSection {
     T drag2, drag3;        // [kg/m^2], 1/2 rho_f k2 and k3
     T drag_roll;           // [kg], 1/2 rho_f k4
-    T laminar, turbulent;  // friction per V1: laminar |V1|^(1/2), turbulent (Re / 8e4)^(4/5)
+    T laminar, turbulent;  // friction per V1: laminar |V1|^(1/2), turbulent (Re / 8e4)^(4/5), or Taylor's, |Vn|^(1/2)
     T by_critical_speed;   // [s/m], Re / 8e4 per |V1|
 };
 

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`eel laws`: laws of swimming beside our swims: exponents, prefactors, a picture.
+
+eel laws gazzola --out docs/images/law_gazzola.png
+eel laws gazzola --friction taylor
+"""
+
+import argparse
+
+from eel_base.command.command_line import Parser
+from eel_base.command.run_command import checked_out, run_command
+from eel_base.files.output_file import written_as
+from eel_dynamics.model.scene import FRICTION
+from eel_dynamics.runs.command_options import add_options
+
+from eel_studies.laws.laws import LAWS, Result
+from eel_studies.pictures import BLACK, LOOKS, Figure, legend_above, write_picture
+
+NAME = "eel laws"
+SUFFIXES = (".csv", ".png", ".svg", ".pdf")
+SIZE = 5.2, 3.6  # inches
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit status as of `run_command`."""
+    return run_command(_parser(), _hold_against, arguments)
+
+
+def _hold_against(options: argparse.Namespace) -> int:
+    outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
+    if options.friction and options.law != "gazzola":
+        raise ValueError("--friction belongs to gazzola")
+    found = LAWS[options.law](options.friction) if options.friction else LAWS[options.law]()
+    print(found.table.text())
+    for out in outs:
+        if out.suffix == ".csv":
+            found.table.write_csv(out)
+        else:
+            write_picture(lambda figure: draw(figure, found), SIZE, out)
+        print(f"written to {written_as(out)}")
+    return 0
+
+
+def draw(figure: Figure, found: Result) -> None:
+    """The law as lines, our swims as marks."""
+    axes = figure.add_subplot()
+    for place, (name, line) in enumerate(found.theirs.items()):
+        axes.plot(*line.T, color=BLACK, linestyle=("-", (0, (4, 2)), (0, (1, 1)))[place % 3], label=name)
+    for (name, points), (colour, _, mark) in zip(found.ours.items(), LOOKS, strict=False):
+        axes.plot(*points.T, mark, color=colour, label=f"ours, {name}")
+    if found.logarithmic:
+        axes.set(xscale="log", yscale="log")
+        axes.tick_params(which="minor", labelbottom=False)
+    axes.set(xlabel=found.x, ylabel=found.y)
+    axes.grid(alpha=0.3)
+    legend_above(figure, 2)
+
+
+def _parser() -> Parser:
+    parser = Parser(prog=NAME, description="Hold the model against a law of swimming that was found on animals.")
+    parser.add_argument("law", choices=LAWS, help="which one: the first lines of eel_studies/laws/laws.py")
+    parser.add_argument("--friction", choices=FRICTION, help="law of friction in gazzola (blended)")
+    add_options(parser, "--out")
+    return parser
