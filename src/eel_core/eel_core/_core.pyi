@@ -244,7 +244,11 @@ class _Modes(Protocol):
     @property
     def last(self) -> Buffer: ...  # (M,) unsigned 64 bits, the node behind its last
     @property
+    def continuous(self) -> Buffer: ...  # (M,) unsigned 64 bits, 1 where it is one of several on its support
+    @property
     def span(self) -> Buffer: ...  # (M,) integral of the mode's size along the body
+    @property
+    def moment(self) -> Buffer: ...  # (M,) internal torque for a unit of the mode's force
     @property
     def inertia(self) -> Buffer: ...  # (C,) [kg m^2], armature or rotor
     @property

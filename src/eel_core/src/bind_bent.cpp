@@ -23,14 +23,15 @@ std::shared_ptr<const Modes> modes_from(const py::object& m)
 {
     auto modes = std::make_shared<Modes>();
     const auto axis = array_of<std::uint64_t>(m, "axis"), first = array_of<std::uint64_t>(m, "first"),
-               last = array_of<std::uint64_t>(m, "last");
+               last = array_of<std::uint64_t>(m, "last"), continuous = array_of<std::uint64_t>(m, "continuous");
     modes->modes = axis.size();
-    if (first.size() != modes->modes || last.size() != modes->modes)
+    if (first.size() != modes->modes || last.size() != modes->modes || continuous.size() != modes->modes)
         throw py::value_error("modes must have an axis, a first and a last node each");
     for (const std::uint64_t each : axis.span()) modes->axis.push_back(each == 0 ? LawOnGrid::pitch : LawOnGrid::yaw);
     modes->first.assign(first.span().begin(), first.span().end());
     modes->last.assign(last.span().begin(), last.span().end());
-    modes->span = numbers_from(m, "span", modes->modes);
+    modes->continuous.assign(continuous.span().begin(), continuous.span().end());
+    modes->span = numbers_from(m, "span", modes->modes), modes->moment = numbers_from(m, "moment", modes->modes);
     const std::size_t c = modes->coordinates = array_of<double>(m, "inertia").size();
     if (c < modes->modes) throw py::value_error("modes must have an inertia each");
     modes->inertia = numbers_from(m, "inertia", c), modes->rest = numbers_from(m, "rest", c);

@@ -37,6 +37,9 @@ STEPS_ERRORS, SAFE_STEPS_ERRORS = 400.0, 1000.0
 # one or two steps between two jumps, and more with the fifth root of the target. Adams' method, whose steps remember
 # those before, takes 10 to 20.
 CONTROL_STEPS_ERRORS = 300.0
+# The same of a robot's steps, which are of order 3: errors were 0.2 to 6 times the tolerance (18 for a tail with little
+# damping), at any tolerance.
+ROBOT_STEPS, SAFE_ROBOT_STEPS = 10.0, 20.0
 POINTS_PER_DECADE = 8.0  # per body length: one block of nodes, which processors take at once
 COARSE_POINTS = 7.0, -3.0  # per decade, and at a target of one, where these are fewer: for runs that are made finer
 # The pair's output between steps is of order 4 and Adams' is a cubic: below this target its torque needs shorter steps.
@@ -45,6 +48,7 @@ LEAST_POINTS = 4.0  # per body length
 FIXED_STEPS = 12.0  # per period, of the classical method at a target of 1e-2
 BUDGET_TARGETS = tuple(10.0 ** (-0.5 * k) for k in range(2, 19))  # 0.1 to 1e-9, among which a budget of time chooses
 FIXED = "fixed steps"
+ROBOTS = "rosenbrock"  # the method of robots, whatever was asked for
 KINKS = tuple(WATCHED)
 ORDERS = {"adams": (1, 2, 3, 4, 5, 6), "dormand_prince": (5,), "classical": (4,)}
 FINEST_TOLERANCE = 1e-13  # below, round-off
@@ -64,6 +68,11 @@ SPARED = 8.0  # points per length that grow with the waves too, of those that th
 LOOSER, FEWER_POINTS, LONGER_STEPS = 30.0, 0.5, 1.5
 FEW_POINTS, FEWER_OF_FEW = 22.0, 0.6
 FINE, LOOSER_THAN_FINE = 1e-6, 20.0
+# The errors of a robot's steps go with the tolerance itself, so that the distance to a companion of ten times the
+# tolerance is some nine times the error. Three times the error that this gives is a safe estimate.
+ROBOT_LOOSER, ROBOT_SAFETY = 10.0, 3.0
+LEAST_ROBOT_TIGHTER = 1.0 / 4.0
+ORDERS[ROBOTS] = (3,)
 ADAMS_ERROR = 3.0  # some times that of the embedded pair at the same tolerance
 # What a tightened run changes with the ratio r < 1 of the wanted error to the measured one: the tolerance with r^1.2,
 # the points with r^-0.2, the longest steps with r^0.2. Orders 5 to 6 lose r or more in each of them.
@@ -81,7 +90,8 @@ class Accuracy:
         resolution: points per body length, 1 to 1000.
         tolerance: relative error per adaptive step.
         step: [s]; where given, the steps are those of the classical Runge-Kutta method (order 4), of this length.
-        method: "dormand_prince" (order 5) or "adams" (order 1 to 6), or "classical" where the steps are fixed.
+        method: "dormand_prince" (order 5) or "adams" (order 1 to 6), or "classical" where the steps are fixed. Robots
+            have one of their own, "rosenbrock" (order 3), for any of them.
         order: of the method; 5 where none is given ("classical": 4).
         target: the relative error that the settings are for, 1e-10 to 0.1; None where they were given one by one. With
             a target, resolution, tolerance, method and order are chosen for it once the scene is known.
@@ -177,6 +187,20 @@ class Accuracy:
         tolerance = max(FINEST_TOLERANCE, self.target / steps)
         return replace(self.as_it_is(), tolerance=tolerance, method="dormand_prince", order=5)
 
+    def for_robot(self) -> "Accuracy":
+        """These settings in a scene, for the steps of a robot. Steps of one length stay as they are."""
+        if self.method in ("classical", ROBOTS):
+            return self
+        steps = ROBOT_STEPS if self.refinable else SAFE_ROBOT_STEPS
+        tolerance = self.tolerance if self.target is None else max(FINEST_TOLERANCE, self.target / steps)
+        return replace(self, tolerance=tolerance, method=ROBOTS, order=3)
+
+    def share_of_distance(self, companion: "Accuracy") -> float:
+        """Part of the distance to a run with the settings of a `companion` that counts as the error."""
+        if self.method != ROBOTS or companion.tolerance <= self.tolerance:
+            return 1.0
+        return min(1.0, ROBOT_SAFETY / (companion.tolerance / self.tolerance - 1.0))
+
     def as_it_is(self) -> "Accuracy":
         """The same settings without a target. No scene and no motion changes them."""
         return replace(self, target=None)
@@ -184,6 +208,7 @@ class Accuracy:
     def coarser(self) -> "Accuracy":
         """Settings with some ten times the error, for the companion with which a run measures its own error."""
         looser = LOOSER if self.tolerance > FINE else LOOSER_THAN_FINE
+        looser = ROBOT_LOOSER if self.method == ROBOTS else looser
         fewer = FEWER_POINTS if self.resolution >= FEW_POINTS else FEWER_OF_FEW
         return self._changed(looser, fewer, LONGER_STEPS)
 
@@ -197,7 +222,8 @@ class Accuracy:
         """Settings for an error of `ratio` (< 1) times the error with these. These settings suit their companion."""
         ratio = max(ratio, LEAST_TIGHTENED)
         looser, denser, longer = ratio**TIGHTER, ratio**-DENSER, ratio**SHORTER
-        changes = min(looser, LEAST_TIGHTER), max(denser, LEAST_DENSER), min(longer, 1.0 / LONGER_STEPS)
+        least = LEAST_ROBOT_TIGHTER if self.method == ROBOTS else LEAST_TIGHTER
+        changes = min(looser, least), max(denser, LEAST_DENSER), min(longer, 1.0 / LONGER_STEPS)
         return replace(self._changed(*changes), kinks="all")
 
     def with_other_points(self) -> "Accuracy":

@@ -35,6 +35,8 @@ PART_OF_RAMP = 0.125
 
 EVALUATIONS = {"adams": 1, "dormand_prince": 6, "classical": 4}  # in a step: its last is the first of the next
 
+EVALUATIONS["rosenbrock"] = 4  # of robots
+
 
 def check_cost(law: Law, most_evaluations: float):
     """`ValueError` where the period of `law` is too short for `most_evaluations` per simulated second to resolve it."""

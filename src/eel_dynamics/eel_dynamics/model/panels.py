@@ -21,7 +21,8 @@ def panels_of(
 ) -> tuple[Panel, ...]:
     """Panels between the kinks of `body`, the `knots` [m] of a law's splines and the `edges` [m] of a robot's modes.
 
-    Together they have about `resolution` points per body length, and each has three to spare. Where the internal
+    Together they have about `resolution` points per body length, and each has three to spare; two between the edges of
+    modes, where panels are short. Where the internal
     `wrench` is wanted, the first panel has more: the body and its loads go like roots of X there (they weigh little).
     So has the last panel where they do so at the tail.
 
@@ -30,9 +31,9 @@ def panels_of(
     least = CLOSEST * body.length
     kinks = np.array([0.0, *body.panel_ends])
     inner = [knot for knot in knots if np.min(np.abs(kinks - knot)) > least and kinks[1] < knot < body.length]
-    panels, start = [], 0.0
+    panels, start, spare = [], 0.0, 2 if edges else 3
     for end in sorted({*body.panel_ends, *inner, *edges}):
-        points = 3 + nearest(resolution * (end - start) / body.length)
+        points = spare + nearest(resolution * (end - start) / body.length)
         graded = "start" if start == 0.0 else "end" if end == body.length and body.pointed_tail else ""
         if graded:
             points = 1 + (max(points, 3 + nearest(math.sqrt(resolution))) if wrench else points)
@@ -43,14 +44,14 @@ def panels_of(
             panels.append(Panel(start=left, end=right, points=-(-points // parts), graded=kind))
         start = end
     for _ in range(-sum(panel.points for panel in panels) % FILLED):
-        index = min(range(len(panels)), key=lambda k: (round(_next_resolution(panels[k], body.length), 6), k))
+        index = min(range(len(panels)), key=lambda k: (round(_next_resolution(panels[k], body.length, spare), 6), k))
         panels[index] = replace(panels[index], points=panels[index].points + 1)
     return tuple(panels)
 
 
-def _next_resolution(panel: Panel, length: float) -> float:
+def _next_resolution(panel: Panel, length: float, spare: int) -> float:
     """The resolution at which `panel` of a body of `length` [m] would have a further point."""
-    return (panel.points - 2.5 - (1 if panel.graded else 0)) * length / (panel.end - panel.start)
+    return (panel.points - spare + 0.5 - (1 if panel.graded else 0)) * length / (panel.end - panel.start)
 
 
 def nearest(count: float) -> int:

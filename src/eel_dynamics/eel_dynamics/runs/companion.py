@@ -57,7 +57,10 @@ def with_error_estimate(swim: Any, request: Any) -> Any:
     marching = _for_comparison(request)
     companion = _finished(marching, swim.run.accuracy.coarser().by_adams(), swim.run.nodes)
     for refinement in range(MOST_REFINEMENTS + 1):
-        error = ErrorEstimate(np.inf, None) if companion is None else relative_errors(swim.run, companion.run)
+        error = ErrorEstimate(np.inf, None)
+        if companion is not None:
+            error = relative_errors(swim.run, companion.run)
+            error = error.times(swim.run.accuracy.share_of_distance(companion.run.accuracy))
         if refinement and companion is not None:  # it falls no faster than this: else the two agree by chance
             share = swim.run.accuracy.tolerance / companion.run.accuracy.tolerance
             if request.setup.scene.friction in ("blended", "taylor"):

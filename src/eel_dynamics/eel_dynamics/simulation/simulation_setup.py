@@ -178,7 +178,8 @@ class SimulationSetup:
     def settings(self) -> Accuracy:
         """The settings of the accuracy in this scene."""
         assert not isinstance(self.accuracy, Budget)  # `Simulation` has replaced it
-        return self.accuracy.in_scene(self.scene)
+        settings = self.accuracy.in_scene(self.scene)
+        return settings if self.robot is None else settings.for_robot()
 
 
 @lru_cache(maxsize=64)

@@ -74,17 +74,40 @@ class BentBody {
     // Motion and loads of a configured body, from the momenta of the coordinates.
     void move_by_momenta(const double* momenta, const double* x)
     {
+        find_rates_of(momenta);
+        move(x);
+    }
+    // `rate` alone; `move` goes on.
+    void find_rates_of(const double* momenta)
+    {
         const auto whole = components_of(work.momentum);
         for (std::size_t i = 0; i < solution_.size(); ++i)
             solution_[i] = (i < head ? whole[i] : momenta[i - head]) - columns.momentum[i];
         factored_.solve(solution_.data());
         std::copy_n(solution_.begin() + head, rate.size(), rate.begin());
-        move(x);
     }
-    // The same from their rates.
+    // Velocities and loads for the head's part of `solution_` and `rate`.
+    void move(const double* x)
+    {
+        work.twist = Components<Twist<M, double>>::make([&](std::size_t k) { return solution_[k]; });
+        set_velocities(*swimmer_, work.twist, work);
+        for (std::size_t m = 0; m < modes_->modes; ++m) {
+            const Column<M>& own = columns.column[m];
+            for (std::size_t k = own.first_block; k < swimmer_->grid.blocks; ++k) {
+                work.omega.store(k, work.omega[k] + rate[m] * own.omega[k]);
+                work.velocity.store(k, work.velocity[k] + rate[m] * own.velocity[k]);
+            }
+        }
+        find_loads(*swimmer_, work);
+        if (swimmer_->weighs()) set_weight(*swimmer_, 0.0, work);  // its energy is that of what is observed
+        set_mode_loads();
+        set_forces(*modes_, reference, x, rate.data(), forces);
+    }
+
+    // Motion and loads from the rates of the coordinates.
     void move_by_rates(const double* rates, const double* x)
     {
-        std::copy_n(rates, rate.size(), rate.begin());
+        if (rates != rate.data()) std::copy_n(rates, rate.size(), rate.begin());
         auto left = components_of(work.momentum);
         for (std::size_t i = 0; i < head; ++i) {
             left[i] -= columns.momentum[i];
@@ -181,24 +204,6 @@ class BentBody {
     }
 
   private:
-    // Velocities and loads for the head's part of `solution_` and `rate`.
-    void move(const double* x)
-    {
-        work.twist = Components<Twist<M, double>>::make([&](std::size_t k) { return solution_[k]; });
-        set_velocities(*swimmer_, work.twist, work);
-        for (std::size_t m = 0; m < modes_->modes; ++m) {
-            const Column<M>& own = columns.column[m];
-            for (std::size_t k = own.first_block; k < swimmer_->grid.blocks; ++k) {
-                work.omega.store(k, work.omega[k] + rate[m] * own.omega[k]);
-                work.velocity.store(k, work.velocity[k] + rate[m] * own.velocity[k]);
-            }
-        }
-        find_loads(*swimmer_, work);
-        if (swimmer_->weighs()) set_weight(*swimmer_, 0.0, work);  // its energy is that of what is observed
-        set_mode_loads();
-        set_forces(*modes_, reference, x, rate.data(), forces);
-    }
-
     // omega_a(l) . C_t + v_a(l) . N_t + integral (omega_a . c + v_a . n) dX, of the modes and of the imposed change.
     void set_mode_loads()
     {

@@ -52,9 +52,10 @@ struct GivenTorque {
 
 struct Modes {
     std::size_t modes = 0, coordinates = 0;
-    std::vector<LawOnGrid::Axis> axis;       // of each mode, as the next three
+    std::vector<LawOnGrid::Axis> axis;       // of each mode, as the next five
     std::vector<std::size_t> first, last;    // first node of the support, and the one behind its last
-    std::vector<double> span;                // integral of |B| [1, or m]
+    std::vector<bool> continuous;            // whether it is one of several on its support, in place of a joint
+    std::vector<double> span, moment;        // integral of |B| [1, or m]; torque for a unit of force [1, or 1/m]
     std::vector<double> inertia, rest;       // of each coordinate: armature or rotor, and where its springs rest
     std::vector<double> stiffness, damping;  // (coordinates, coordinates)
     std::vector<Servo> servos;

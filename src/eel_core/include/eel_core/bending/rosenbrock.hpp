@@ -98,14 +98,14 @@ class BentStepper {
 
     void begin(double time, const BentState& y, const BentPowers& works, double first_length)
     {
-        here_.time = before_.time = time, here_.y = y, works_ = works, anew_ = true;
+        here_.time = before_.time = time, here_.y = y, works_ = works, anew_ = true, known_ends_ = 0;
         if (proposed_ == 0.0) proposed_ = first_length;
     }
 
     Status march(const BentSettings& settings, double until, Slice& slice)
     {
         const double tiny = 1e-12 * std::max(1.0, std::abs(until));
-        if (anew_ && !find_point(settings, here_)) return Status::singular;
+        if (anew_ && !find_point(settings, here_, false)) return Status::singular;
         while (end_time() < until - tiny) {
             if (budget_ < 0.0) return Status::too_many_steps;
             if (slice.used_up()) return Status::unfinished;
@@ -148,14 +148,14 @@ class BentStepper {
             head[k] = before_.y.head[k] + b1 * (here_.y.head[k] - before_.y.head[k]) + r0 * before_.head_rate[k] +
                       r1 * here_.head_rate[k];
         normalise(head);
-        std::vector<Jet> factor(6);
-        set_quintic(factor, 0, theta, length, 1.0), set_quintic(factor, 3, left, length, -1.0);
+        // The derivative of this cubic is nearer to the stiff rates between the ends than their own at the ends are.
+        const double slope = 6.0 * theta * left / length, s0 = left * (1.0 - 3.0 * theta),
+                     s1 = theta * (3.0 * theta - 2.0);
         x.resize(modes_->coordinates), rate.resize(modes_->coordinates);
         for (std::size_t i = 0; i < x.size(); ++i) {
-            const double values[6] = {before_.y.x[i], before_.rate[i], before_.acceleration[i],
-                                      here_.y.x[i],   here_.rate[i],   here_.acceleration[i]};
-            x[i] = rate[i] = 0.0;
-            for (std::size_t k = 0; k < 6; ++k) x[i] += factor[k][0] * values[k], rate[i] += factor[k][1] * values[k];
+            const double change = here_.y.x[i] - before_.y.x[i], u0 = before_.rate[i], u1 = here_.rate[i];
+            x[i] = before_.y.x[i] + b1 * change + r0 * u0 + r1 * u1;
+            rate[i] = slope * change + s0 * u0 + s1 * u1;
         }
     }
 
@@ -183,10 +183,20 @@ class BentStepper {
         return all;
     }
 
-    // Rates, accelerations and linear forces at a point whose time and state are known.
-    bool find_point(const BentSettings& settings, BentPoint<M>& point)
+    // Rates, accelerations and linear forces at a point whose time and state are known. `smoothed`: at the end of a
+    // step.
+    bool find_point(const BentSettings& settings, BentPoint<M>& point, bool smoothed)
     {
-        if (!evaluate(settings, point.time, point.y)) return false;
+        ++counts_.evaluations;
+        if (!body_.configure_at(settings.law, point.time, point.y.head, point.y.x.data())) return false;
+        body_.find_rates_of(point.y.momentum.data());
+        if (smoothed && smooth_rates(point)) {
+            body_.move_by_rates(body_.rate.data(), point.y.x.data());
+            body_.momenta_of(body_.work.twist, body_.rate.data(), point.y.momentum.data());
+        } else {
+            body_.move(point.y.x.data());
+        }
+        body_.find_rates(settings.law, settings.current, point.y.head);
         body_.find_accelerations_and_drift(settings.law);
         point.head_rate = body_.head_rate, point.momentum_rate = body_.momentum_rate, point.rate = body_.rate;
         point.acceleration = body_.acceleration, point.drift = body_.drift, point.head = body_.work.head;
@@ -198,6 +208,47 @@ class BentStepper {
         return true;
     }
 
+    // Where dampers are stiff, the coordinates are more exact than their rates from the momenta, whose errors the
+    // dampers make torques of. There the rates come from the cubic through the last four ends of steps: the difference
+    // is filtered by (M + g D + g^2 K)^-1 g D, which is small where dampers are not stiff. False without such ends.
+    bool smooth_rates(const BentPoint<M>& point)
+    {
+        if (known_ends_ < 2 || before_.damping != damping_of_ends_) return false;
+        constexpr std::size_t head = M::freedoms;
+        const std::size_t c = modes_->coordinates;
+        const std::array<double, 4> time{ends_[1].time, ends_[0].time, before_.time, point.time};
+        const std::array<const double*, 4> x{ends_[1].x.data(), ends_[0].x.data(), before_.y.x.data(),
+                                             point.y.x.data()};
+        std::array<double, 4> weight{};
+        for (std::size_t j = 0; j < 3; ++j) {
+            weight[3] += 1.0 / (time[3] - time[j]);
+            weight[j] = 1.0 / (time[j] - time[3]);
+            for (std::size_t k = 0; k < 3; ++k)
+                if (k != j) weight[j] *= (time[3] - time[k]) / (time[j] - time[k]);
+        }
+        const double g = Tableau::diagonal * (point.time - before_.time);
+        std::vector<double> apart(c), right(head + c);
+        for (std::size_t i = 0; i < c; ++i) {
+            apart[i] = -body_.rate[i];
+            for (std::size_t j = 0; j < 4; ++j) apart[i] += weight[j] * x[j][i];
+        }
+        for (std::size_t i = 0; i < c; ++i)
+            for (std::size_t j = 0; j < c; ++j) right[head + i] += g * before_.damping[i * c + j] * apart[j];
+        matrix_.solve(right.data());
+        for (std::size_t i = 0; i < c; ++i) body_.rate[i] += right[head + i];
+        return true;
+    }
+
+    // Makes the start of the last step one of the past ends.
+    void remember_end()
+    {
+        if (known_ends_ > 0 && before_.damping != damping_of_ends_) known_ends_ = 0;
+        damping_of_ends_ = before_.damping;
+        known_ends_ = std::min<std::size_t>(known_ends_ + 1, 3);
+        std::swap(ends_[0], ends_[1]);
+        ends_[0].time = before_.time, ends_[0].x = before_.y.x;
+    }
+
     // Tries a step of `length` [s] into `trial_`; `error`: over the tolerance.
     Status attempt(const BentSettings& settings, double length, double& error)
     {
@@ -205,7 +256,8 @@ class BentStepper {
         const std::size_t c = modes_->coordinates, n = head + c;
         const double g = Tableau::diagonal * length;
         error = std::numeric_limits<double>::infinity();
-        Definite matrix = here_.mass;
+        Definite& matrix = matrix_;
+        matrix = here_.mass;
         for (std::size_t i = 0; i < c; ++i)
             for (std::size_t j = 0; j <= i; ++j)
                 matrix.at(head + i, head + j) += g * (here_.damping[i * c + j] + g * here_.stiffness[i * c + j]);
@@ -283,14 +335,24 @@ class BentStepper {
         std::vector<double> dx(c), du(c);
         for (std::size_t j = 0; j < weight.size(); ++j)
             for (std::size_t i = 0; i < c; ++i) dx[i] += weight[j] * step_x_[j][i], du[i] += weight[j] * step_u_[j][i];
+        // Of continuous parts, less what the rates at the step's end are smoothed by: their high modes are stiff.
+        constexpr std::size_t head = M::freedoms;
+        std::vector<double> right(head + c);
+        for (std::size_t i = 0; i < c; ++i)
+            for (std::size_t j = 0; j < c; ++j)
+                right[head + i] += Tableau::diagonal * length * here_.damping[i * c + j] * du[j];
+        matrix_.solve(right.data());
+        for (std::size_t i = 0; i < modes_->modes; ++i)
+            if (modes_->continuous[i]) du[i] -= right[head + i];
         double worst = 0.0;
         const double scale = std::max(torque_scale_, settings.torque_floor);
         for (std::size_t i = 0; i < c; ++i) {
             double torque = 0.0;
             for (std::size_t j = 0; j < c; ++j)
                 torque += here_.stiffness[i * c + j] * dx[j] + here_.damping[i * c + j] * du[j];
-            const double span = i < modes_->modes ? modes_->span[i] : 1.0;
-            worst = std::max({worst, span * std::abs(dx[i]), std::abs(torque) / (span * scale)});
+            const bool mode = i < modes_->modes;
+            worst = std::max({worst, (mode ? modes_->span[i] : 1.0) * std::abs(dx[i]),
+                              (mode ? modes_->moment[i] : 1.0) * std::abs(torque) / scale});
         }
         return std::max(worst / settings.bounds.tolerance,
                         error_by_tolerance(settings.bounds, scale_, trial_.head, defect, length));
@@ -314,7 +376,7 @@ class BentStepper {
                 std::swap(before_, here_);
                 here_.time = std::abs(start + length - span.next) <= tiny ? span.next : start + length;
                 here_.y = trial_;
-                if (find_point(settings, here_)) break;
+                if (find_point(settings, here_, true)) break;
                 std::swap(before_, here_), status = Status::singular;
             }
             ++counts_.rejected, budget_ -= 1.0;
@@ -326,6 +388,7 @@ class BentStepper {
         }
         const double grown = length * rounded_down(growth_factor(error, order));
         proposed_ = std::min(bounds.longest, length >= proposed ? grown : std::max(proposed, grown));
+        remember_end();
         anew_ = false, ++counts_.steps;
         budget_ = std::min(bounds.spare_steps, budget_ + bounds.most_steps * length) - 1.0;
         scale_.include(here_.y.head);
@@ -337,7 +400,7 @@ class BentStepper {
     {
         double greatest = 0.0;
         for (std::size_t i = 0; i < force.size(); ++i)
-            greatest = std::max(greatest, std::abs(force[i]) / (i < modes_->modes ? modes_->span[i] : 1.0));
+            greatest = std::max(greatest, std::abs(force[i]) * (i < modes_->modes ? modes_->moment[i] : 1.0));
         return greatest;
     }
 
@@ -364,6 +427,14 @@ class BentStepper {
     BentBody<M> body_;
     BentPoint<M> before_, here_;  // start and end of the last step
     BentState trial_;
+    struct End {
+        double time = 0.0;
+        std::vector<double> x;
+    };
+    std::array<End, 2> ends_;  // of the steps before the last, the latest first
+    std::size_t known_ends_ = 0;
+    std::vector<double> damping_of_ends_;  // linear in the rates, of the forces there
+    Definite matrix_;                      // of the last step, factored
     std::array<State, Tableau::stages> step_head_{};
     std::array<std::vector<double>, Tableau::stages> step_x_, step_p_, step_u_;
     BentPowers works_{}, works_before_{}, middle_{};  // at the end and the start of the step; powers at its middle

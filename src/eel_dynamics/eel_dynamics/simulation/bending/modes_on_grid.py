@@ -21,7 +21,8 @@ class ModesOnGrid:
 
     Attributes, as `eel_core.Modes` takes them:
         axis, first, last: (M,) 0 pitch, 1 yaw; first node of the support, and the node behind its last.
-        span: (M,) integral of |B| [1, or m].
+        continuous: (M,) 1 for a mode of a tail or muscle, 0 for a joint.
+        span, moment: (M,) integral of |B| [1, or m]; internal torque for a unit of the mode's force [1, or 1/m].
         inertia, rest: (C,). stiffness, damping: (C, C).
         servos: (coordinate, kp, kd, torque limit, speed limit) each.
         stops: (mode, low, high, stiffness, damping) each.
@@ -34,7 +35,9 @@ class ModesOnGrid:
         self.axis = (table.axis - 1).astype(np.uint64)
         self.first = np.searchsorted(grid.x, table.start, side="right").astype(np.uint64)
         self.last = np.searchsorted(grid.x, table.end, side="right").astype(np.uint64)
+        self.continuous = (~joints).astype(np.uint64)
         self.span = np.where(joints, 1.0, table.end - table.start)
+        self.moment = np.where(joints, 1.0, (2 * table.degree + 1) / self.span)  # P_n has the norm span / (2 n + 1)
         drives, count = table.actuators, len(table)
         motors = np.flatnonzero(drives.series)
         size = count + len(motors)
