@@ -10,8 +10,8 @@ var Scorer = {
   term: 5,
   partialTerm: 2,
   score: ([docname, title, anchor, descr, score, filename, kind]) => {
-    if (kind === "title") return 100 + score;
-    if (kind === "text") return (/^reference\/(api|commands|parameters|messages)$/.test(docname) ? 25 : 50) + score;
+    const listed = /^reference\/(api|commands|parameters|messages|formulas)$/.test(docname);
+    if (kind === "title" || kind === "text") return (listed ? 25 : kind === "title" ? 100 : 50) + score;
     return Math.min(score, 20);
   },
 };
