@@ -27,7 +27,7 @@ PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 BLOCK = re.compile(r"(?:<!-- (listing)[^\n]*-->\n)?^```([^\n`]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 RUN = ("eel simulate", "eel identify")
 FOREIGN = ("colcon", "dask", "export", "pip", "python", "python3", "rerun", "rosdep", "source", "sudo", "touch")
-GOALS = ("goal_path", "goal_pose")  # of the pilot
+INPUTS = ("goal_path", "goal_pose", "current")  # of the pilot, of the dynamics node
 SERVICES = ("reset", "pause", "step", "set_state")
 
 
@@ -99,7 +99,7 @@ def check(words: list[str]):
 def check_ros2(words, group, verb, *rest):
     """The ros2 command: topics, parameters and services are the nodes' own."""
     if group == "topic":
-        assert rest[0].removeprefix("/") in (*OWN, *GOALS), words
+        assert rest[0].removeprefix("/") in (*OWN, *INPUTS), words
     elif (group, verb) == ("param", "set"):
         assert rest[1] in parameter_names(rest[0].removeprefix("/")), words
     elif group == "service":
