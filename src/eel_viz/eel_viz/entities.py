@@ -89,7 +89,6 @@ LOG = "/run/log"
 OTHER = "/world/other"
 OTHER_HOOPS = "/world/other/hoops"
 OTHER_BACKBONE = "/world/other/backbone"
-COMPARE = "/compare"
 COMPARED_TORQUE = "/compare/torque"
 TORQUE_DIFFERENCE = "/compare/torque_difference"
 OTHER_SPEED = "/compare/speed"  # of the other

@@ -201,6 +201,17 @@ def test_the_heat_map_forgets_what_is_older_than_its_length(stream):
     assert set(np.unique(image(stream.path))) == {colours.diverging_index(np.zeros(1), 1.0)[0]}
 
 
+def contrast(letters: tuple, ground: tuple) -> float:
+    """Contrast of letters on a ground, 1 to 21, as the Web Content Accessibility Guidelines 2.2 define it."""
+    light = [np.array((0.2126, 0.7152, 0.0722)) @ _linear(np.array(colour) / 255.0) for colour in (letters, ground)]
+    return float((max(light) + 0.05) / (min(light) + 0.05))
+
+
+def _linear(share: np.ndarray) -> np.ndarray:
+    """Intensity of sRGB's shares, 0 to 1."""
+    return np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+
+
 GROUNDS = {  # the brightest ground of letters: its colour, and those of the letters
     "plots": (colours.PLOT_BACKGROUND, (colours.LABEL, colours.OTHER, *colours.AXIS)),
     "the legend's band": (
@@ -215,12 +226,12 @@ GROUNDS = {  # the brightest ground of letters: its colour, and those of the let
 @pytest.mark.parametrize("name", GROUNDS)
 def test_letters_have_a_contrast_of_4_5_on_their_ground_in_every_theme(name):
     ground, letters = GROUNDS[name]
-    assert min(colours.contrast(letter, ground) for letter in letters) >= 4.5
+    assert min(contrast(letter, ground) for letter in letters) >= 4.5
 
 
 def test_contrast_is_that_of_the_web_s_guidelines():
-    assert colours.contrast((0, 0, 0), (255, 255, 255)) == pytest.approx(21.0)
-    assert colours.contrast((119, 119, 119), (255, 255, 255)) == pytest.approx(4.48, abs=0.005)
+    assert contrast((0, 0, 0), (255, 255, 255)) == pytest.approx(21.0)
+    assert contrast((119, 119, 119), (255, 255, 255)) == pytest.approx(4.48, abs=0.005)
 
 
 def test_no_words_have_the_theme_s_ground_but_ours(stream):

@@ -392,6 +392,11 @@ def test_notes_say_how_fast_the_head_is_and_where_the_greatest_torque_was(long_s
         centre, radius = np.array(frames[stamp][0][0]), frames[stamp][1][0][0]
         seen = [camera.in_picture((np.array(each) - centre) / radius) for each in (middles[stamp][0], at)]
         np.testing.assert_allclose(seen[0], seen[1], atol=0.006)
+    arrow = read(path, entities.HEADING)
+    assert len(arrow.stamps) > 100
+    for stamp, (begin,), (ahead,) in zip(arrow.stamps.tolist(), arrow["origins"], arrow["vectors"], strict=True):
+        if stamp > 4 * 10**9:  # it swims towards +x by then
+            assert begin[0] > samples[stamp]["backbone"][0].position[0, 0] and ahead[0] > 0.8 * np.linalg.norm(ahead)
     speeds = read(path, f"{entities.SPEED_NOTE}/words")
     for stamp, (words,) in zip(speeds.stamps.tolist(), speeds.values["labels"], strict=True):
         near = [np.linalg.norm(samples[at]["head_twist"][0].linear) for at in stamps if stamp - 10**8 <= at <= stamp]

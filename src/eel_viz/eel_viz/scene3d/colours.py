@@ -55,17 +55,6 @@ DIVERGING = (
 )
 
 
-def contrast(letters: Colour, ground: Colour) -> float:
-    """Contrast of letters on a ground, 1 to 21, as the Web Content Accessibility Guidelines 2.2 define it."""
-    light = [np.array((0.2126, 0.7152, 0.0722)) @ _linear(np.array(colour) / 255.0) for colour in (letters, ground)]
-    return float((max(light) + 0.05) / (min(light) + 0.05))
-
-
-def _linear(share: np.ndarray) -> np.ndarray:
-    """Intensity of sRGB's shares, 0 to 1."""
-    return np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
-
-
 def dim(colour: Colour, factor: float = 0.45) -> Colour:
     """The same hue, darker: for drawings in the background, such as an envelope."""
     red, green, blue = (int(channel * factor) for channel in colour)

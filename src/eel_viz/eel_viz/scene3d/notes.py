@@ -10,7 +10,7 @@ from eel_viz.messages import Backbone
 from eel_viz.scene3d import camera, colours
 from eel_viz.scene3d.lettering import standing_texts
 
-PERIOD = 200_000_000  # ns: words that changed faster could not be read
+PERIOD = 400_000_000  # ns: words that changed faster could not be read
 LETTERS = 0.043  # height of a capital [radii]
 AHEAD = (0.06, 0.22)  # from head to begin and end of the arrow [body lengths]
 NEARER = 0.25
