@@ -251,3 +251,12 @@ def test_an_h5_file_that_is_none_is_told(tmp_path):
     (tmp_path / "fish.h5").write_bytes(b"no HDF")
     with pytest.raises(ValueError, match=r"fish.h5.*cannot be read as HDF5"):
         read_film(tmp_path / "fish.h5", units="px", scale=1.0, rate=50.0)
+
+
+def test_names_of_columns_may_end_with_their_unit_without_a_line(tmp_path):
+    points = swimming(noise=1e-3)
+    path = write_long(tmp_path / "long.csv", points)
+    head, *rows = path.read_text().splitlines()
+    assert "x_mm" in head
+    path.write_text("\n".join([head.replace("x_mm", "mxmm").replace("y_mm", "mymm").replace("time_s", "t"), *rows]))
+    assert np.allclose(read_film(path).points, points, atol=1e-9)

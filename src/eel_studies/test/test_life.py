@@ -2,6 +2,7 @@
 """Filmed swimmers beside what was measured: known drag comes out, and files are told what they lack."""
 
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -85,3 +86,12 @@ def test_the_command_says_what_it_lacks(tmp_path, capsys):
     ):
         assert life(arguments) == 2
         assert words in capsys.readouterr().err
+
+
+def test_a_scene_and_numbers_of_the_body_change_the_swim():
+    beats = [beat(0.5)]
+    as_it_is = computed(beats, BODY)
+    thick = replace(PLANAR, viscosity=1e-4)
+    assert computed(beats, BODY, thick)[0] < 0.95 * as_it_is[0]
+    assert computed(beats, BODY, replace(thick, friction="taylor"))[0] < 0.95 * computed(beats, BODY, thick)[0]
+    assert computed(beats, BODY, PLANAR, lateral_added_mass=0.5)[0] < as_it_is[0]

@@ -25,7 +25,7 @@ from eel_base.wording import one_line, shown
 from eel_gaits.sources.tables import LARGEST, MOST_BYTES, MOST_NUMBERS, lines_of
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}  # metres in each; pixels have no length
-COORDINATE = re.compile(r"([xy])_?([0-9]*)(?:_([a-z]+))?")  # x, y_mm, x0_m
+COORDINATE = re.compile(r"m?([xy])_?([0-9]*)_?(m|cm|mm|px)?")  # x, y_mm, x0_m; mxmm of fishmechr
 TIME = re.compile(r"(?:time|t)(?:_(s|ms))?")
 LIKELY = 0.6  # likelihood of a DeepLabCut point below which it counts as missing, as there
 

@@ -15,13 +15,14 @@ from eel_base.command.command_line import Parser
 from eel_base.command.run_command import checked_out, run_command
 from eel_base.files.output_file import written_as
 from eel_base.quantity import positive
-from eel_dynamics.runs.command_options import add_options, add_repeated, body_of, set_numbers
+from eel_dynamics.runs.command_options import add_options, add_repeated, body_of, scene_of, set_numbers
 from eel_dynamics.runs.filmed import add_film_options, beat_from
 from eel_gaits.film.beat import Beat
 
 from eel_studies.life.drawing import draw_lamprey, draw_robot
 from eel_studies.life.lamprey import HEIGHTS, MEASURED, LampreySwim, in_thick_water, lamprey, swims
-from eel_studies.life.leave_out import Choice, choices, computed
+from eel_studies.life.lamprey import PLANAR as WATER_OF_FILM
+from eel_studies.life.leave_out import PLANAR, Choice, choices, computed
 from eel_studies.pictures import Figure, write_picture
 from eel_studies.table import Table
 
@@ -55,8 +56,10 @@ def _lamprey(beats: list[Beat], options: argparse.Namespace) -> Drawn:
         raise ValueError("lamprey takes one film, and the --widths of the body by its length")
     (beat,) = beats
     widths = Path(options.widths)
-    found = swims(beat, widths, HEIGHTS)
-    thick = [in_thick_water(beat, lamprey(beat.film.length, height, widths)) for height in HEIGHTS]
+    scene, numbers = scene_of(options.scene, WATER_OF_FILM), set_numbers(options.set)
+    found = swims(beat, widths, scene, **numbers)
+    bodies = [lamprey(beat.film.length, height, widths, **numbers) for height in HEIGHTS]
+    thick = [in_thick_water(beat, body, scene) for body in bodies]
     return table_of_lamprey(beat, found, thick), lambda figure: draw_lamprey(figure, beat, found, thick), (6.8, 6.4)
 
 
@@ -104,9 +107,10 @@ def _robot(beats: list[Beat], options: argparse.Namespace) -> Drawn:
     body = body_of(options.body)
     if options.mass is not None:
         body = body.changed(density=positive("mass", options.mass, "kg") / body.volume)
-    first = set_numbers(options.first, "--first") or FIRST
-    guessed = computed(beats, body)
-    found = choices(beats, body, first, options.fit)
+    body = body.changed(**set_numbers(options.set))
+    first, scene = set_numbers(options.first, "--first") or FIRST, scene_of(options.scene, PLANAR)
+    guessed = computed(beats, body, scene)
+    found = choices(beats, body, first, options.fit, scene)
     table = table_of_robot(beats, guessed, found)
     return table, lambda figure: draw_robot(figure, beats, guessed, found), (6.8, 3.8)
 
@@ -138,7 +142,8 @@ def _parser() -> Parser:
     )
     parser.add_argument("files", nargs="+", metavar="FILE", help="films: tracked points, docs/howto/motions.md")
     add_film_options(parser)
-    add_options(parser, "--scale", "--body")
+    add_options(parser, "--scale", "--body", "--scene")
+    add_repeated(parser, "--set", "NAME=VALUE", "a number of the body")
     parser.add_argument("--widths", metavar="FILE", help="of a lamprey: columns s_by_length, lamprey_width_by_length")
     parser.add_argument("--mass", type=float, metavar="KG", help="of the robot (by its body's density)")
     parser.add_argument("--fit", type=int, default=2, metavar="N", help="films that are fitted at a time (2)")

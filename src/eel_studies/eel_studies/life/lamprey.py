@@ -8,7 +8,7 @@ them: it is kept as in the film.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -56,10 +56,11 @@ class LampreySwim:
     figures: Kinematics
 
 
-def lamprey(length: float, height: float, widths: Path) -> Body:
+def lamprey(length: float, height: float, widths: Path, **numbers: float) -> Body:
     """A lamprey of `length` [m] whose tail fin has a half-height of `height` lengths.
 
-    widths: a file with the columns s_by_length and lamprey_width_by_length; the latter is taken as a radius.
+    widths: a file with the columns s_by_length and lamprey_width_by_length; the latter is taken as a radius. numbers:
+    of the body.
     """
     table = read_table(widths)
     names = ("s_by_length", "lamprey_width_by_length")
@@ -73,14 +74,15 @@ def lamprey(length: float, height: float, widths: Path) -> Body:
     rise = np.clip((x - FIN[0]) / (FIN[1] - FIN[0]), 0.0, 1.0)
     rise = rise**2 * (3.0 - 2.0 * rise)
     half_height = TRUNK * half_width * (1.0 - rise) + height * rise
-    return Body(x=length * x, half_width=length * half_width, half_height=length * half_height, name="lamprey")
+    body = Body(x=length * x, half_width=length * half_width, half_height=length * half_height, name="lamprey")
+    return body.changed(**numbers)
 
 
-def swims(beat: Beat, widths: Path, heights: tuple[float, ...] = HEIGHTS, scene: Scene = PLANAR) -> list[LampreySwim]:
-    """The beat on bodies with fins of these half-heights [L]."""
+def swims(beat: Beat, widths: Path, scene: Scene = PLANAR, **numbers: float) -> list[LampreySwim]:
+    """The beat on bodies with fins of the half-heights `HEIGHTS`, and these numbers of the body."""
     found = []
-    for height in heights:
-        body = lamprey(beat.film.length, height, widths)
+    for height in HEIGHTS:
+        body = lamprey(beat.film.length, height, widths, **numbers)
         run = simulate(beat.law(body.length), "settled", body=body, scene=scene, accuracy=1e-2)
         last = run.time > run.time[-1] - BEATS * beat.period
         figures = kinematics(run.time[last], run.backbone[last, :, :2], beat.period)
@@ -90,13 +92,13 @@ def swims(beat: Beat, widths: Path, heights: tuple[float, ...] = HEIGHTS, scene:
     return found
 
 
-def in_thick_water(beat: Beat, body: Body) -> list[float]:
+def in_thick_water(beat: Beat, body: Body, scene: Scene = PLANAR) -> list[float]:
     """Speed [m/s] at each of `MEASURED`'s viscosities, with its frequency, and its wavelength by that in water."""
     found = []
     for each in MEASURED:
         law = wave_of(beat, body.length, 1.0 / each.frequency, MEASURED[0].wavelength / each.wavelength)
-        scene = Scene(planar=True, friction="blended", internal_wrench=False, viscosity=each.times * WATER)
-        found.append(simulate(law, "settled", body=body, scene=scene, accuracy=1e-2).mean_speed)
+        thick = replace(scene, viscosity=each.times * WATER)
+        found.append(simulate(law, "settled", body=body, scene=thick, accuracy=1e-2).mean_speed)
     return found
 
 

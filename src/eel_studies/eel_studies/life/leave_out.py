@@ -37,20 +37,22 @@ class Choice:
         return np.asarray((self.speeds - measured)[rest])
 
 
-def computed(beats: Sequence[Beat], body: Body, **numbers: float) -> np.ndarray:
+def computed(beats: Sequence[Beat], body: Body, scene: Scene = PLANAR, **numbers: float) -> np.ndarray:
     """Mean speed [m/s] of each of the `beats` on the `body` with these `numbers`; NaN where a swim stops."""
     bodies, found = body.changed(**numbers), []
     for beat in beats:
         start = (0.0, 0.0, 0.0, beat.measured.speed, 0.0, 0.0)
         batch = simulate_batch(
-            [beat.law(body.length)], BEATS * beat.period, bodies=bodies, scenes=PLANAR, accuracy=1e-2,
+            [beat.law(body.length)], BEATS * beat.period, bodies=bodies, scenes=scene, accuracy=1e-2,
             twists=start, estimate=False, sample_period=beat.period / 20.0,
         )  # fmt: skip
         found.append(np.nan if batch.stopped[0] else batch[0].mean_speed)
     return np.array(found)
 
 
-def choices(beats: Sequence[Beat], body: Body, first: dict[str, float], count: int) -> list[Choice]:
+def choices(
+    beats: Sequence[Beat], body: Body, first: dict[str, float], count: int, scene: Scene = PLANAR
+) -> list[Choice]:
     """The fit of each choice of `count` of the `beats`, from the `first` guesses of numbers of the body."""
     from scipy.optimize import least_squares
 
@@ -60,7 +62,7 @@ def choices(beats: Sequence[Beat], body: Body, first: dict[str, float], count: i
         mine = [beats[film] for film in fitted]
 
         def errors(logs: np.ndarray, mine: list[Beat] = mine, fitted: tuple[int, ...] = fitted) -> np.ndarray:
-            speeds = computed(mine, body, **_numbers(first, logs))
+            speeds = computed(mine, body, scene, **_numbers(first, logs))
             apart: np.ndarray = np.nan_to_num(np.log(np.maximum(speeds, 1e-6) / measured[list(fitted)]), nan=10.0)
             return apart
 
@@ -72,7 +74,7 @@ def choices(beats: Sequence[Beat], body: Body, first: dict[str, float], count: i
             errors, guess, slopes, bounds=(np.log(LEAST), np.log(MOST)), xtol=1e-3, ftol=1e-3, max_nfev=15
         )
         values = _numbers(first, fit.x)
-        found.append(Choice(fitted, values, computed(beats, body, **values)))
+        found.append(Choice(fitted, values, computed(beats, body, scene, **values)))
     return found
 
 
