@@ -22,7 +22,7 @@ from eel_gaits.film.beat import Beat
 from eel_studies.life.drawing import draw_lamprey, draw_robot
 from eel_studies.life.lamprey import HEIGHTS, MEASURED, LampreySwim, in_thick_water, lamprey, swims
 from eel_studies.life.lamprey import PLANAR as WATER_OF_FILM
-from eel_studies.life.leave_out import PLANAR, Choice, choices, computed
+from eel_studies.life.leave_out import PLANAR, Choice, choices, computed, swum
 from eel_studies.pictures import Figure, write_picture
 from eel_studies.table import Table
 
@@ -112,7 +112,10 @@ def _robot(beats: list[Beat], options: argparse.Namespace) -> Drawn:
     guessed = computed(beats, body, scene)
     found = choices(beats, body, first, options.fit, scene)
     table = table_of_robot(beats, guessed, found)
-    return table, lambda figure: draw_robot(figure, beats, guessed, found), (6.8, 3.8)
+    last = max(range(len(beats)), key=lambda film: 1.0 / beats[film].period)
+    left_out = next((each for each in found if last not in each.fitted), found[0])
+    swim = beats[last], swum(beats[last], body.changed(**left_out.values), scene)
+    return table, lambda figure: draw_robot(figure, beats, guessed, found, swim), (6.8, 6.2)
 
 
 def table_of_robot(beats: list[Beat], guessed: np.ndarray, found: list[Choice]) -> Table:

@@ -63,9 +63,12 @@ def _draw_midlines(axes: Axes, beat: Beat, run: Run) -> None:
     )
 
 
-def draw_robot(figure: Figure, beats: list[Beat], guessed: np.ndarray, found: list[Choice]) -> None:
-    """Speed over frequency: measured, without a fit, and the predictions of films that were left out."""
-    axes = figure.add_subplot()
+def draw_robot(
+    figure: Figure, beats: list[Beat], guessed: np.ndarray, found: list[Choice], swim: tuple[Beat, Run]
+) -> None:
+    """One beat of a swim that was left out; speed over frequency: measured, without a fit, and predicted."""
+    lines, axes = figure.subplots(2, 1, height_ratios=(1.0, 1.4))
+    _draw_midlines(lines, *swim)
     frequency = np.array([1.0 / beat.period for beat in beats])
     order = np.argsort(frequency)
     measured = np.array([beat.measured.speed for beat in beats])

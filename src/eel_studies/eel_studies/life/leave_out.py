@@ -15,6 +15,7 @@ import numpy as np
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import simulate_batch
+from eel_dynamics.runs.run import Run, simulate
 from eel_gaits.film.beat import Beat
 
 PLANAR = Scene(planar=True, friction="blended", internal_wrench=False, ledger=False)
@@ -48,6 +49,15 @@ def computed(beats: Sequence[Beat], body: Body, scene: Scene = PLANAR, **numbers
         )  # fmt: skip
         found.append(np.nan if batch.stopped[0] else batch[0].mean_speed)
     return np.array(found)
+
+
+def swum(beat: Beat, body: Body, scene: Scene = PLANAR) -> Run:
+    """The swim of a `beat`, from the measured speed on, with its midlines."""
+    start = (0.0, 0.0, 0.0, beat.measured.speed, 0.0, 0.0)
+    return simulate(
+        beat.law(body.length), BEATS * beat.period, body=body, scene=scene, accuracy=1e-2, twist=start,
+        estimate=False, sample_period=beat.period / 20.0,
+    )  # fmt: skip
 
 
 def choices(
