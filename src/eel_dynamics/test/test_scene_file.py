@@ -10,7 +10,7 @@ from eel_dynamics.runs.scene_file import WORDS, swim_of, words_of
 from eel_gaits.gaits.settings import Settings
 from swim_client import LIMIT
 
-from eel_dynamics import Accuracy, Body, Gust, Scene, Shear, Swim, load_scene, save_scene, simulate
+from eel_dynamics import Accuracy, Body, Gust, Robot, Scene, Shear, Swim, load_scene, save_scene, simulate
 from eel_gaits import straight
 
 SCENE = """
@@ -23,9 +23,7 @@ duration: 2
 initial_linear_velocity: [0.2, 0.1, 0]
 initial_position: [1, 2, 3]
 stations: 11
-flow:
-  wind: {kind: Gust, velocity: [0.1, 0, 0], start: 0.5}
-  sheared: {kind: Shear, velocity: [0.2, 0, 0], width: 2}
+flow: gust velocity=0.1,0,0 start=0.5 + shear velocity=0.2,0,0 width=2
 """
 
 
@@ -56,11 +54,19 @@ def test_what_is_written_comes_back_equal(tmp_path):
         assert all(np.array_equal(ours, theirs) for ours, theirs in zip(again.start, each.start, strict=True))
 
 
+def test_a_robot_is_a_word(tmp_path):
+    swim = swim_of({"gait": "straight", "robot": "eight_servos", "duration": 0.5, "accuracy": 1e-2})
+    assert swim.robot == Robot.named("eight_servos") and words_of(swim)["robot"] == "eight_servos"
+    assert swim.run() == simulate(straight(), 0.5, robot=swim.robot, accuracy=1e-2)
+    with pytest.raises(ValueError, match="robot 'eight_servos' cannot be written"):
+        words_of(swim._replace(robot=swim.robot.changed(torque_limit=None)))
+
+
 def test_the_words_are_parameters_of_the_nodes(tmp_path):
-    """All but the period of samples; the flow as a text (test_node_water.py)."""
+    """All but the period of samples, and the robot until the node has one; the flow as a text (test_node_water.py)."""
     save_scene(load_scene(scene_in(tmp_path)), tmp_path / "again.yaml")
     words = yaml.safe_load((tmp_path / "again.yaml").read_text())["/**"]["ros__parameters"]
-    named = {name for name in WORDS if name not in ("scene", "sample_period")}
+    named = {name for name in WORDS if name not in ("scene", "sample_period", "robot")}
     assert named <= {*vars(DynamicsParameters()), *Settings.known_names()}
     values = DynamicsParameters.among({**words, "flow": ""})
     assert (values.accuracy, values.duration, values.body) == (1e-3, 2.0, "kern2006")
@@ -102,9 +108,10 @@ def test_cross_flow_is_a_switch_of_the_scene():
         ("accuracy: exact", "accuracy"),
         ("duration: 0", "duration must be > 0 s, got 0"),
         ("duration: long", "duration must be a number, got 'long'"),
-        ("flow: {kind: Gusty}", "flow kind must be one of"),
-        ("flow: {kind: Gust, begin: 1}", "flow Gust has no field 'begin'"),
-        ("flow: {a: 3}", "flow must be a Mapping, got 3"),
+        ("flow: gusty", "flow must be one of"),
+        ("flow: gust begin=1", "flow Gust has no field 'begin'"),
+        ("flow: {a: 3}", "flow must be a str, got {'a': 3}"),
+        ("robot: nine_servos", "robot must be one of eight_servos"),
         ("initial_position: [1, 2]", "initial position must be 3 numbers, got 2"),
         ("- a list", "its content must be a Mapping"),
         ("gait: [", "line 1"),

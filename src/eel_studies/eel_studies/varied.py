@@ -8,6 +8,7 @@
 | `density_ratio` | density of the body by that of the water |
 | `spin` | turns/s of the head about all three of its axes alike |
 | `flow.core`, ... | a field of the flow |
+| `robot.stiffness`, ... | a field of all joints of the robot, or of their servos |
 | `flow_speed` | m/s: size of the flow's velocity |
 | `step` | s: fixed steps of the classical method |
 | `tolerance`, `resolution`, `method` | settings given one by one |
@@ -23,19 +24,24 @@ import numpy as np
 from eel_base.quantity import number
 from eel_base.wording import shown
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.swim import Swim
 
 from eel_studies.points import GROUPS, check_names, point_at
 
 RESOLUTION = 36.0  # points per body length where a setting in time is given: the error in space stays below 1e-3
-FLOW = "flow."
+FLOW, ROBOT = "flow.", "robot."
 
 
 def varied(swim: Swim, values: dict[str, Any]) -> Swim:
     """The `swim` with these `values` by name. `ValueError` for what does not fit."""
     period = _longest_period(swim)
     shared = {name: value for name, value in values.items() if name.startswith(GROUPS) or name == "accuracy"}
-    gait = {name: value for name, value in values.items() if name not in {*shared, *OWN} and not name.startswith(FLOW)}
+    gait = {
+        name: value
+        for name, value in values.items()
+        if name not in {*shared, *OWN} and not name.startswith((FLOW, ROBOT))
+    }
     if gait:
         swim = swim.with_gait(**{name: number(name, value) for name, value in gait.items()})
     if shared:
@@ -45,6 +51,8 @@ def varied(swim: Swim, values: dict[str, Any]) -> Swim:
             swim = swim._replace(**OWN[name](swim, value))
         elif name.startswith(FLOW):
             swim = _with_flow(swim, {name.removeprefix(FLOW): value})
+        elif name.startswith(ROBOT):
+            swim = swim._replace(robot=_robot_of(swim).changed(**{name.removeprefix(ROBOT): value}))
     if period and isinstance(swim.duration, float) and (now := _longest_period(swim)) != period:
         swim = swim._replace(duration=swim.duration * now / period)
     return swim
@@ -52,6 +60,12 @@ def varied(swim: Swim, values: dict[str, Any]) -> Swim:
 
 def _longest_period(swim: Swim) -> float:
     return max((term.period for term in getattr(swim.law, "waves", ())), default=0.0)
+
+
+def _robot_of(swim: Swim) -> Robot:
+    if swim.robot is None:
+        raise ValueError("robot has no fields: the scene has no robot")
+    return swim.robot
 
 
 def _with_flow(swim: Swim, changes: dict[str, Any]) -> Swim:

@@ -82,9 +82,9 @@ SCENES = (  # words of a scene, and the numbers that its maps are drawn over
     ({"gait": "falling", "body": "kern2006"}, {"scene.viscosity": (1e-9, 1e-1), "density_ratio": (1e-3, 1e6)}),
     ({"gait": "helix", "scene": {"metacentric_height": 0.01}}, {"step": (1e-3, 0.2), "initial.v_x": (1e-2, 10.0)}),
     ({"gait": "turning", "scene": {"planar": True}}, {"resolution": (4.0, 60.0), "scene.fluid_density": (1e-2, 1e4)}),
-    ({"gait": "straight", "flow": {"kind": "Gust"}}, {"flow.rise": (1e-3, 3.0), "flow_speed": (1e-3, 3.0)}),
+    ({"gait": "straight", "flow": "gust"}, {"flow.rise": (1e-3, 3.0), "flow_speed": (1e-3, 3.0)}),
     (
-        {"gait": "straight", "flow": {"kind": "Vortex", "centre": [-0.3, 0.3, 0.0]}, "scene": {"planar": True}},
+        {"gait": "straight", "flow": "vortex centre=-0.3,0.3,0", "scene": {"planar": True}},
         {"flow.core": (0.02, 3.0), "flow.circulation": (1e-3, 0.5), "spin": (1e-3, 1.0)},
     ),
 )
@@ -122,7 +122,7 @@ def test_no_cell_of_2000_is_wrong_in_silence():
 
 
 def test_numbers_of_a_scene_by_name():
-    swim = swim_of({"gait": "straight", "duration": 4, "flow": {"kind": "Gust", "velocity": [0, 0.3, 0.4]}})
+    swim = swim_of({"gait": "straight", "duration": 4, "flow": "gust velocity=0,0.3,0.4"})
     assert varied(swim, {"period": 0.5}).duration == 2.0 and varied(swim, {"period": 0.5}).law == straight(period=0.5)
     assert varied(swim, {"amplitude": 2.0}).law == straight() * 2.0
     assert varied(swim, {"density_ratio": 0.1}).scene.density == 100.0
@@ -153,6 +153,7 @@ def test_a_map_of_a_scene_of_the_users(tmp_path, capsys):
         ("straight --over periode=1:2 --over step=1:2", "'periode'"),
         ("straight --over flow.core=1:2 --over step=1:2", "flow has no field 'core': the scene has no flow"),
         ("straight --over flow_speed=1:2 --over step=1:2", "flow_speed needs a flow with a velocity"),
+        ("straight --over robot.stiffness=1:2 --over step=1:2", "robot has no fields: the scene has no robot"),
         ("straight --over scene.plane=1:2 --over step=1:2", "scene has no field 'plane'"),
         ("straight --over period=1:2 --over step=1:2 --study drift", "--study goes without a scene, got 'drift'"),
     ],

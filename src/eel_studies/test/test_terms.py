@@ -39,14 +39,16 @@ def test_what_matters_stays_and_what_does_not_goes(plain):
 
 
 def test_only_terms_that_a_scene_has_are_left_out(plain):
-    assert {"righting moment", "current", "flow"} == set(TERMS) - set(plain.effects)
+    own = {"third dimension", *plain.effects}
+    assert not own & {"righting moment", "weight", "mass off the axis", "current", "flow", "rotors", "higher modes"}
+    assert own <= set(TERMS)
     dry = swim_of({"gait": "straight", "scene": {"reactive": False, "resistive": False, "planar": True}})
     assert terms_of(dry) == {}
 
 
 SCENES = {  # words of a scene: the terms that must go, those that must stay
-    "a weak gust": ({"gait": "straight", "flow": {"kind": "Gust", "velocity": [1e-3, 0, 0]}}, {"flow"}, {"friction"}),
-    "a strong gust": ({"gait": "straight", "flow": {"kind": "Gust", "velocity": [0, 0.2, 0]}}, set(), {"flow"}),
+    "a weak gust": ({"gait": "straight", "flow": "gust velocity=0.001,0,0"}, {"flow"}, {"friction"}),
+    "a strong gust": ({"gait": "straight", "flow": "gust velocity=0,0.2,0"}, set(), {"flow"}),
     "heavy water": (
         {"gait": "turning", "body": "kern2006", "scene": {"viscosity": 1e-10, "metacentric_height": 0.003}},
         {"friction", "third dimension"}, {"cross-flow drag"},
@@ -60,6 +62,17 @@ def test_scenes_unseen(words, gone, stay, tmp_path):
     found = terms(swim_of({"duration": 5, **words}), tolerance=0.05)
     assert gone <= set(found.dropped) and not stay & set(found.dropped)
     assert found.within and found.together.worst <= 0.05
+
+
+def test_terms_of_robots_and_weights():
+    swim = swim_of({"gait": "straight", "robot": "eight_servos", "scene": {"planar": True}, "duration": 0.5})
+    found = terms(swim, tolerance=0.5)
+    own = {"compliance of the robot", "limits of the servos", "rotors"}
+    assert own <= set(found.effects) and found.within
+    assert "limits of the servos" not in found.dropped  # a robot without them bears no name
+    heavy = swim_of({"gait": "straight", "scene": {"weight": True, "density": 1100}, "duration": 4})
+    assert terms(heavy, tolerance=0.05).effects["weight"].path > 0.5  # it sinks
+    assert "higher modes" in terms_of(swim_of({"gait": "straight", "robot": "passive_tail"}))
 
 
 def test_terms_that_are_small_alone_and_great_together_come_back(plain):

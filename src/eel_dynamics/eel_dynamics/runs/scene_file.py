@@ -10,7 +10,8 @@ Its words are the names of the nodes' parameters, below `/**: ros__parameters:` 
     accuracy: 1e-4
     duration: 10.0            # s; of the library "settled" too
     initial_linear_velocity: [0.3, 0, 0]
-    flow: {kind: Shear, ...}  # fields of a flow, or several such by names of their own, which are added; or a text
+    flow: shear velocity=0.1,0,0 width=0.5    # several are joined by " + "
+    robot: eight_servos       # or a file, whose body is that of the scene unless there is another
 
 A further word is a line of `WORDS`.
 """
@@ -31,10 +32,10 @@ from eel_base.wording import did_you_mean, shown
 from eel_gaits.gaits.settings import SEQUENCES, Settings
 
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.flow.plain import KINDS, flow_of, plain_of_flow
-from eel_dynamics.flow.text import flow_from_text
+from eel_dynamics.flow.text import flow_from_text, text_of_flow
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.settled_duration import until_settled
 from eel_dynamics.runs.swim import AT_REST, Swim
 
@@ -75,8 +76,8 @@ def swim_of(words: Any) -> Swim:
             raise ValueError(f"unknown word {shown(word)}{hint}, must be gait, its numbers, or {', '.join(WORDS)}")
     settings = Settings().changed(gait)
     swim = Swim(settings.law(), Body.boyer2010(), Scene(), Accuracy.of("standard"), gait=settings)
-    for word, value in words.items():
-        swim = swim._replace(**WORDS[word].given(swim, value)) if word in WORDS else swim
+    for word, about in WORDS.items():
+        swim = swim._replace(**about.given(swim, words[word])) if word in words else swim
     return swim
 
 
@@ -96,6 +97,8 @@ def _body(swim: Swim, value: Any) -> dict[str, Any]:
 
 
 def _plain_body(swim: Swim) -> str:
+    if swim.robot is not None and swim.robot.body == swim.body:
+        return ""
     name = swim.body_file or swim.body.name
     if _body(swim, name)["body"] != swim.body:
         raise ValueError(f"body {shown(name)} cannot be written: its numbers are no longer those of that name")
@@ -125,19 +128,23 @@ def _duration(swim: Swim, value: Any) -> dict[str, Any]:
     return {"duration": value if until_settled(value) else positive("duration", value, "s")}
 
 
-def _flow(swim: Swim, value: Any) -> dict[str, Any]:
-    if isinstance(value, str):
-        return {"flow": flow_from_text(value)}
-    given = checked_instance("flow", value, Mapping)
-    parts = [given] if "kind" in given else list(given.values())
-    return {"flow": flow_of([dict(checked_instance("flow", each, Mapping)) for each in parts])}
+def _plain_flow(swim: Swim) -> str:
+    return "" if swim.flow is None else text_of_flow(swim.flow)
 
 
-def _plain_flow(swim: Swim) -> Any:
-    parts = [_listed(each, {}) for each in plain_of_flow(swim.flow) or []]
-    if any(each["kind"] not in KINDS for each in parts):
-        raise ValueError(f"flow {shown(swim.flow)} cannot be written: a scene holds no functions and no grids")
-    return parts[0] if len(parts) == 1 else {f"part_{number}": each for number, each in enumerate(parts, 1)}
+def _robot(swim: Swim, value: Any) -> dict[str, Any]:
+    from_file = bool(Path(checked_instance("robot", value, str)).suffix)
+    robot = Robot.from_file(value) if from_file else Robot.named(value)
+    return {"robot": robot, "robot_file": value if from_file else "", "body": robot.body or swim.body}
+
+
+def _plain_robot(swim: Swim) -> str:
+    if swim.robot is None:
+        return ""
+    name = swim.robot_file or swim.robot.name
+    if _robot(swim, name)["robot"] != swim.robot:
+        raise ValueError(f"robot {shown(name)} cannot be written: its parts are no longer those of that name")
+    return name
 
 
 def _listed(values: Mapping[str, Any], defaults: Mapping[str, Any]) -> dict[str, Any]:
@@ -170,6 +177,7 @@ def _number(name: str, default: Any) -> Word:
 
 
 WORDS: dict[str, Word] = {
+    "robot": Word(_robot, _plain_robot),  # before the body, which replaces that of its file
     "body": Word(_body, _plain_body),
     "scene": Word(_scene, _plain_scene),
     "accuracy": Word(lambda swim, value: {"accuracy": Accuracy.of(value)}, _plain_accuracy),
@@ -180,5 +188,5 @@ WORDS: dict[str, Word] = {
     "initial_orientation": _of_start("orientation"),
     "initial_angular_velocity": _of_start("twist", slice(3)),
     "initial_linear_velocity": _of_start("twist", slice(3, 6)),
-    "flow": Word(_flow, _plain_flow),
+    "flow": Word(lambda swim, value: {"flow": flow_from_text(checked_instance("flow", value, str))}, _plain_flow),
 }

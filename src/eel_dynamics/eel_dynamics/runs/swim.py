@@ -11,11 +11,12 @@ from eel_dynamics.flow.flow import Flow
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.run import Run, simulate
 from eel_dynamics.simulation.simulation import Simulation
 
 AT_REST = InitialState(np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), np.zeros(6))
-OF_SWIMMER = ("body", "scene", "accuracy", "stations", "flow")  # fields that are arguments of `Simulation`
+OF_SWIMMER = ("body", "scene", "accuracy", "stations", "flow", "robot")  # fields that are arguments of `Simulation`
 
 
 class Swim(NamedTuple):
@@ -27,11 +28,13 @@ class Swim(NamedTuple):
     accuracy: Any  # as in `simulate`
     start: InitialState = AT_REST
     flow: Flow | None = None
+    robot: Robot | None = None
     duration: float | str = 10.0  # s, or "settled"
     sample_period: float | None = None  # s
     stations: Any = 51  # how many, or their X [m]
     gait: Settings | None = None  # what gave the law, where a gait did
     body_file: str = ""  # where the body is from, if from a file
+    robot_file: str = ""  # where the robot is from, if from a file
 
     def run(self, **how: Any) -> Run:
         """The run. how: further arguments of `simulate`, or other ones. `SimulationStopped`: it cannot go on."""

@@ -20,6 +20,7 @@ from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import measures_of
 from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.scene_file import words_of
 from eel_dynamics.runs.swim import Swim
 from eel_dynamics.simulation.stopping import SimulationStopped
 
@@ -146,7 +147,7 @@ def terms(swim: Swim, tolerance: float = 0.02) -> Terms:
     most = max(LEAST_EVALUATIONS, DEARER * whole.evaluations / float(whole.time[-1]))
     swum = in_threads(lambda each: _swum(each._replace(accuracy=fine), most), parts.values())
     effects = {name: _effect(run, whole) for name, run in zip(parts, swum, strict=True)}
-    small = [name for name in parts if effects[name].worst <= tolerance and parts[name].law is swim.law]
+    small = [name for name in parts if effects[name].worst <= tolerance and _may_go(parts[name], swim)]
     dropped, restored = sorted(small, key=lambda name: effects[name].worst), []
     while True:
         together = _effect(_swum(without(compared, dropped)._replace(accuracy=exact)), whole)
@@ -161,6 +162,18 @@ def terms(swim: Swim, tolerance: float = 0.02) -> Terms:
     rate = whole.error_estimate.growth_rate if whole.error_estimate else 0.0
     duration = float(whole.time[-1])
     return Terms(swim, duration, tolerance, nothing, effects, dropped, recommended, together, restored, rate)
+
+
+def _may_go(without: Swim, swim: Swim) -> bool:
+    """Whether the scene `without` a term swims by the same law, and has a file where `swim` has one."""
+    if without.law is not swim.law:
+        return False
+    for each in (swim, without):
+        try:
+            words_of(each)
+        except ValueError:
+            return each is swim
+    return True
 
 
 def _swum(swim: Swim, most_evaluations: float = MOST_EVALUATIONS) -> Run | Exception:

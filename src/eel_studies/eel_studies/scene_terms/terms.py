@@ -9,6 +9,8 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from eel_dynamics.robot.joint import Joint
+from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.swim import AT_REST, Swim
 from eel_gaits.laws.law import Law
 
@@ -17,6 +19,36 @@ Off = Callable[[Swim], Swim]  # a swim -> the same without the term
 
 def _scene(**fields: Any) -> Off:
     return lambda swim: swim._replace(scene=replace(swim.scene, **fields))
+
+
+def _joints(**fields: Any) -> Off:
+    """Without what these fields of a robot's joints, or of their servos, give."""
+
+    def off(swim: Swim) -> Swim:
+        robot = swim.robot
+        for joint in robot.joints if robot is not None else ():
+            known = {*vars(joint), *(vars(joint.actuator) if joint.actuator is not None else ())}
+            own = {name: value for name, value in fields.items() if name in known}
+            robot = robot.changed(joint.name, **own) if own and robot is not None else robot
+        return swim._replace(robot=robot)
+
+    return off
+
+
+def _one_mode(swim: Swim) -> Swim:
+    """The `swim` of a robot whose tails and muscles bend by one mode alone."""
+    if swim.robot is None:
+        return swim
+    parts = [part if isinstance(part, Joint) else replace(part, modes=1) for part in swim.robot.parts]
+    return swim._replace(robot=Robot(parts, name=swim.robot.name, body=swim.robot.body, notes=swim.robot.notes))
+
+
+def _on_the_axis(swim: Swim) -> Swim:
+    """The `swim` of a body whose mass lies on its axis."""
+    given = swim.body.arguments["centre_of_mass_offset"]
+    return (
+        swim._replace(body=swim.body.changed(centre_of_mass_offset=0.0)) if callable(given) or np.any(given) else swim
+    )
 
 
 def planar(swim: Swim) -> Swim:
@@ -39,11 +71,22 @@ TERMS: dict[str, Off] = {
     "turbulence of the friction": _scene(friction="laminar"),
     "nose": _scene(nose=False),
     "righting moment": _scene(metacentric_height=0.0),
+    "weight": _scene(weight=False),
+    "mass off the axis": _on_the_axis,
     "current": _scene(current=(0.0, 0.0, 0.0)),
     "flow": lambda swim: swim._replace(flow=None),
     "third dimension": planar,
+    "compliance of the robot": lambda swim: swim._replace(robot=None),
+    "limits of the servos": _joints(torque_limit=None, speed_limit=None),
+    "rotors": _joints(rotor_inertia=0.0),
+    "hard stops": _joints(limits=None),
+    "higher modes": _one_mode,
 }
-WITHIN = {"friction": ("turbulence of the friction",), "inertia of the water": ("wake",)}  # what goes with a term
+WITHIN = {  # what goes with a term
+    "friction": ("turbulence of the friction",),
+    "inertia of the water": ("wake",),
+    "compliance of the robot": ("limits of the servos", "rotors", "hard stops", "higher modes"),
+}
 
 
 def terms_of(swim: Swim) -> dict[str, Swim]:
@@ -71,4 +114,4 @@ def _physics(swim: Swim) -> tuple[Any, ...]:
         scene = replace(scene, nose=False)
     if scene.planar:
         scene = replace(scene, metacentric_height=0.0)
-    return scene, swim.flow, swim.law, *(row.tobytes() for row in swim.start)
+    return scene, swim.flow, swim.law, swim.robot, swim.body, *(row.tobytes() for row in swim.start)
