@@ -100,6 +100,14 @@ def test_a_setting_that_diverges_is_told_apart():
     assert trade.unstable == [long] and [row.accuracy for row in trade.rows] == [COARSE]
 
 
+def test_a_dear_scene_gets_fewer_settings(monkeypatch):
+    many, rounds = measuring.affordable(swim_of(straight()), False, 2)
+    assert rounds == 2 and len(many) > 300
+    monkeypatch.setattr(measuring, "MOST_SECONDS", 0.0)
+    few, rounds = measuring.affordable(swim_of(straight()), False, 2)
+    assert rounds == 1 and tuple(each.name for each in few) == ASKED_FOR
+
+
 def test_a_budget_of_time_takes_the_most_exact_that_keeps_to_it(trade):
     seconds = [row.seconds for row in trade.rows]
     best, asked = trade.within(Budget("made up", 1.001 * max(seconds) / 2.5))

@@ -22,10 +22,9 @@ from eel_studies.outputs import Outputs, add_output_options
 from eel_studies.scene_options import add_scene_options, swim_from
 from eel_studies.tradeoff.delivered import COUNT, SEED, deliver, delivered_table, draw_delivered
 from eel_studies.tradeoff.drawing import SIZE, draw_trade
-from eel_studies.tradeoff.measuring import SAMPLE_PERIOD, Trade, measure
+from eel_studies.tradeoff.measuring import SAMPLE_PERIOD, Trade, affordable, measure
 from eel_studies.tradeoff.page import PARTS, reference_line, write_page
 from eel_studies.tradeoff.price import SWIMS, draw_prices, prices
-from eel_studies.tradeoff.settings import settings
 from eel_studies.tradeoff.table import asked_table, trade_table, worth_table
 
 NAME = "eel tradeoff"
@@ -53,8 +52,7 @@ def _trade(options: argparse.Namespace) -> int:
     outputs, found = Outputs(NAME, options, PARTS), []
     for name, swim in swims.items():
         progress.say(f"scene {name}")
-        rows = settings(swim.scene, options.quick)
-        trade = measure(swim, rows, options.repeats, progress.say, name)
+        trade = measure(swim, *affordable(swim, options.quick, options.repeats), progress.say, name)
         found.append(trade)
         tables = trade_table(trade, options.all), asked_table(trade), worth_table(trade)
         print(f"\n{trade.name}, {trade.duration:g} s. {reference_line(trade)}", *(t.text() for t in tables), sep="\n\n")

@@ -23,11 +23,13 @@ from eel_dynamics.simulation.stopping import SimulationStopped
 
 from eel_studies.reference import bare, front, reference_of, settled
 from eel_studies.scene_terms.terms import terms_of
-from eel_studies.tradeoff.settings import ASKED_FOR, REFERENCE
+from eel_studies.tradeoff.settings import ASKED_FOR, REFERENCE, settings
 from eel_studies.workers import in_threads
 
 SAMPLE_PERIOD = 0.05  # s
 REACHED = 1e-9  # relative error of a reference that is wanted
+MOST_SECONDS = 30.0  # of CPU time, of a reference and of all settings: dear scenes get fewer of them
+DEARER = 3.0  # times a standard swim, that a setting takes in the mean
 SECONDS = attrgetter("seconds")  # of a row: its cost
 
 
@@ -90,43 +92,58 @@ class Trade:
         return min(rows, key=attrgetter("error")), min(asked, key=attrgetter("error"), default=None)
 
 
+def affordable(swim: Swim, quick: bool, repeats: int) -> tuple[list[Accuracy], int]:
+    """The settings for a `swim`, and rounds of timing: fewer where it is dear, down to what is `ASKED_FOR`, once.
+
+    quick: as in `settings`. `SimulationStopped` where the swim cannot go on.
+    """
+    swim = settled(bare(swim), SAMPLE_PERIOD)
+    cost = DEARER * _timed(swim, Accuracy.of("standard").in_scene(swim.scene))[1]
+    for fewer, rounds in ((quick, repeats), (True, repeats), (True, 1)):
+        rows = settings(swim.scene, fewer)
+        if cost * len(rows) * (rounds + 1) <= MOST_SECONDS:
+            return rows, rounds
+    return rows[-len(ASKED_FOR) :], 1
+
+
 def measure(
     swim: Swim,
-    settings: list[Accuracy],
+    rows: list[Accuracy],
     repeats: int = 5,
     say: Callable[[str], object] = lambda text: None,
     name: str = "scene",
 ) -> Trade:
-    """Errors and times of a `swim` with every one of the `settings`, and the errors of models without a term.
+    """Errors and times of a `swim` with every one of the `rows` of settings, and the errors of models without a term.
 
     repeats: rounds of timing. say(text): called with a line of progress. `SimulationStopped` where no reference comes
     to its end. Settings that diverge are listed in `Trade.unstable`.
     """
     say("the reference: two methods on two grids")
     swim = settled(bare(swim), SAMPLE_PERIOD)
-    reference, apart = reference_of(swim, REACHED)
-    say(f"errors of {len(settings)} settings")
-    found = zip(settings, in_threads(lambda each: _swum(swim._replace(accuracy=each)), settings), strict=True)
+    reference, apart = reference_of(swim, REACHED, least=0, seconds=MOST_SECONDS)
+    say(f"errors of {len(rows)} settings")
+    found = zip(rows, in_threads(lambda each: _swum(swim._replace(accuracy=each)), rows), strict=True)
     runs = {accuracy: run for accuracy, run in found if isinstance(run, Run)}
-    unstable = [accuracy for accuracy in settings if accuracy not in runs]
+    unstable = [accuracy for accuracy in rows if accuracy not in runs]
     times: dict[Accuracy, list[tuple[float, float, int]]] = {accuracy: [] for accuracy in runs}
     for repeat in range(repeats):
         say(f"times, round {repeat + 1} of {repeats}")
         for accuracy in runs:
             times[accuracy].append(_timed(swim, accuracy))
-    rows = []
+    measured = []
     for accuracy, run in runs.items():
         marching, seconds, memory = map(statistics.median, zip(*times[accuracy], strict=True))
         errors, microseconds = relative_errors(run, reference), 1e6 * marching / max(1, run.evaluations)
         times_real_time = float(swim.duration) / seconds
         cost = microseconds, seconds, times_real_time, int(memory)
         pose, torque = (max(error or 0.0, apart) for error in (errors.position, errors.torque))
-        rows.append(Measured(accuracy, pose, torque, *cost, run))
+        measured.append(Measured(accuracy, pose, torque, *cost, run))
     say("the model without each of its terms")
     parts = terms_of(swim)
-    poorer = in_threads(lambda each: _swum(each._replace(accuracy=REFERENCE)), parts.values())
+    fine = REFERENCE if apart <= REACHED else Accuracy.of("fine").in_scene(swim.scene).as_it_is()
+    poorer = in_threads(lambda each: _swum(each._replace(accuracy=fine)), parts.values())
     worths = [_worth(name, run, reference) for name, run in zip(parts, poorer, strict=True)]
-    return Trade(name, swim, reference, apart, rows, unstable, worths)
+    return Trade(name, swim, reference, apart, measured, unstable, worths)
 
 
 def front_of(rows: list[Measured], error: Callable[[Measured], float] = attrgetter("error")) -> list[Measured]:

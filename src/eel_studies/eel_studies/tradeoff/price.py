@@ -45,7 +45,7 @@ def prices(count: int, seed: int, say: Callable[[str], object] = lambda text: No
 
 def _reference(swim: Swim) -> Run | None:
     try:
-        return swim.run(accuracy=REFERENCES[0][0], estimate=False)
+        return swim.run(accuracy=REFERENCES[1][0], estimate=False)
     except SimulationStopped:
         return None
 
