@@ -15,7 +15,7 @@ from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.swim import Swim
 from eel_dynamics.simulation.stopping import SimulationStopped
 
-DEARER = 4.0  # times, that the next pair takes
+DEARER = 10.0  # times, that the next pair takes
 REFERENCES = tuple(  # finer ones, where the first do not agree
     (
         Accuracy(name="pair", resolution=points, tolerance=tolerance),

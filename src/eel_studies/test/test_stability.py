@@ -117,6 +117,7 @@ def test_no_cell_of_random_maps_is_wrong_in_silence():
 
 
 @pytest.mark.soak
+@pytest.mark.timeout(3600)
 def test_no_cell_of_2000_is_wrong_in_silence():
     check_in_silence(2000, 2)
 

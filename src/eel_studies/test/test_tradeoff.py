@@ -105,7 +105,7 @@ def test_a_dear_scene_gets_fewer_settings(monkeypatch):
     assert rounds == 2 and len(many) > 300
     monkeypatch.setattr(measuring, "MOST_SECONDS", 0.0)
     few, rounds = measuring.affordable(swim_of(straight()), False, 2)
-    assert rounds == 1 and tuple(each.name for each in few) == ASKED_FOR
+    assert rounds == 1 and [each.name for each in few] == [*ASKED_FOR]
 
 
 def test_a_budget_of_time_takes_the_most_exact_that_keeps_to_it(trade):

@@ -119,7 +119,7 @@ class Measured:
     def texts(self, outcome: str) -> list[str]:
         """The different messages of this outcome, without time and value."""
         cells = self.cells[self.cells["outcome"] == outcome]
-        if outcome == SENSITIVE:
+        if outcome == SENSITIVE:  # the fastest of them
             return [f"errors grow by a factor of e in {1.0 / cells['rate'].max():.2g} s"] if len(cells) else []
         return sorted({text.partition("s: ")[2].partition(" (")[0] or text for text in cells["text"] if text})
 

@@ -72,7 +72,7 @@ def _trade(options: argparse.Namespace) -> int:
 
 def _budget_line(trade: Trade, budget: Budget) -> str:
     best, asked = trade.within(budget)
-    named = "no preset or target is as fast" if asked is None else f"accuracy={asked.accuracy.name!r} delivers"
+    named = "no preset or target is as fast" if asked is None else f"{asked.accuracy.name} delivers"
     return f"{budget.name}: {best.accuracy.name} delivers {best.error:.1e}; {named}" + (
         f" {asked.error:.1e}." if asked else "."
     )

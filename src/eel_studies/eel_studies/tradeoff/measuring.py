@@ -28,7 +28,7 @@ from eel_studies.workers import in_threads
 
 SAMPLE_PERIOD = 0.05  # s
 REACHED = 1e-9  # relative error of a reference that is wanted
-MOST_SECONDS = 30.0  # of CPU time, of a reference and of all settings: dear scenes get fewer of them
+MOST_SECONDS = 20.0  # of CPU time, of a reference and of all settings: dear scenes get fewer of them
 DEARER = 3.0  # times a standard swim, that a setting takes in the mean
 SECONDS = attrgetter("seconds")  # of a row: its cost
 

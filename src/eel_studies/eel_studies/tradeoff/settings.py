@@ -12,7 +12,7 @@ TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10)  # relative error per a
 STEPS = (0.1, 0.05, 0.02, 0.01, 0.005)  # s, of the classical method
 ADAMS_ORDERS = (3, 4, 5, 6)
 COARSE_POINTS, COARSE_TOLERANCE = 24.0, 1e-5  # at most and at least, for settings without kinks
-ASKED_FOR = (*PRESETS, "1e-3", "1e-5", "1e-7")  # presets, and the targets between them
+ASKED_FOR = {name: name for name in PRESETS} | {f"target {text}": text for text in ("1e-3", "1e-5", "1e-7")}
 REFERENCE = Accuracy(name="reference run", resolution=240.0, tolerance=1e-12)
 METHODS = {  # name in `Accuracy`: in words
     "adams": "Adams-Bashforth, adaptive steps",
@@ -41,5 +41,5 @@ def settings(scene: Scene, quick: bool = False) -> list[Accuracy]:
         for step in STEPS[::every]:
             rows.append(Accuracy(name=f"{nodes}, step {step:g} s", resolution=resolution, step=step))
     # They lose their target: every run then takes these settings as they are.
-    asked = [replace(Accuracy.of(name).in_scene(scene), name=name) for name in ASKED_FOR]
+    asked = [replace(Accuracy.of(text).in_scene(scene), name=name) for name, text in ASKED_FOR.items()]
     return rows + [each.as_it_is() for each in asked]
