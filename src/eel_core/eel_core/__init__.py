@@ -12,6 +12,7 @@ _core = sys.modules["eel_core._core"] = import_core()
 
 from eel_core._core import (  # noqa: E402
     FRICTION_LAWS,
+    MOST_SERVOS,
     STATUSES,
     BentMarch,
     Flow,
@@ -31,6 +32,7 @@ from eel_core._core import (  # noqa: E402
 
 __all__ = [
     "FRICTION_LAWS",
+    "MOST_SERVOS",
     "STATUSES",
     "BentMarch",
     "Flow",

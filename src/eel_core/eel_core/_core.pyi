@@ -24,12 +24,17 @@ STATUSES: tuple[str, ...]
 def build_info() -> dict[str, str]:
     """How this module was compiled: level, compiler, flags, sanitizers, pybind11."""
 
-def layout(samples: int, stations: int, wrench: bool, load: bool) -> dict[str, tuple[int, int, int, bool]]:
+MOST_SERVOS: int  # of fins, whose angles are states
+
+def layout(
+    samples: int, stations: int, wrench: bool, load: bool, fins: int = 0
+) -> dict[str, tuple[int, int, int, int]]:
     """Where each quantity of so many samples lies in one array of numbers.
 
-    By its name: (begin, instants, numbers, along the body). A quantity takes instants * numbers of the array from begin
-    on, or instants * stations * numbers where it is given along the body, the last index running fastest. One that is
-    not asked for has no instants. wrench: the internal wrench; load: what the water does along the body.
+    By its name: (begin, instants, numbers, of). A quantity takes instants * numbers of the array from begin on, or
+    instants * stations * numbers where it is given along the body (of 1), or instants * fins * numbers of fins (of 2),
+    the last index running fastest. One that is not asked for has no instants.
+    wrench: the internal wrench; load: what the water does along the body.
     """
 
 class _Points(Protocol):
@@ -138,6 +143,8 @@ class Swimmer(_Shared):
         righting: float,
         gravity: float,
         missed_drag: Iterable[Buffer] = (),
+        fins: list[tuple[Any, ...]] = ...,
+        servos: list[tuple[float, float, float, float, int]] = ...,
     ) -> None:
         """sections: at the nodes. friction: of `FRICTION_LAWS`. resistive: drag along the body.
         first_watched: first of the speeds (0 V1, 1 V2, 2 V3, 3 Omega1, 4 Re/8e4 - 1) whose changes of sign within a
@@ -146,7 +153,10 @@ class Swimmer(_Shared):
         righting, gravity [m/s^2]: g where `lever` gives a moment of weight, and where `net` gives a force; else 0.
         missed_drag: (K, n) [m] for V2, V3 and Omega1: of each node, what the drag's integral from the start of its
         panel misses, by the drag at the node, at K fractions (1 - cos(pi k / (K - 1))) / 2 of the panel; none where the
-        sections are smooth. `ValueError` names what does not fit."""
+        sections are smooth. fins: (node at the end of a panel, normal (3,), centre of pressure (3,) [m], 1/2 rho_f
+        area [kg/m], lift slope, 1 / (pi e AR), drag across and along, added mass [kg], servo, sign of its angle by the
+        servo's, first station there or behind); servos: (time constant [s],
+        limit [rad], roll gain, rate gain [s], node). `ValueError` names what does not fit."""
 
 class Flow(_Shared):
     """How the water moves by itself: the sum of its sources."""
@@ -378,11 +388,14 @@ class March:
         current: Buffer,
         flow: Flow | None,
         smoothly: bool,
+        fin_angles: list[tuple[Buffer, Buffer]] = ...,
     ) -> None:
         """What drives the body from now on. breakpoints: ascending times [s] at which a derivative of the shape or of
         the flow jumps. ledger: the works are integrated too. current (3,) [m/s]: of the water, world. flow: how the
         water moves besides. smoothly: the motion goes on as
-        before, so that the next step need not begin anew. `ValueError` for a law on another grid."""
+        before, so that the next step need not begin anew. fin_angles: what each
+        servo is given, knots (n,) [s] and coefficients (n - 1, 4) of cubics [rad]. `ValueError` for a law on another
+        grid."""
 
     def start(self, position: Buffer, orientation: Buffer, twist: Buffer) -> float:
         """Stands at time 0 at a position (3,) [m] with an orientation (4,) (x y z w, world from head) and the head's

@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "bind_bent.hpp"
+#include "bind_fins.hpp"
 #include "bind_flow.hpp"
 #include "bind_sampled.hpp"
 #include "eel_core/build_info.hpp"
@@ -43,7 +44,7 @@ py::dict build_info_as_dict()
 }
 
 // Where the quantities of samples lie in one array: name -> (begin, instants, numbers of an instant).
-py::dict layout(std::size_t samples, std::size_t stations, bool wrench, bool load)
+py::dict layout(std::size_t samples, std::size_t stations, bool wrench, bool load, std::size_t fins)
 {
     static constexpr const char* names[Profiles::quantities] = {"position",
                                                                 "orientation",
@@ -63,12 +64,16 @@ py::dict layout(std::size_t samples, std::size_t stations, bool wrench, bool loa
                                                                 "resistive_force",
                                                                 "tail_force",
                                                                 "nose_force",
-                                                                "wake_momentum_rate"};
-    const Profiles profiles(samples, stations, wrench, load);
+                                                                "wake_momentum_rate",
+                                                                "fin_angle",
+                                                                "fin_force"};
+    const Profiles profiles(samples, stations, wrench, load, fins);
     py::dict result;
     for (std::size_t q = 0; q < Profiles::quantities; ++q)
-        result[names[q]] =
-            py::make_tuple(profiles.begin[q], profiles.instants(q), Profiles::width_of[q], profiles.along_body(q));
+        result[names[q]] = py::make_tuple(profiles.begin[q], profiles.instants(q), Profiles::width_of[q],
+                                          profiles.along_body(q) ? 1
+                                          : profiles.of_fins(q)  ? 2
+                                                                 : 0);
     return result;
 }
 
@@ -156,13 +161,17 @@ class PyMarch {
         march_.change(std::move(swimmer), Method::of(method, order), planar);
     }
     void follow(const std::shared_ptr<const LawOnGrid>& law, std::vector<double> breakpoints, const StepBounds& bounds,
-                bool ledger, const py::object& current, std::shared_ptr<Flow> flow, bool smoothly)
+                bool ledger, const py::object& current, std::shared_ptr<Flow> flow, bool smoothly,
+                const py::list& fin_angles)
     {
         check_fits(*law, march_.swimmer());
+        LawOnGrid own = *law;
+        own.fins = angles_from(fin_angles);
         const InUse in_use(*this);
         smoothly &= has_law_;
         has_law_ = true;
-        march_.follow({*law, std::move(breakpoints), bounds, ledger, water_from(current, std::move(flow))}, smoothly);
+        march_.follow({std::move(own), std::move(breakpoints), bounds, ledger, water_from(current, std::move(flow))},
+                      smoothly);
     }
     double start(const py::object& position, const py::object& orientation, const py::object& twist)
     {
@@ -196,7 +205,7 @@ class PyMarch {
                      bool wrench, bool load, double until)
     {
         const Numbers instants(times, "times"), into(whole, "whole", true), works_into(works, "works", true);
-        const Profiles profiles(instants.size(), march_.swimmer().stations, wrench, load);
+        const Profiles profiles(instants.size(), march_.swimmer().stations, wrench, load, march_.swimmer().fins.size());
         into.check_size(profiles.begin[Profiles::quantities], "whole");
         works_into.check_size(std::tuple_size_v<Works> * instants.size(), "works");
         const Driven in_use(*this);
@@ -211,7 +220,7 @@ class PyMarch {
     bool observe(const py::object& whole, bool wrench, bool load)
     {
         const Numbers into(whole, "whole", true);
-        const Profiles profiles(1, march_.swimmer().stations, wrench, load);
+        const Profiles profiles(1, march_.swimmer().stations, wrench, load, march_.swimmer().fins.size());
         into.check_size(profiles.begin[Profiles::quantities], "whole");
         const Driven in_use(*this);
         const py::gil_scoped_release unlocked;
@@ -339,25 +348,30 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
     module.attr("__name__") = "eel_core._core";
     module.def("build_info", &build_info_as_dict,
                "How this module was compiled: level, compiler, flags, sanitizers, pybind11.");
-    module.def("layout", &layout, py::arg("samples"), py::arg("stations"), py::arg("wrench"), py::arg("load"));
+    module.def("layout", &layout, py::arg("samples"), py::arg("stations"), py::arg("wrench"), py::arg("load"),
+               py::arg("fins") = 0);
+    module.attr("MOST_SERVOS") = most_servos;
     module.attr("FRICTION_LAWS") = py::tuple(py::cast(friction_names));
     module.attr("STATUSES") =
         py::make_tuple("marched", "not_finite", "step_too_small", "singular", "too_many_steps", "unfinished");
 
     auto swimmer = py::class_<Swimmer, std::shared_ptr<Swimmer>>(module, "Swimmer");
     share_in_copies(swimmer);
-    swimmer.def(py::init([](const py::object& grid, const py::object& sections, const py::object& stations,
-                            const std::string& friction, bool resistive, std::size_t first_watched, bool wake,
-                            double nose_mass, double nose_drag, bool distributed_pressure, bool offset, double righting,
-                            double gravity, const py::object& missed_drag) {
-                    return std::const_pointer_cast<Swimmer>(
-                        swimmer_from(grid, sections, stations, friction, resistive, first_watched, wake, nose_mass,
-                                     nose_drag, distributed_pressure, offset, righting, gravity, missed_drag));
-                }),
-                py::arg("grid"), py::arg("sections"), py::arg("stations"), py::kw_only(), py::arg("friction"),
-                py::arg("resistive"), py::arg("first_watched"), py::arg("wake"), py::arg("nose_mass"),
-                py::arg("nose_drag"), py::arg("distributed_pressure"), py::arg("offset"), py::arg("righting"),
-                py::arg("gravity"), py::arg("missed_drag") = py::tuple());
+    swimmer.def(
+        py::init([](const py::object& grid, const py::object& sections, const py::object& stations,
+                    const std::string& friction, bool resistive, std::size_t first_watched, bool wake, double nose_mass,
+                    double nose_drag, bool distributed_pressure, bool offset, double righting, double gravity,
+                    const py::object& missed_drag, const py::list& fins, const py::list& servos) {
+            auto made = std::const_pointer_cast<Swimmer>(
+                swimmer_from(grid, sections, stations, friction, resistive, first_watched, wake, nose_mass, nose_drag,
+                             distributed_pressure, offset, righting, gravity, missed_drag));
+            add_fins(*made, fins, servos);
+            return made;
+        }),
+        py::arg("grid"), py::arg("sections"), py::arg("stations"), py::kw_only(), py::arg("friction"),
+        py::arg("resistive"), py::arg("first_watched"), py::arg("wake"), py::arg("nose_mass"), py::arg("nose_drag"),
+        py::arg("distributed_pressure"), py::arg("offset"), py::arg("righting"), py::arg("gravity"),
+        py::arg("missed_drag") = py::tuple(), py::arg("fins") = py::list(), py::arg("servos") = py::list());
 
     auto flow_class = py::class_<Flow, std::shared_ptr<Flow>>(module, "Flow");
     share_in_copies(flow_class);
@@ -408,7 +422,7 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
             "__deepcopy__", [](PyMarch& march, const py::dict&) { return march.copy(); }, py::arg("memo"))
         .def("change", &PyMarch::change, py::arg("swimmer"), py::arg("method"), py::arg("order"), py::arg("planar"))
         .def("follow", &PyMarch::follow, py::arg("law"), py::arg("breakpoints"), py::arg("bounds"), py::arg("ledger"),
-             py::arg("current"), py::arg("flow"), py::arg("smoothly"))
+             py::arg("current"), py::arg("flow"), py::arg("smoothly"), py::arg("fin_angles") = py::list())
         .def("start", &PyMarch::start, py::arg("position"), py::arg("orientation"), py::arg("twist"))
         .def("set_state", &PyMarch::set_state, py::arg("position"), py::arg("orientation"), py::arg("twist"))
         .def("set_twist", &PyMarch::set_twist, py::arg("twist"))

@@ -16,6 +16,7 @@ from eel_dynamics.flow.functions import FlowField
 from eel_dynamics.flow.gridded import GriddedFlow
 from eel_dynamics.flow.sources import Gust, Shear, Uniform, Vortex, VortexStreet, Wave
 from eel_dynamics.model.body import Body
+from eel_dynamics.model.fins import Fin, RollHold
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.robot.actuators import Servo, Torque
 from eel_dynamics.robot.continuous import Muscle, PassiveTail
@@ -37,6 +38,7 @@ __all__ = [
     "Batch",
     "Body",
     "EnergyLedger",
+    "Fin",
     "Flow",
     "FlowField",
     "FlowSample",
@@ -47,6 +49,7 @@ __all__ = [
     "Muscle",
     "PassiveTail",
     "Robot",
+    "RollHold",
     "Run",
     "Scene",
     "Servo",

@@ -16,6 +16,9 @@ Water that moves by itself is a function u(x, t), `flow`. The energy of the flui
 momentum and the force - grad u . p follow from T, by complex steps of place and time; only the force of the undisturbed
 pressure, rho_f A Du/Dt, is added.
 
+Fins are point forces on their sections, `fins`: of each the `Fin` of the library, for its numbers, and its angle as a
+function of time. The force of their added mass takes the true acceleration, a complex step of the velocity.
+
 Frames: the axes of the head at the instant, about the head, unless a name says `section` or `world`. Velocities are
 relative to the water. Arrays over X have shape (N, 3). Semi-axes as in the paper: `a` along E3, `b` along E2.
 """
@@ -27,6 +30,7 @@ from reference_space import Space
 from scipy.integrate import solve_ivp
 
 STEP = 1e-30  # of the complex steps
+PARTS = ("real", 1.0), ("imag", 1j)
 GRAVITY = 9.80665  # m/s^2
 E1 = np.array([1.0, 0.0, 0.0])
 DRAG_ROLL, DRAG_LATERAL, DRAG_VERTICAL, NOSE_ADDED_MASS, NOSE_PRESSURE = 1.0, 1.98, 1.0, 0.32, 0.036
@@ -101,6 +105,7 @@ class Reference:
         self.displaced = self.water * area  # kg/m
         self.net = (self.displaced - mass) * settings.weight  # kg/m
         self.height = 0.0  # m, of the head
+        self.fins = ()  # (fin, angle [rad] of a time [s])
         self.flow = None  # u (N, 3) [m/s] of places (N, 3) [m] and a time [s], world; both may be complex
         self.pose = SimpleNamespace(position=np.zeros(3), axes=np.eye(3), time=0.0)  # of the head in the world
         self.nose_drag = np.pi * NOSE_PRESSURE * nose[1] * (settings.resistive and settings.nose)
@@ -188,6 +193,43 @@ class Reference:
         """Twists (..., N, 6) of the sections at their centres of mass, V + Omega x e, from those at their centres."""
         e = -self.offset[:, None] * np.array([0.0, 0.0, 1.0])
         return np.concatenate([eta[..., :3], eta[..., 3:] + np.cross(eta[..., :3], e)], axis=-1)
+
+    # -- fins -------------------------------------------------------------------------------------------------------
+    def fin_velocity(self, fin, K, K_rate, mu):
+        """Place (3,) about the head and velocity (3,) of the centre of pressure, and the section's axes (3, 3)."""
+        R, r = self.configuration(K)
+        omega, velocity = self.shape_velocity(R, K_rate)
+        fields = R.reshape(-1, 9), r, omega, velocity
+        at = [sum(unit * self.space.evaluate(getattr(f, name), fin.station)[0] for name, unit in PARTS) for f in fields]
+        span = np.sqrt(fin.aspect_ratio * fin.area / 2)
+        arm = at[0].reshape(3, 3) @ (fin.root(self.body) + 4 * span / (3 * np.pi) * fin.axis)
+        place = at[1] + arm
+        spin = at[2] + mu[:3]
+        return place, at[3] + mu[3:] + np.cross(mu[:3], at[1]) + np.cross(spin, arm), at[0].reshape(3, 3)
+
+    def fin_forces(self, K, K_rate, K_acceleration, mu, mu_rate):
+        """Of each fin: place, velocity (3,), section's axes (3, 3), and the force (3,) of the water on it."""
+        found, step = [], 1j * STEP
+        for fin, angle in self.fins:
+            place, v, R = self.fin_velocity(fin, K, K_rate, mu)
+            place, v, R = place.real, v.real, R.real
+            moved = self.fin_velocity(fin, K + step * K_rate, K_rate + step * K_acceleration, mu + step * mu_rate)[1]
+            a = moved.imag / STEP + np.cross(mu[:3], v)
+            s, c = np.sin(angle(self.pose.time)), np.cos(angle(self.pose.time))
+            e_n, e_c = R @ (c * fin.normal + s * E1), R @ (s * fin.normal - c * E1)
+            w = v if self.flow is None else v - self.flow_at(place[None])[0]
+            a_u = 0 * v if self.flow is None else self.flow_acceleration(place[None])[0]
+            chord = fin.area / np.sqrt(fin.aspect_ratio * fin.area / 2)
+            added = self.scene.reactive * self.water * np.pi / 4 * chord * fin.area
+            found.append(
+                (place, v, R, fin_steady(fin, self.water, w @ e_n, w @ e_c, e_n, e_c) - added * e_n * (e_n @ (a - a_u)))
+            )
+        return found
+
+    def fin_wrench(self, *motion):
+        """Wrench (6,) of all fins about the head."""
+        sums = [np.concatenate([np.cross(place, force), force]) for place, _, _, force in self.fin_forces(*motion)]
+        return np.sum(sums, axis=0) if sums else np.zeros(6)
 
     # -- energy, momentum, balance ----------------------------------------------------------------------------------
     def energies(self, K, K_rate, mu):
@@ -297,6 +339,10 @@ class Reference:
         load += self.space.weights @ np.concatenate([torque + np.cross(r, force), force], axis=1)
         if self.flow is not None:
             load += self.flow_force(K, K_rate, mu)
+        if self.fins:
+            by_rate = [self.fin_wrench(K, K_rate, K_acceleration, mu, unit) for unit in (still, *np.eye(6))]
+            load += by_rate[0]
+            matrix -= np.stack(by_rate[1:], axis=1) - by_rate[0][:, None]
         return np.linalg.solve(matrix, load - self.momentum_rate(K, K_rate, K_acceleration, mu, still))
 
     def fluid_wrench(self, K, K_rate, K_acceleration, mu, mu_rate):
@@ -344,8 +390,16 @@ class Reference:
         hung, net = self.weight(R, r)
         n_sum = -nose * E1 + integrate(rates[1] + rates[3] - to_axes(resistive_force) - water_force - net)  # n + V1 p_f
         v = to_axes(eta[:, 3:]), to_axes(true[:, 3:])  # through the water, and over ground
+        passed = []  # fins: x behind them, the force, and its moment about the section
+        for (fin, _), (place, _, _, fin_force) in zip(
+            self.fins, self.fin_forces(K, K_rate, K_acceleration, mu, mu_rate), strict=True
+        ):
+            arm = place - self.space.evaluate(r, fin.station)[0]
+            behind = (self.space.x > fin.station)[:, None]
+            n_sum = n_sum - behind * fin_force
+            passed.append(behind * np.cross(arm, fin_force))
         c_slope = rates[0] + rates[2] + np.cross(v[0], p_f) + np.cross(v[1], p_b) - np.cross(t1, n_sum)
-        c_sum = integrate(c_slope - to_axes(resistive_torque) - hung)  # c + V1 sigma_f
+        c_sum = integrate(c_slope - to_axes(resistive_torque) - hung) - sum(passed)  # c + V1 sigma_f
         force, torque = to_section(n_sum - V1 * p_f), to_section(c_sum - V1 * sigma_f)
         tail_energy = wake * self.tail_added @ self.at_tail(eta) ** 2 / 2
         tail_residual = np.concatenate([self.at_tail(torque), self.at_tail(force) + tail_energy * E1])
@@ -369,6 +423,8 @@ class Reference:
             kinetic_fluid=self.energies(K, K_rate, mu)[1]
             + self.space.weights @ np.sum(to_axes((true - eta)[:, 3:]) * p_f, axis=1),
             nose_power=nose * mu[3],
+            fins_power=sum(v @ force for _, v, _, force in self.fin_forces(K, K_rate, K_acceleration, mu, mu_rate)),
+            fin_force=np.array([R.T @ f for *_, R, f in self.fin_forces(K, K_rate, K_acceleration, mu, mu_rate)]),
             drag_power=self.space.weights
             @ np.sum(resistive_torque * true[:, :3] + resistive_force * true[:, 3:], axis=1),
         )
@@ -400,7 +456,7 @@ class Reference:
             drift = world.T @ current
             mu[3:] -= drift  # relative to the water
             self.up, self.height = world[2], state[2]
-            if self.flow is not None:
+            if self.flow is not None or self.fins:
                 self.pose = SimpleNamespace(position=state[:3], axes=world, time=time)
             mu_rate = self.acceleration(*law.curvature(time, self.space.x), mu)
             mu_rate[3:] -= np.cross(mu[:3], drift)
@@ -417,6 +473,24 @@ class Reference:
                 out.append(state)
         out = np.array(out)
         return out[:, :3], out[:, 3:7] / np.linalg.norm(out[:, 3:7], axis=1)[:, None], out[:, 7:]
+
+
+def fin_steady(fin, water, across, along, e_n, e_c):
+    """Lift and drag (3,) [N] of a fin that moves through the water with these components along e_n and e_c."""
+    q = np.hypot(across, along)
+    if q == 0.0:
+        return np.zeros(3)
+    incidence, AR = np.arctan2(-across, along), fin.aspect_ratio
+    s, c = np.sin(incidence), np.cos(incidence)
+    part = np.clip((abs(s) - np.sin(0.3)) / (np.sin(0.6) - np.sin(0.3)), 0, 1)
+    stalled = part - np.sin(2 * np.pi * part) / (2 * np.pi)
+    slope = 0.9 * 2 * np.pi * AR / (np.sqrt(AR**2 + 4) + 1.8) if fin.lift_slope is None else fin.lift_slope
+    attached = slope * s * c
+    lift = attached + stalled * (fin.normal_drag * s * c - attached)
+    drag = fin.friction_drag + fin.normal_drag * stalled * s**2
+    drag += (1 - stalled) * attached**2 / (np.pi * fin.efficiency * AR)
+    ahead, aside = c * e_c - s * e_n, s * e_c + c * e_n  # along the motion, and across it
+    return 0.5 * water * fin.area * q**2 * (lift * aside - drag * ahead)
 
 
 def skin_friction(reynolds, law):

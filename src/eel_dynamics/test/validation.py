@@ -34,6 +34,8 @@ IDENTITIES = {
     "but up.",
     "Bodies that weigh": "Gravity, buoyancy, mass along the body, a centre of mass off the axis: closed forms at "
     "release, the roll's frequency, the same at any depth.",
+    "Fins": "Lift, drag and added mass of fins by hand and against the second implementation, the roll that they hold, "
+    "the ledger and both forms of the balance.",
     "Rigid body": "The straight rigid body has closed forms: Munk's moment, coasting, Euler's top.",
     "Symmetry": "Another pose, a mirror, the plane, rest, a current.",
     "Convergence": "Orders in time and in space, and what the presets reach on the falling gait over 10 s.",

@@ -133,6 +133,8 @@ void find_accelerations(const Swimmer& swimmer, const LawOnGrid& law, Workspace<
     Wrench<M, double> of_flow{};
     if (work.flowing) of_flow = total_wrench_of_flow(swimmer, work), left = left - of_flow;
     if (swimmer.weighs()) left += work.weight;
+    if constexpr (!M::planar)
+        if (!work.fins.empty()) left += wrench_of_fins(swimmer, work);
     auto head = components_of(left);
     work.inertia.solve(head);
     work.head_acceleration = Components<Twist<M, double>>::make([&](std::size_t k) { return head[k]; });
@@ -143,6 +145,8 @@ void find_accelerations(const Swimmer& swimmer, const LawOnGrid& law, Workspace<
     if (swimmer.resistive) add_resistance(swimmer, work);
     if (work.flowing) add_wrench_of_flow(swimmer, of_flow, work);
     if (swimmer.weighs()) take_weight(swimmer, work);
+    if constexpr (!M::planar)
+        if (!work.fins.empty()) work.balance = work.balance - wrench_of_fins(swimmer, work);
     work.nose_force = water_on_nose - swimmer.nose_mass * work.head_acceleration.linear.x;
 }
 

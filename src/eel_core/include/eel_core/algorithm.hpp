@@ -35,6 +35,8 @@ bool find_head_motion(const Swimmer& swimmer, const LawOnGrid& law, const Water&
     work.head = head_frame(y, M());
     work.momentum = momentum_in_head(y, work.head);
     set_flow(swimmer, water, time, Vector3{y[0], y[1], y[2]}, work);
+    if constexpr (!M::planar)
+        if (!work.fins.empty()) place_fins(swimmer, law, water, time, y, work);
     return find_twist(swimmer, work);  // section 6
 }
 
@@ -48,6 +50,8 @@ bool find_motion(const Swimmer& swimmer, const LawOnGrid& law, const Water& wate
     if (work.flowing) set_flow_load(swimmer, work);
     find_loads(swimmer, work);
     if (swimmer.weighs()) set_weight(swimmer, height_in(water, time, y), work);
+    if constexpr (!M::planar)
+        if (!work.fins.empty()) find_fin_loads(swimmer, law, time, y, work);
     return true;
 }
 
@@ -59,6 +63,7 @@ bool rate_of_state(const Swimmer& swimmer, const LawOnGrid& law, const Water& wa
     if (!find_motion(swimmer, law, water, time, y, work)) return false;
     put_velocity(work.twist, work.head, water.current, y, rate);
     put_momentum(momentum_rate_from_loads(swimmer, work), work.head, rate);
+    for (std::size_t k = state_size; k < state_space; ++k) rate[k] = work.servo_rate[k];
     return true;
 }
 
@@ -71,18 +76,25 @@ void find_internal_wrench(const Swimmer& swimmer, const LawOnGrid& law, Workspac
     integrate_balance(swimmer, work);
 }
 
-// Powers [W] of actuators, wake, nose, drag and flow, in the motion that `work` holds.
+// Powers [W] of actuators, wake, nose, drag, flow and fins, in the motion that `work` holds.
 template <class M>
 Powers find_powers(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
 {
     find_internal_wrench(swimmer, law, work);
-    Powers powers{actuator_power(swimmer, work), work.tail_speed * work.tail_energy,
-                  work.nose_force * work.twist.linear.x, work.drag_power, 0.0};
+    Powers powers{actuator_power(swimmer, work),
+                  work.tail_speed * work.tail_energy,
+                  work.nose_force * work.twist.linear.x,
+                  work.drag_power,
+                  0.0,
+                  0.0};
     if (work.flowing) {
         powers[1] += dot(work.tail.linear, work.flow.node(swimmer.grid.nodes - 1).u);
         powers[3] += drag_power_of_flow(swimmer, work);
         powers[4] = flow_power(swimmer, work);
     }
+    if constexpr (!M::planar)
+        if (!work.fins.empty())
+            powers[0] += actuator_power_of_fins(swimmer, work), powers[5] = fin_power(swimmer, work);
     return powers;
 }
 

@@ -7,7 +7,7 @@
 
 namespace eel_core {
 
-using Powers = std::array<double, 5>;  // [W], of actuators, wake, nose, drag and flow
+using Powers = std::array<double, 6>;  // [W], of actuators, wake, nose, drag, flow and fins
 
 // Integral of the density from the nose to the nodes.
 template <class M>
@@ -56,6 +56,19 @@ double actuator_power(const Swimmer& swimmer, const Workspace<M>& work)
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
         const auto wrench = wrench_behind<M>(work, work.integral[k], work.frame[k], work.position[k]);
         power -= swimmer.grid.weight[k] * bending_power(wrench.angular, work.curvature_rate[k]);
+    }
+    return total(power);
+}
+
+// What that power lacks for the fins: behind each, their wrench is no longer among those of the part behind. A fin's
+// node ends a panel, so that its own value is the one ahead of the fin.
+inline double actuator_power_of_fins(const Swimmer& swimmer, const Workspace<Space>& work)
+{
+    Lanes power(0.0);
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const Wrench<Space, Lanes> ahead = fins_ahead(swimmer, work, k, &Fin::node_behind);
+        const Vector3<Lanes> torque = work.frame[k].local(ahead.angular - cross(work.position[k], ahead.linear));
+        power += swimmer.grid.weight[k] * bending_power(torque, work.curvature_rate[k]);
     }
     return total(power);
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "eel_core/algebra/field.hpp"
+#include "eel_core/model/fin.hpp"
 
 namespace eel_core {
 
@@ -199,6 +200,7 @@ struct LawOnGrid {
     double origin = 0.0;  // [s], simulation time of the law's own t = 0
     std::vector<Wave> waves;
     Quintic segment, blend;
+    std::vector<AngleLaw> fins;  // what the servos of the fins are given; none: 0
 
     // Factors of the rows at `time` [s].
     void set_factors(double time, std::vector<Jet>& factor) const

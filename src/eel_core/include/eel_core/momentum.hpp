@@ -4,6 +4,7 @@
 //     momentum = I_o twist + momentum of the change of shape
 #pragma once
 
+#include "eel_core/fins.hpp"
 #include "eel_core/kinematics.hpp"
 #include "eel_core/moving_water.hpp"
 #include "eel_core/weight.hpp"
@@ -114,9 +115,12 @@ Momentum<M, double> inertia_and_momentum(const Swimmer& swimmer, Workspace<M>& w
         momentum += {turning * work.shape_omega[k] + cross(position, linear), linear};
     }
     work.inertia = inertia.whole(swimmer.nose_mass);
-    if constexpr (!M::planar)
-        if (swimmer.offset) return total_of(momentum) + add_offset_inertia(swimmer, work);
-    return total_of(momentum);
+    Momentum<M, double> whole = total_of(momentum);
+    if constexpr (!M::planar) {
+        if (swimmer.offset) whole += add_offset_inertia(swimmer, work);
+        if (!work.fins.empty()) whole += add_fin_inertia(swimmer, work);
+    }
+    return whole;
 }
 
 // Sets the head's twist from `work.momentum` in a configured body, and leaves the inertia factored. False where the

@@ -18,8 +18,8 @@
 namespace eel_core {
 
 // [position 0:3 m; orientation 3:7, quaternion x y z w; angular 7:10 and linear 10:13 momentum], all in the world's
-// axes, momentum about the head; filled up for lanes.
-inline constexpr std::size_t state_size = 13, state_space = 16;
+// axes, momentum about the head. Angles of fins' servos 13:16 [rad], or nothing, to fill up the lanes.
+inline constexpr std::size_t state_size = 13, most_servos = state_space - state_size;
 using State = std::array<double, state_space>;
 
 // Axes of the head in the world, by the quaternion of the state, which need not have length one.
@@ -90,6 +90,8 @@ Momentum<M, double> momentum_rate_from_loads(const Swimmer& swimmer, const Works
     impulse.x -= swimmer.nose_mass * twist.linear.x;
     rate.angular = rate.angular - cross(twist.linear, impulse);
     if (swimmer.weighs()) rate += work.weight;
+    if constexpr (!M::planar)
+        if (!work.fins.empty()) rate += work.fin_load;
     return rate;
 }
 

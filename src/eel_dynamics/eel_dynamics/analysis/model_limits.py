@@ -165,7 +165,14 @@ class ModelLimits:
         The energy is the greatest sum of energies and works at the samples; it misses what comes and goes
         between two samples, as in a sudden ramp.
         """
-        works = energy.actuator_work, energy.wake_work, energy.nose_work, energy.drag_work, energy.flow_work
+        works = (
+            energy.actuator_work,
+            energy.wake_work,
+            energy.nose_work,
+            energy.drag_work,
+            energy.flow_work,
+            energy.fins_work,
+        )
         signed = energy.potential, *works
         passed = np.max(energy.kinetic_body + energy.kinetic_fluid + sum(np.abs(each) for each in signed), initial=0.0)
         residual = np.max(np.abs(energy.residual), initial=0.0)

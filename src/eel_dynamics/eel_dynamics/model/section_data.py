@@ -20,6 +20,7 @@ import numpy as np
 
 import eel_core
 from eel_dynamics.model.body import Body
+from eel_dynamics.model.fins import Fin, core_fins
 from eel_dynamics.model.grid import Grid, PanelPoints
 from eel_dynamics.model.moments import missed_before, missed_within, with_moments
 from eel_dynamics.model.scene import Scene
@@ -98,10 +99,13 @@ def nose_of(body: Body, scene: Scene) -> tuple[float, float]:
     return float(reactive * area * body.nose_added_mass * body.nose[2]), float(resistive * area * body.nose_drag)
 
 
-def core_swimmer(body: Body, scene: Scene, grid: Grid, sections: SectionData, x, kinks: str) -> eel_core.Swimmer:
+def core_swimmer(
+    body: Body, scene: Scene, grid: Grid, sections: SectionData, x, kinks: str, fins: tuple[Fin, ...] = ()
+) -> eel_core.Swimmer:
     """`body` in `scene` for the compiled mechanics: the `sections` at the nodes of `grid`, and stations at `x` (M,)
     [m]; `kinks`: which of the drag's are integrated exactly (`Accuracy`)."""
     nose_mass, nose_drag = nose_of(body, scene)
+    of_fins, servos = core_fins(body, scene, grid, x, fins)
     return eel_core.Swimmer(
         grid,
         sections,
@@ -117,6 +121,8 @@ def core_swimmer(body: Body, scene: Scene, grid: Grid, sections: SectionData, x,
         righting=GRAVITY * (scene.metacentric_height or float(scene.weight and not scene.planar)),
         gravity=GRAVITY if sections.net.any() else 0.0,
         missed_drag=missed_drag_of(body, scene, grid, sections) if kinks == "all" else (),
+        fins=of_fins,
+        servos=servos,
     )
 
 

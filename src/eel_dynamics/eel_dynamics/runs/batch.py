@@ -46,7 +46,7 @@ from eel_dynamics.runs.storage.run_contents import contents_of_batch, observed_o
 from eel_dynamics.runs.storage.tables import dataset_of, frame_of_all, needed
 from eel_dynamics.runs.variables import COUNTS, Contents, documented_arrays
 from eel_dynamics.simulation.energy import WORKS, EnergyLedger
-from eel_dynamics.simulation.observations import LOAD, Observations
+from eel_dynamics.simulation.observations import FINS, LOAD, Observations
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 ALONG = "backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force"
@@ -281,6 +281,7 @@ class Swimmer(NamedTuple):
     x: np.ndarray
     flow: Flow | None
     robot: None = None
+    fins: tuple[()] = ()
 
 
 def _batch_of(
@@ -295,7 +296,7 @@ def _batch_of(
     stations: Any,
 ) -> Batch:
     settings, errors, estimates, (samples, steps, evaluations, nodes) = found
-    absent = {"energies", "powers", "closure", *LOAD} - ({"fluid_force"} if load else set())
+    absent = {"energies", "powers", "closure", *LOAD, *FINS} - ({"fluid_force"} if load else set())
     observed: dict[str, Any] = {name: array for name, array in out.arrays().items() if name not in absent}
     none = [*(ALONG if stations is None else ()), *(() if all(wrench) else ("torque", "force"))]
     ledger = all(each.scene.ledger for each in swimmers)

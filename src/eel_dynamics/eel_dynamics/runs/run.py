@@ -3,7 +3,7 @@
 
 import os
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -29,6 +29,7 @@ from eel_dynamics.flow.flow import Flow, check_covers
 from eel_dynamics.model.axes import CONVENTIONS, REP103, SIGNS, turn_vector, turned
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
+from eel_dynamics.model.fins import Fin
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.companion import stable_step, with_error_estimate
@@ -47,7 +48,7 @@ from eel_dynamics.runs.storage.tables import dataset_of, frame_of
 from eel_dynamics.runs.variables import documented_arrays
 from eel_dynamics.simulation.bending.joint_motion import JointMotion
 from eel_dynamics.simulation.energy import EnergyLedger
-from eel_dynamics.simulation.observations import LOAD, WRENCH, Observations
+from eel_dynamics.simulation.observations import FINS, LOAD, WRENCH, Observations
 from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.simulation_setup import SimulationSetup, check_planar_law
 from eel_dynamics.simulation.stopping import SimulationStopped
@@ -95,6 +96,9 @@ class Run:
     nodes: int
     error_estimate: ErrorEstimate | None = None  #: None where none was wanted, or for fewer than two samples
     flow: Flow | None = None  #: of the water; its own numbers are in REP-103 axes always
+    fins: tuple[Fin, ...] = ()
+    fin_angle: np.ndarray | None = None
+    fin_force: np.ndarray | None = None
     robot: Robot | None = None  #: what bends by itself; the joints' arrays are None without one
     joint_angle: np.ndarray | None = None
     joint_rate: np.ndarray | None = None
@@ -376,6 +380,7 @@ def simulate(
     progress: Callable[[float, float], None] | None = None,
     flow: Flow | None = None,
     robot: Robot | None = None,
+    fins: Iterable[Any] | None = None,
 ) -> Run:
     """Simulate `law` for `duration` [s], with samples every `sample_period` [s] from t = 0 on.
 
@@ -402,6 +407,7 @@ def simulate(
         flow: how the water moves by itself, beside the scene's current (`Gust`, `Wave` ...); None: not at all.
         robot: joints, tails or muscles that bend by themselves. The law then is what its servos are asked to follow,
             and `Run.joint_angle` and the like are what they do; None: the law is imposed.
+        fins: a list of `Fin`, and of pairs of them (`Fin.pair`); None: none.
     """
     setup = SimulationSetup.of(
         body=body,
@@ -412,6 +418,7 @@ def simulate(
         most_evaluations=most_evaluations,
         flow=flow,
         robot=robot,
+        fins=fins,
     )
     length, wrench = setup.body.length, setup.scene.internal_wrench
     if until_settled(duration):
@@ -471,6 +478,7 @@ def _simulated_again(
         progress=lambda reached, left: None,
         flow=run.flow,
         robot=run.robot,
+        fins=run.fins,
     )
     return again.in_axes(axes)
 
@@ -480,7 +488,7 @@ class SwimResult(NamedTuple):
 
     run: Run
     out: Observations
-    works: np.ndarray  # (T, 5) J
+    works: np.ndarray  # (T, 6) J
     energy_at_start: float  # J
     stopped: SimulationStopped | None
 
@@ -544,11 +552,11 @@ def run_of(
 ) -> Run:
     """The run of the samples in `out` that were reached.
 
-    setup: has the body, the scene, the flow and the stations x. works (T, 5) [J], and time (T,) [s]: of those samples.
+    setup: has the body, the scene, the flow and the stations x. works (T, 6) [J], and time (T,) [s]: of those samples.
     start [J]: the energy at the start. wrench, load: whether the internal wrench and the water's load were observed.
     joints: the motion of a robot's joints at all samples. others: the other fields of the run.
     """
-    absent = {*(() if wrench else WRENCH), *(() if load else LOAD)}
+    absent = {*(() if wrench else WRENCH), *(() if load else LOAD), *(() if setup.fins else FINS)}
     observed: dict[str, Any] = {
         name: None if name in absent else array[: len(time)] for name, array in out.arrays().items()
     }
@@ -564,6 +572,7 @@ def run_of(
         x=setup.x,
         time=time,
         robot=setup.robot,
+        fins=setup.fins,
         energy=EnergyLedger.of(energies, powers, works, start, robot) if setup.scene.ledger else None,
         closure_torque=None if closure is None else closure[:, 0],
         closure_force=None if closure is None else closure[:, 1],

@@ -23,7 +23,14 @@ LABELS = {  # of the dimensions that are neither time, station nor swimmer
     "quaternion": ("x", "y", "z", "w"),
     "component": ("omega_x", "omega_y", "omega_z", "v_x", "v_y", "v_z"),
 }
-SIZES = {"time": "T", "station": "M", "swimmer": "B", "joint": "J", "mode": "N"}  # names of the other dimensions' sizes
+SIZES = {
+    "time": "T",
+    "station": "M",
+    "swimmer": "B",
+    "fin": "F",
+    "joint": "J",
+    "mode": "N",
+}  # of other dimensions
 CLOSURES = {
     "closure_torque": Variable(("time",), "N m", "magnitude of the internal torque left over at the nose"),
     "closure_force": Variable(("time",), "N", "magnitude of the internal force left over at the nose, less its load"),

@@ -10,6 +10,7 @@ import eel_core
 from eel_dynamics.accuracy.grid_settings import GridSettings
 from eel_dynamics.curvature.tabulated_law import Tabulation
 from eel_dynamics.model.body import Body
+from eel_dynamics.model.fins import Fin
 from eel_dynamics.model.grid import Grid, Panel
 from eel_dynamics.model.inertia import check_inertia
 from eel_dynamics.model.panels import panels_of
@@ -39,7 +40,12 @@ class Discretisation(NamedTuple):
 
 
 def discretise(
-    body: Body, scene: Scene, settings: GridSettings, stations: bytes, further: bytes = b""
+    body: Body,
+    scene: Scene,
+    settings: GridSettings,
+    stations: bytes,
+    further: bytes = b"",
+    fins: tuple[Fin, ...] = (),
 ) -> Discretisation:
     """Tabulate `body` in `scene` on a grid of these `settings`, and at the `stations`.
 
@@ -48,12 +54,18 @@ def discretise(
     """
     wrench = scene.internal_wrench or scene.ledger
     panels = panels_of(body, settings.resolution, settings.knots, wrench, settings.edges)
-    return _on_panels(body, scene, panels, settings.kinks, stations, further)
+    return _on_panels(body, scene, panels, settings.kinks, stations, further, fins)
 
 
 @lru_cache(maxsize=256)
 def _on_panels(
-    body: Body, scene: Scene, panels: tuple[Panel, ...], kinks: str, stations: bytes, further: bytes
+    body: Body,
+    scene: Scene,
+    panels: tuple[Panel, ...],
+    kinks: str,
+    stations: bytes,
+    further: bytes,
+    fins: tuple[Fin, ...],
 ) -> Discretisation:
     """Many resolutions give the same `panels`: nodes fill blocks of eight."""
     x, grid = np.frombuffer(stations), Grid.of(panels)
@@ -62,7 +74,7 @@ def _on_panels(
     check_weight(body, scene, sections, grid.weight)
     nodes_before = np.searchsorted(grid.x, x, side="right")
     base = np.where(nodes_before > 0, grid.x[nodes_before - 1], 0.0)
-    swimmer = core_swimmer(body, scene, grid, sections, x, kinks)
+    swimmer = core_swimmer(body, scene, grid, sections, x, kinks, fins)
     tabulation = Tabulation(grid.x, grid.previous, x, base, np.frombuffer(further))
     mass, time = float(grid.weight @ sections.mass), weight_time(scene, sections, grid.weight, body.length)
     return Discretisation(grid, sections, swimmer, mass, time, tabulation)

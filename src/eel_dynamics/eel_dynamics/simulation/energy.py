@@ -2,7 +2,7 @@
 """The energy ledger: where the work of the actuators goes (eq. 60 times the head's twist).
 
     d/dt (kinetic_body + kinetic_fluid + potential + elastic) =
-        actuator_power + wake_power + nose_power + drag_power + flow_power + damping_power
+        actuator_power + wake_power + nose_power + drag_power + flow_power + fins_power + damping_power
 
 A positive power feeds energy into body and water. The power of the wake is V1(l) T_f(l). It is positive where the tail
 leads, which is a limit of the theory. The power of the nose includes that of its added mass, so kinetic_fluid does not
@@ -13,6 +13,8 @@ stands upright at z = 0.
 Where the water moves by itself (`flow`), U is its velocity at a section and p the momentum of the section's water that
 moves through it: kinetic_fluid is the integral of T_f + p . U, and flow_power that of p . u_t + rho_f A a_u . V, the
 powers of the rate of u at the fixed place and of the undisturbed pressure. It is 0 without a flow.
+
+fins_power is that of the fins' lift, drag and added mass, whose energy is no part of kinetic_fluid; 0 without fins.
 
 Of a robot, the actuators are its motors, its muscles, and what imposes the curvature that no joint makes; its rotors
 are part of kinetic_body. elastic is the energy of its springs, damping_power that of its dampers and of friction; both
@@ -26,7 +28,14 @@ import numpy as np
 
 from eel_dynamics.model.equality import same_fields
 
-WORKS = "actuator", "wake", "nose", "drag", "flow"  # whose powers and works a ledger has, in the order of eel_core
+WORKS = (
+    "actuator",
+    "wake",
+    "nose",
+    "drag",
+    "flow",
+    "fins",
+)  # that have powers and works, as in eel_core
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -44,12 +53,14 @@ class EnergyLedger:
     nose_power: Annotated[np.ndarray, "W", "power of the load on the nose"]
     drag_power: Annotated[np.ndarray, "W", "power of the drag along the body"]
     flow_power: Annotated[np.ndarray, "W", "power of the water's own motion, 0 without a flow"]
+    fins_power: Annotated[np.ndarray, "W", "power of the fins' forces, 0 without fins"]
     residual: Annotated[np.ndarray, "J", "change of all energy since the start less the works"]
     actuator_work: Annotated[np.ndarray, "J", "work of the actuators since the start"]
     wake_work: Annotated[np.ndarray, "J", "work of the wake since the start"]
     nose_work: Annotated[np.ndarray, "J", "work of the load on the nose since the start"]
     drag_work: Annotated[np.ndarray, "J", "work of the drag along the body since the start"]
     flow_work: Annotated[np.ndarray, "J", "work of the water's own motion since the start"]
+    fins_work: Annotated[np.ndarray, "J", "work of the fins' forces since the start"]
     elastic: Annotated[np.ndarray, "J", "elastic energy of a robot's springs, 0 without a robot"]
     damping_power: Annotated[np.ndarray, "W", "power of a robot's dampers, 0 without a robot"]
     damping_work: Annotated[np.ndarray, "J", "work of a robot's dampers since the start"]
@@ -77,9 +88,9 @@ class EnergyLedger:
     def of(energies: Any, powers: Any, works: Any, start: Any, robot: Any = None) -> "EnergyLedger":
         """A ledger from its numbers.
 
-        energies (..., 3) [J]: kinetic of body and of water, potential. powers (..., 5) [W] and works (..., 5) [J]: of
-        actuators, wake, nose, drag and flow. start [J]: the sum of the energies at the start. robot (..., 3): elastic
-        energy [J], power [W] and work [J] of the dampers; None: 0.
+        energies (..., 3) [J]: kinetic of body and of water, potential. powers (..., 6) [W] and works (..., 6) [J]: of
+        actuators, wake, nose, drag, flow and fins. start [J]: the sum of the energies at the start. robot (..., 3):
+        elastic energy [J], power [W] and work [J] of the dampers; None: 0.
         """
         if robot is not None:
             elastic, damping_power, damping_work = np.moveaxis(robot, -1, 0)

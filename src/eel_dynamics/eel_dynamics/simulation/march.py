@@ -16,6 +16,7 @@ from eel_dynamics.accuracy.step_bounds import step_bounds_of
 from eel_dynamics.curvature.curvature_samples import CurvatureSample
 from eel_dynamics.curvature.law_follower import LawFollower
 from eel_dynamics.flow.flow import Flow
+from eel_dynamics.model.fins import given_angles, knots_of, servo_time
 from eel_dynamics.model.initial_state import InitialState, time_scale
 from eel_dynamics.simulation.discretisation import Discretisation, discretise
 from eel_dynamics.simulation.observations import Observations, Snapshot
@@ -62,7 +63,7 @@ class March:
         return self.setup.settings.method, self.setup.settings.order, bool(self.setup.scene.planar)
 
     def _discretise(self, settings: GridSettings) -> Discretisation:
-        return discretise(self.setup.body, self.setup.scene, settings, self.setup.x.tobytes())
+        return discretise(self.setup.body, self.setup.scene, settings, self.setup.x.tobytes(), fins=self.setup.fins)
 
     def _new_core(self) -> Any:
         return eel_core.March(self.discretisation.swimmer, *self._method)
@@ -147,8 +148,12 @@ class March:
         setup, breakpoints = self.setup, self.follower.breakpoints
         if setup.flow is not None:
             breakpoints = sorted({*breakpoints, *setup.flow.breakpoints})
+        if setup.fins:
+            breakpoints = sorted({*breakpoints, *knots_of(setup.fins)})
         ledger, flow = bool(setup.scene.ledger), setup.core_flow
-        self.core.follow(self.law_on_grid, breakpoints, self._bounds, ledger, setup.current, flow, smoothly)
+        self.core.follow(
+            self.law_on_grid, breakpoints, self._bounds, ledger, setup.current, flow, smoothly, given_angles(setup.fins)
+        )
 
     def _step_bounds(self) -> eel_core.StepBounds:
         setup, follower, here = self.setup, self.follower, self.discretisation
@@ -160,7 +165,9 @@ class March:
             mass=here.mass,
             length=setup.body.length,
             speed=follower.speed(setup.body.length),
-            scale=min(follower.time_scale, self._time_scale, here.weight_time, setup.flow_time_scale),
+            scale=min(
+                follower.time_scale, self._time_scale, here.weight_time, setup.flow_time_scale, servo_time(setup.fins)
+            ),
             most_evaluations=setup.most_evaluations,
         )
 
@@ -199,7 +206,7 @@ class March:
         return self.follower.next_event(self.time)
 
     def record(self, times: np.ndarray, out: Observations, works: np.ndarray, wrench: bool, load: bool, look) -> tuple:
-        """As `Simulation.record`, into `out` and `works` (T, 5) [J]."""
+        """As `Simulation.record`, into `out` and `works` (T, 6) [J]."""
         done, status = 0, MARCHED
         while status == MARCHED and done < len(times):
             event, status = self._pass_event(), UNFINISHED
@@ -249,7 +256,7 @@ class March:
         """As `Simulation.observe`."""
         scene = self.setup.scene
         wrench, load = bool(wrench and scene.internal_wrench), bool(load)
-        snapshot = Snapshot(self.time, self.setup.x, wrench, load)
+        snapshot = Snapshot(self.time, self.setup.x, wrench, load, len(self.setup.fins))
         if not self._observe(snapshot, wrench, load):
             raise self._stopped(SINGULAR)
         if self.setup.flow is not None and self.core.outside is not None:

@@ -60,7 +60,7 @@ class Observations:
     )
     center_of_mass = Observed("time world", "m", "centre of mass, world")
     energies = Observed("time energy", "J", "kinetic of body and of water, potential")
-    powers = Observed("time power", "W", "of actuators, wake, nose, drag and flow")
+    powers = Observed("time power", "W", "of actuators, wake, nose, drag, flow and fins")
     closure = Observed("time closure", "N m, N", "what is left at the nose of the internal torque and force")
     backbone = Observed("time station world", "m", "backbone, world")
     section_orientation = Observed("time station quaternion", "1", "world from section, x y z w")
@@ -77,20 +77,27 @@ class Observations:
     wake_momentum_rate = Observed(
         "time section", "N", "momentum given to the wake per time, T_f E1 - V1 M_f V of eq. (60), section axes"
     )
+    fin_angle = Observed("time fin", "rad", "angles of the fins")
+    fin_force = Observed("time fin section", "N", "force of the water on each fin, axes of its section")
 
     def __init__(self, whole: np.ndarray, places: Places):
         self.whole, self.places = whole, places
 
     @staticmethod
     def empty(
-        samples: int, stations: int, wrench: bool = True, load: bool = True, swimmers: tuple[int, ...] = ()
+        samples: int,
+        stations: int,
+        wrench: bool = True,
+        load: bool = True,
+        swimmers: tuple[int, ...] = (),
+        fins: int = 0,
     ) -> "Observations":
         """Space for `samples` instants at `stations` stations.
 
         wrench, load: whether there is space for the internal wrench and for the water's load. swimmers: (B,) adds a
         first dimension for B swimmers.
         """
-        places, size = _places(samples, stations, bool(wrench), bool(load))
+        places, size = _places(samples, stations, bool(wrench), bool(load), fins)
         return Observations(np.zeros((*swimmers, size)), places)
 
     def __getitem__(self, swimmer: int) -> "Observations":
@@ -114,6 +121,9 @@ WRENCH = ("torque", "force", "closure")  # quantities of the internal wrench
 LOAD = ("fluid_force", "resistive_force", "tail_force", "nose_force", "wake_momentum_rate")  # of the water's load
 
 
+FINS = ("fin_angle", "fin_force")
+
+
 class Snapshot(Observations):
     """One instant: the quantities have no dimension "time", and are None where they were not asked for.
 
@@ -126,8 +136,8 @@ class Snapshot(Observations):
 
     __slots__ = ("_energy", "_energy_at_start", "_joints", "_works", "time", "x")
 
-    def __init__(self, time: float, x: np.ndarray, wrench: bool, load: bool):
-        places, size = _places_of_instant(len(x), wrench, load)
+    def __init__(self, time: float, x: np.ndarray, wrench: bool, load: bool, fins: int = 0):
+        places, size = _places_of_instant(len(x), wrench, load, fins)
         super().__init__(np.zeros(size), places)
         self.time, self.x = time, x
         self._works: np.ndarray | None = None
@@ -145,7 +155,7 @@ class Snapshot(Observations):
         return {} if self._joints is None else {name: row[0] for name, row in self._joints.arrays().items()}
 
     def keep_ledger(self, works: np.ndarray, energy_at_start: float) -> None:
-        """Have a ledger, from the `works` (5,) [J] since the start and the energy [J] there."""
+        """Have a ledger, from the `works` (6,) [J] since the start and the energy [J] there."""
         self._works, self._energy_at_start = works, energy_at_start
 
     @property
@@ -178,18 +188,18 @@ def size_of(samples: int, stations: int, wrench: bool, load: bool) -> int:
 
 
 @lru_cache(maxsize=64)
-def _places(samples: int, stations: int, wrench: bool, load: bool) -> tuple[Places, int]:
+def _places(samples: int, stations: int, wrench: bool, load: bool, fins: int = 0) -> tuple[Places, int]:
     """The places of all quantities, and how many numbers these hold."""
     places: Places = {}
     end = 0
-    for name, (begin, instants, numbers, along_body) in eel_core.layout(samples, stations, wrench, load).items():
-        shape = (instants, stations, numbers) if along_body else (instants, numbers)
+    for name, (begin, instants, numbers, of) in eel_core.layout(samples, stations, wrench, load, fins).items():
+        shape = (instants, *((), (stations,), (fins,))[of], *(() if name == "fin_angle" else (numbers,)))
         end = begin + int(np.prod(shape))
         places[name] = slice(begin, end), shape
     return places, end
 
 
 @lru_cache(maxsize=64)
-def _places_of_instant(stations: int, wrench: bool, load: bool) -> tuple[Places, int]:
-    places, size = _places(1, stations, wrench, load)
+def _places_of_instant(stations: int, wrench: bool, load: bool, fins: int) -> tuple[Places, int]:
+    places, size = _places(1, stations, wrench, load, fins)
     return {name: (where, shape[1:] if shape and shape[0] else None) for name, (where, shape) in places.items()}, size

@@ -3,10 +3,11 @@
 
 import math
 import time as clock
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from copy import deepcopy
 from dataclasses import replace
 from functools import cache, partial
+from typing import Any
 
 import numpy as np
 from eel_base.quantity import checked_row, is_finite
@@ -61,6 +62,7 @@ class Simulation:
         measure_error: whether a companion with coarser settings follows, for `error_estimate` and `head_errors`.
         flow: how the water moves by itself, beside the scene's current; None: not at all.
         robot: what bends by itself. The law then is what its servos are asked to follow; None: the law is imposed.
+        fins: a list of `Fin`, and of pairs of them; None: none.
     """
 
     def __init__(
@@ -78,6 +80,7 @@ class Simulation:
         measure_error: bool = False,
         flow: Flow | None = None,
         robot: Robot | None = None,
+        fins: Iterable[Any] | None = None,
     ) -> None:
         setup = SimulationSetup.of(
             body=body,
@@ -89,6 +92,7 @@ class Simulation:
             most_evaluations=most_evaluations,
             flow=flow,
             robot=robot,
+            fins=fins,
         )
         if isinstance(setup.accuracy, Budget):
             at_hand = partial(swim_time, setup.body, setup.scene, setup.x.tobytes())
@@ -328,11 +332,15 @@ class Simulation:
     ) -> tuple[Observations, np.ndarray, int, SimulationStopped | None]:
         """March through `times` (T,) [s] under the law in force, and observe each.
 
-        Returns the observations, the works (T, 5) [J] of actuators, wake, nose, drag and flow, the number of good
+        Returns the observations, the works (T, 6) [J] of actuators, wake, nose, drag, flow and fins, the number of good
         instants, and what stopped the march, or None. look(time [s]) is called every few milliseconds. out: space for
         the observations (`Observations.empty`). After a bad instant the simulation must be reset.
         """
-        out = Observations.empty(len(times), len(self.x), wrench, load) if out is None else out
+        out = (
+            Observations.empty(len(times), len(self.x), wrench, load, fins=len(self._setup.fins))
+            if out is None
+            else out
+        )
         works = np.zeros((len(times), len(WORKS)))
         self._started = True
         recorded = self._march.record(np.array(times, dtype=float), out, works, wrench, load, look)
@@ -353,7 +361,7 @@ class Simulation:
 
     @property
     def works(self) -> np.ndarray:
-        """(5,) J of actuators, wake, nose, drag and flow since the start."""
+        """(6,) J of actuators, wake, nose, drag, flow and fins since the start."""
         return np.array(self._march.core.works)
 
     @property

@@ -20,6 +20,7 @@ from eel_dynamics.curvature.curvature_samples import check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 from eel_dynamics.flow.flow import Flow, check_covers, checked_flow, core_flow
 from eel_dynamics.model.body import Body, checked_body
+from eel_dynamics.model.fins import Fin, checked_fins, edges_of
 from eel_dynamics.model.initial_state import InitialState, check_planar, checked_quaternion, time_scale
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.robot.compiled import ModeTable, mode_table
@@ -50,10 +51,12 @@ def check_flow(flow: Flow | None, scene: Scene, start: InitialState) -> None:
         raise ValueError(f"flow surface must be above the head, at z = {start.position[2]:g} m, got {flow!r}")
 
 
-def check_possible(robot: Robot, body: Body, scene: Scene, flow: Flow | None) -> None:
+def check_possible(robot: Robot, body: Body, scene: Scene, flow: Flow | None, fins: tuple[Fin, ...]) -> None:
     """`ValueError` for a `robot` that does not fit the body, or with physics that bodies with modes do not have yet."""
     if flow is not None:
         raise ValueError(f"robot cannot swim in water that moves by itself yet: take flow=None, got {flow!r}")
+    if fins:
+        raise ValueError(f"robot cannot have fins yet: take fins=None, got {len(fins)} fins")
     if body.offset:
         raise ValueError("robot cannot have its mass off the axis yet: take a body with centre_of_mass_offset=0")
     mode_table(robot, body, bool(scene.planar))
@@ -72,6 +75,7 @@ class SimulationSetup:
     most_evaluations: float = MOST_EVALUATIONS  # by simulated second
     flow: Flow | None = None
     robot: Robot | None = None
+    fins: tuple[Fin, ...] = ()
 
     @staticmethod
     def of(
@@ -85,6 +89,7 @@ class SimulationSetup:
         most_evaluations: float = MOST_EVALUATIONS,
         flow: Flow | None = None,
         robot: Robot | None = None,
+        fins=None,
     ) -> "SimulationSetup":
         """The set-up from the arguments of `Simulation`. `ValueError` names the one that does not fit.
 
@@ -96,16 +101,17 @@ class SimulationSetup:
         accuracy, x = Accuracy.of(accuracy), checked_stations(stations, body.length)
         start = checked_state(scene, *initial_state)
         check_flow(flow, scene, start)
+        fins = checked_fins(fins, body, scene)
         if robot is not None:
-            check_possible(robot, body, scene, flow)
+            check_possible(robot, body, scene, flow, fins)
         most_evaluations = positive("most_evaluations", most_evaluations, "per simulated second")
         transition = positive("default_transition", default_transition, "s")
-        return SimulationSetup(body, scene, accuracy, x, start, transition, most_evaluations, flow, robot)
+        return SimulationSetup(body, scene, accuracy, x, start, transition, most_evaluations, flow, robot, fins)
 
     @property
     def arguments(self) -> dict:
         """The arguments of `Simulation` that give such a set-up, without a law."""
-        own = ("body", "scene", "accuracy", "default_transition", "most_evaluations", "flow", "robot")
+        own = ("body", "scene", "accuracy", "default_transition", "most_evaluations", "flow", "robot", "fins")
         return {name: getattr(self, name) for name in own} | {"stations": self.x} | self.initial_state._asdict()
 
     def __deepcopy__(self, memo: dict) -> "SimulationSetup":
@@ -131,7 +137,8 @@ class SimulationSetup:
         if self.flow is not None:
             needs = needs._replace(waves=max(needs.waves, self.body.length / self.flow.shortest_wave))
         wanted = GridSettings.of(self.settings, needs)
-        return wanted if self.modes is None else wanted._replace(edges=self.modes.edges)
+        edges = edges_of(self.body, self.fins) if self.modes is None else self.modes.edges
+        return wanted._replace(edges=edges) if edges else wanted
 
     @cached_property
     def modes(self) -> ModeTable | None:

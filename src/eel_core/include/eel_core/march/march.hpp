@@ -64,7 +64,7 @@ class March {
     double start(const Vector3<double>& position, const Quaternion<double>& orientation,
                  const Twist<Space, double>& twist)
     {
-        time_ = 0.0, works_ = {};
+        time_ = 0.0, works_ = {}, state_ = {};
         const double energy = set_state(position, orientation, twist);
         std::visit([&](auto& stepper) { stepper.forget(state_, settings_.bounds.spare_steps); }, stepper_);
         begin();
@@ -106,7 +106,9 @@ class March {
     double set_state(const Vector3<double>& position, const Quaternion<double>& orientation,
                      const Twist<Space, double>& twist)
     {
-        state_ = {position.x, position.y, position.z, orientation.x, orientation.y, orientation.z, orientation.w};
+        State next{position.x, position.y, position.z, orientation.x, orientation.y, orientation.z, orientation.w};
+        std::copy(state_.begin() + state_size, state_.end(), next.begin() + state_size);  // of the fins
+        state_ = next;
         return set_twist(twist);
     }
 
@@ -118,6 +120,7 @@ class March {
         configure(*swimmer_, settings_.law, time_, work);
         work.head = head_frame(state_, Space());
         set_flow(*swimmer_, settings_.water, time_, Vector3{state_[0], state_[1], state_[2]}, work);
+        if (!work.fins.empty()) place_fins(*swimmer_, settings_.law, settings_.water, time_, state_, work);
         put_momentum(momentum_of(*swimmer_, twist, work), work.head, state_);
         set_velocities(*swimmer_, twist, work);
         if (work.flowing) set_flow_load(*swimmer_, work);

@@ -82,6 +82,7 @@ class Observer {
         std::copy(powers.begin(), powers.end(), at(Profiles::powers, sample));
         show_head(y, water.current, sample, work);
         show_energies_and_closure(sample, work);
+        if (profiles_.fins > 0) show_fins(sample, work);
         place_stations(law, y, sample, work, here);
         if (profiles_.wrench || profiles_.load) {
             find_velocities(work, here);
@@ -132,6 +133,15 @@ class Observer {
         const auto left = plus_axial<Space>(work.tail - work.balance, work.nose_force);
         double* const closure = at(Profiles::closure, sample);
         closure[0] = std::sqrt(dot(left.angular, left.angular)), closure[1] = std::sqrt(dot(left.linear, left.linear));
+    }
+
+    void show_fins(std::size_t sample, const Workspace<Space>& work) const
+    {
+        for (std::size_t i = 0; i < swimmer_.fins.size(); ++i) {
+            at(Profiles::fin_angle, sample)[i] = work.fins[i].angle;
+            put(work.frame.node(swimmer_.fins[i].node).local(work.fins[i].whole),
+                at(Profiles::fin_force, sample) + 3 * i);
+        }
     }
 
     // Backbone, orientation and curvature.
@@ -201,6 +211,7 @@ class Observer {
         if (!swimmer_.missed.empty())
             here.missed.add(swimmer_, work, here.frame, here.omega, through_water(work, here), here.flow,
                             here.integral);
+        if (!work.fins.empty()) take_fins_ahead(work, here);
         for (std::size_t k = 0; k < blocks(); ++k) {
             const Frame3<Lanes> frame = here.frame[k];
             const auto wrench = internal_wrench<Space>(
@@ -209,6 +220,13 @@ class Observer {
             show(Profiles::torque, sample, k, wrench.angular);
             show(Profiles::force, sample, k, wrench.linear);
         }
+    }
+
+    // The wrenches of the fins ahead of the stations, and at them, are no longer those of the part behind.
+    void take_fins_ahead(const Workspace<Space>& work, StationWork& here) const
+    {
+        for (std::size_t k = 0; k < blocks(); ++k)
+            here.integral.store(k, here.integral[k] - fins_ahead(swimmer_, work, k, &Fin::station_behind));
     }
 
     // Makes the velocity, its rate and slope, and Omega1 of a block of stations those through the water.

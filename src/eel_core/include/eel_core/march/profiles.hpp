@@ -17,7 +17,7 @@ struct Profiles {
         head_acceleration,    // (T, 6) rad/s^2, m/s^2, true acceleration of the head, its axes
         center_of_mass,       // (T, 3) m, world
         energies,             // (T, 3) J, kinetic of body and of water, potential
-        powers,               // (T, 5) W, actuators, wake, nose, drag, flow
+        powers,               // (T, 6) W, actuators, wake, nose, drag, flow, fins
         closure,              // (T, 2) N m, N: what is left of the internal wrench at the nose
         backbone,             // (T, M, 3) m, world
         section_orientation,  // (T, M, 4) x y z w, world from section
@@ -30,30 +30,38 @@ struct Profiles {
         tail_force,       // (T, 3) N, axes of the tail's section
         nose_force,       // (T, 3) N, axes of the nose's section
         wake_momentum_rate,  // (T, 3) N, axes of the tail's section: momentum given to the wake per time
+        fin_angle,           // (T, F) rad
+        fin_force,           // (T, F, 3) N, of the water on each fin, axes of its section
         quantities
     };
-    static constexpr std::size_t width_of[quantities] = {3, 4, 6, 6, 3, 3, 5, 2, 3, 4, 3, 3, 3, 3, 3, 3, 3, 3, 3};
+    static constexpr std::size_t width_of[quantities] = {3, 4, 6, 6, 3, 3, 6, 2, 3, 4, 3, 3, 3, 3, 3, 3, 3, 3, 3, 1, 3};
 
-    std::size_t samples, stations;
+    std::size_t samples, stations, fins;
     bool wrench, load;
     std::size_t begin[quantities + 1];  // of each quantity in the array; the last: its size
 
-    Profiles(std::size_t instants_wanted, std::size_t points, bool wrench_wanted, bool load_wanted)
-        : samples(instants_wanted), stations(points), wrench(wrench_wanted), load(load_wanted)
+    Profiles(std::size_t instants_wanted, std::size_t points, bool wrench_wanted, bool load_wanted,
+             std::size_t fin_count = 0)
+        : samples(instants_wanted), stations(points), fins(fin_count), wrench(wrench_wanted), load(load_wanted)
     {
         begin[0] = 0;
         for (std::size_t q = 0; q < quantities; ++q) begin[q + 1] = begin[q] + instants(q) * numbers(q);
     }
 
     bool along_body(std::size_t q) const { return backbone <= q && q <= resistive_force; }
+    bool of_fins(std::size_t q) const { return q == fin_angle || q == fin_force; }
     std::size_t instants(std::size_t q) const
     {
+        if (of_fins(q)) return fins > 0 ? samples : 0;
         if (q == torque || q == force) return wrench ? samples : 0;
         if (q == fluid_force || q == resistive_force) return load ? samples : 0;
         return samples;
     }
     // Of one instant.
-    std::size_t numbers(std::size_t q) const { return width_of[q] * (along_body(q) ? stations : 1); }
+    std::size_t numbers(std::size_t q) const
+    {
+        return width_of[q] * (along_body(q) ? stations : of_fins(q) ? fins : 1);
+    }
 
     double* at(double* whole, Quantity q, std::size_t sample) const { return whole + begin[q] + sample * numbers(q); }
 };

@@ -2,6 +2,7 @@
 // What a run never writes: body and water at the nodes and stations, and which physics is on.
 #pragma once
 
+#include "eel_core/model/fin.hpp"
 #include "eel_core/model/friction.hpp"
 #include "eel_core/model/grid.hpp"
 
@@ -46,6 +47,9 @@ struct Swimmer {
     bool offset = false;                  // the centre of mass is off the axis: `lever` is part of the inertia
     double righting = 0.0;                // [m/s^2], g, by which `lever` gives a moment of weight; 0: none
     double gravity = 0.0;                 // [m/s^2], g, by which `net` gives a force; 0: no section has any
+
+    std::vector<Fin> fins;         // in space alone
+    std::vector<FinServo> servos;  // of the fins
 
     bool weighs() const { return righting != 0.0 || gravity != 0.0; }
 

@@ -21,6 +21,9 @@ struct Kink {
     std::vector<double> weights;  // [m], of the panel's nodes, for the integral from its start to the kink
 };
 
+// Numbers of a state, filled up for lanes: `momentum_balance.hpp`.
+inline constexpr std::size_t state_space = 16;
+
 template <class M>
 struct Workspace {
     explicit Workspace(const Swimmer& swimmer)
@@ -36,6 +39,8 @@ struct Workspace {
         friction_laminar = friction_excess = turbulent_share = turbulent_weight = Row(n);
         for (Row& row : speed) row = Row(n);
         for (const Speed each : {lateral, vertical, roll}) load_weight[each] = Row(n);
+        fins.resize(swimmer.fins.size());
+        if (!fins.empty()) fin_places = Field<Vector3<double>>(blocks_of(fins.size()));
         kink_density = Field<Wrench<M, double>>(blocks_of(swimmer.grid.widest));
         for (Kink& kink : kinks) kink.weights.resize(swimmer.grid.widest + width);
     }
@@ -66,6 +71,13 @@ struct Workspace {
 
     const Field<Vector<M, double>>& velocity_through_water() const { return flowing ? relative : velocity; }
     Vector<M, double> nose_through_water() const { return flowing ? twist.linear - flow.nose().u : twist.linear; }
+
+    // Fins, in space alone:
+    std::vector<FinMotion> fins;
+    Field<Vector3<double>> fin_places;             // [m], about the head
+    FlowValues<Space> fin_flow;                    // there, where the water moves by itself
+    std::array<double, state_space> servo_rate{};  // [rad/s], in their slots of the state
+    Wrench<Space, double> fin_load{};              // what the fins add to the rate of the momentum
 
     // Drag, in section axes:
     std::array<Row, speeds> speed;          // see `Speed`

@@ -44,8 +44,9 @@ struct MomentumScale {
     }
 };
 
-// Error of a step over the tolerance: of the position by the body's length, of the orientation by one, of the momenta
-// by their greatest size; the worst of the four. `defect`: error by the step's length; `end`: state at the step's end.
+// Error of a step over the tolerance: of the position by the body's length, of the orientation and the fins by one, of
+// the momenta by their greatest size; the worst of the five. `defect`: error by the step's length; `end`: state at the
+// step's end.
 inline double error_by_tolerance(const StepBounds& bounds, MomentumScale scale, const State& end, const State& defect,
                                  double length)
 {
@@ -53,8 +54,9 @@ inline double error_by_tolerance(const StepBounds& bounds, MomentumScale scale, 
     scale.include(end);
     const double linear = std::max(scale.linear, bounds.momentum_floor * bounds.momentum_floor);
     const double angular = std::max(scale.angular, linear * body);
-    const double worst = std::max({square_of(defect, 0, 3) / body, square_of(defect, 3, 7),
-                                   square_of(defect, 7, 10) / angular, square_of(defect, 10, 13) / linear});
+    const double worst =
+        std::max({square_of(defect, 0, 3) / body, square_of(defect, 3, 7), square_of(defect, 7, 10) / angular,
+                  square_of(defect, 10, 13) / linear, square_of(defect, state_size, state_space)});
     return std::sqrt(worst) * length / bounds.tolerance;
 }
 

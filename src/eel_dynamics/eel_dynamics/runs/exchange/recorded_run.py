@@ -147,7 +147,9 @@ def _energy(rows: dict, time: np.ndarray) -> EnergyLedger | None:
     """The ledger, with works since the first sample. The node's water does not move by itself: no power of a flow."""
     if "energy" not in rows:
         return None
-    ledger = dict.fromkeys(("flow_power", "elastic", "damping_power", "damping_work"), np.zeros_like(time))
+    ledger = dict.fromkeys(
+        ("flow_power", "fins_power", "elastic", "damping_power", "damping_work"), np.zeros_like(time)
+    )
     ledger |= {name: np.array([getattr(each, name) for each in rows["energy"]]) for name in ENERGY_FIELDS}
     works = {}
     for part in WORKS:

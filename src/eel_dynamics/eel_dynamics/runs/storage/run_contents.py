@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Takes a run, or a batch, apart into `Contents`, and puts their fields together again."""
 
+from dataclasses import asdict
+
 import numpy as np
 from eel_base.wording import shown
 
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.flow.plain import flow_of, plain_of_flow
 from eel_dynamics.model.axes import REP103, turn_vector, turned
+from eel_dynamics.model.fins import Fin, RollHold
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.variables import COUNTS, ENERGY, LEDGER, OWN, Contents
@@ -23,6 +26,7 @@ def contents_of_run(run) -> Contents:
     values = {
         **{name: plain.plain_of(getattr(run, name)) for name in ("law", "body", "scene", "accuracy", "error_estimate")},
         "flow": plain_of_flow(run.flow),
+        "fins": [asdict(fin) for fin in run.fins],
         "warnings": list(run.warnings),
         **{name: int(getattr(run, name)) for name in COUNTS},
     }
@@ -44,10 +48,16 @@ def fields_of_run(contents: Contents) -> dict:
         "error_estimate": values["error_estimate"] and ErrorEstimate(**values["error_estimate"]),
         "energy": energy,
         "flow": flow_of(values.get("flow")),
+        "fins": tuple(Fin(**each) for each in map(_with_hold, values.get("fins", ()))),
         "axes": contents.axes,
         **{name: arrays.get(name) for name in OWN},
         **{name: _count(name, values[name]) for name in COUNTS},
     }
+
+
+def _with_hold(fin: dict) -> dict:
+    angle = fin["angle"]
+    return fin | {"angle": RollHold(**angle) if isinstance(angle, dict) else angle}
 
 
 def in_rep103_axes(contents: Contents) -> Contents:
@@ -84,7 +94,7 @@ def with_warnings(batch, contents: Contents) -> Contents:
 
 
 def observed_of_batch(contents: Contents) -> tuple[Observations, np.ndarray]:
-    """The observations of a batch, and its works (B, T, 5) [J]."""
+    """The observations of a batch, and its works (B, T, 6) [J]."""
     arrays = contents.arrays
     count, samples, stations = arrays["backbone"].shape[:3]
     out = Observations.empty(samples, stations, "torque" in arrays, "fluid_force" in arrays, (count,))
@@ -102,7 +112,7 @@ def observed_of_batch(contents: Contents) -> tuple[Observations, np.ndarray]:
 def _ledger_of(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The arrays of the ledger; files of still water or imposed bending need not have theirs."""
     none = np.zeros_like(arrays[ENERGY + "residual"])
-    later = "flow_power", "flow_work", "elastic", "damping_power", "damping_work"
+    later = "flow_power", "flow_work", "fins_power", "fins_work", "elastic", "damping_power", "damping_work"
     absent = {name: none for name in later if ENERGY + name not in arrays}
     return absent | {name: arrays[ENERGY + name] for name in LEDGER if name not in absent}
 

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Fins: stiff plates on the body that turn about their span, and what turns them. Constants of a run, and the numbers
+// of one evaluation. Ours, not the paper's.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "eel_core/algebra/motion.hpp"
+
+namespace eel_core {
+
+// An angle [rad] in time: cubics between knots [s], from the constant coefficient on; constant beyond the ends.
+struct AngleLaw {
+    std::vector<double> knots{0.0, 1.0};
+    std::vector<std::array<double, 4>> pieces{{}};
+
+    std::array<double, 2> at(double time) const  // value and rate
+    {
+        const double inside = std::clamp(time, knots.front(), knots.back());
+        const auto next = std::upper_bound(knots.begin() + 1, knots.end() - 1, inside);
+        const auto piece = static_cast<std::size_t>(next - knots.begin()) - 1;
+        const auto& c = pieces[piece];
+        const double s = inside - knots[piece], rate = c[1] + s * (2.0 * c[2] + s * 3.0 * c[3]);
+        return {c[0] + s * (c[1] + s * (c[2] + s * c[3])), inside == time ? rate : 0.0};
+    }
+};
+
+// What turns one fin, or two alike. Its angle is a state with the rate (limit tanh(command / limit) - angle) / tau.
+struct FinServo {
+    double time_constant = 0.0;               // [s], tau; 0: the angle is the command, and no state
+    double limit = 1.0;                       // [rad]
+    double roll_gain = 0.0, rate_gain = 0.0;  // [1], [s]: - k_p roll - k_d Omega1 at its node are added to the command
+    std::size_t node = 0, slot = 0;           // slot: of the state
+};
+
+struct Fin {
+    std::size_t node = 0;                // at its station, where a panel ends
+    Vector3<double> normal{}, centre{};  // section axes: of the plate at rest; of its pressure, about the section [m]
+    double pressure = 0.0;               // [kg/m], 1/2 rho_f times its area
+    double lift_slope = 0.0;             // [1], by sine times cosine of the incidence
+    double induced = 0.0;                // [1], 1 / (pi e AR)
+    double normal_drag = 0.0, friction_drag = 0.0;  // [1], of a plate across the stream, and along it
+    double added_mass = 0.0;                        // [kg], along the normal
+    std::size_t servo = 0;
+    std::size_t node_behind = 0, station_behind = 0;  // the first node behind the station; the first there or behind
+    double sign = 1.0;                                // of its angle by the servo's
+};
+
+// Of one evaluation, in the axes of the head.
+struct FinMotion {
+    double angle = 0.0, rate = 0.0;            // [rad], [rad/s]
+    Vector3<double> arm{}, position{};         // [m], of the centre of pressure, about the section and about the head
+    Vector3<double> normal{}, chord{};         // e_n; e_c, from the trailing to the leading edge
+    Vector3<double> velocity{}, water_rate{};  // [m/s], [m/s^2]
+    Vector3<double> force{}, whole{};          // [N], of lift and drag; with that of the added mass
+};
+
+}  // namespace eel_core
