@@ -2,8 +2,8 @@
 """The examples of README.md and docs: Python runs, and shell lines name commands, options and parameters that exist.
 
 Blocks of a page run one after the other in one name space and one folder. A block below `<!-- listing ... -->` only
-shows a file. A block without a language is shell. `eel simulate` and `eel identify` run; of other commands the options
-are looked up, of nodes the parameters.
+shows a file. A block without a language is shell. The commands of `RUN` run; of others the options are looked up, of
+nodes the parameters.
 """
 
 import contextlib
@@ -25,7 +25,7 @@ from eel_gaits import straight
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 BLOCK = re.compile(r"(?:<!-- (listing)[^\n]*-->\n)?^```([^\n`]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-RUN = ("eel simulate", "eel identify")
+RUN = ("eel simulate", "eel identify", "eel ballast")
 FOREIGN = ("colcon", "dask", "export", "pip", "python", "python3", "rerun", "rosdep", "source", "sudo", "touch")
 INPUTS = ("goal_path", "goal_pose", "current")  # of the pilot, of the dynamics node
 SERVICES = ("reset", "pause", "step", "set_state")
