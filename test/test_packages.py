@@ -28,6 +28,7 @@ EXECUTABLES = {
         "sweep",
         "stability",
         "steering",
+        "terms",
         "tradeoff",
     },
     "eel_viz": {"visualiser", "markers", "record", "eel_echo", "replay", "render"},
