@@ -23,6 +23,7 @@ EXECUTABLES = {
         "figures",
         "identify",
         "midlines",
+        "laws",
         "life",
         "optimise",
         "sweep",

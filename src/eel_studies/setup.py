@@ -25,6 +25,7 @@ setup(
     entry_points={
         "console_scripts": [
             "midlines = eel_command:main_of.eel_studies.midlines.command",
+            "laws = eel_command:main_of.eel_studies.laws.command",
             "life = eel_command:main_of.eel_studies.life.command",
             "figures = eel_command:main_of.eel_studies.figures.command",
             "identify = eel_command:main_of.eel_studies.identification.command",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel laws`: laws of swimming beside our swims: exponents, prefactors, a picture.
+"""`eel laws`: hold the model against laws of swimming.
 
 eel laws gazzola --out docs/images/law_gazzola.png
 eel laws gazzola --friction taylor

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel life`: filmed swimmers beside what was measured on them, as a table and a picture.
+"""`eel life`: filmed swimmers beside what was measured on them.
 
 eel life lamprey docs/data/lamprey_midlines.csv --widths docs/data/widths.csv --out lamprey.png --out lamprey.csv
 eel life robot docs/data/tendon_fish_?.??Hz.csv --body docs/data/tendon_fish_body.csv --mass 1.5 --rigid 0.5

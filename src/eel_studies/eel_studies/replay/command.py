@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel replay-joints`: swim by the log of a robot's joints: path, speed and torques, with bands.
+"""`eel replay-joints`: swim by the log of a robot's joints, with bands.
 
 eel replay-joints log.csv --links 0.18x9 --section 0.055,0.05 --mass 7.2
 eel replay-joints amphibot.csv --columns 8-13 --units deg --links 0.094x7 --section 0.0275,0.0165 --seen leds.csv
