@@ -85,10 +85,22 @@ def bag_to_figure(figure: Figure, values: Values) -> None:
     axes.set_xlabel("time [s]")
 
 
+def motors(figure: Figure, values: Values) -> None:
+    """The servos' error and the speed of the page's robot over the limit of its motors."""
+    found = list(values["limits"])
+    errors, speeds = [100.0 * each.tracking_error for _, each in found], [each.speed for _, each in found]
+    labelled = ("tracking error [%]", errors), ("speed [m/s]", speeds)
+    for axes, (label, row) in zip(figure.subplots(1, 2), labelled, strict=True):
+        axes.semilogx([limit for limit, _ in found], row, marker="o", color=BLUE)
+        axes.set(xlabel="torque limit [N m]", ylabel=label, ylim=(0.0, None))
+        plain(axes)
+
+
 TUTORIALS: dict[str, Callable[..., None]] = {
     "own_gait": own_gait,
     "own_controller": own_controller,
     "own_body": own_body,
+    "motors": motors,
     "bag_to_figure": bag_to_figure,
 }
 

@@ -333,6 +333,9 @@ class BentMarch:
         """rows (T, size): writable, the coordinates' numbers as `row` has them."""
 
     def observe(self, whole: Buffer, row: Buffer, wrench: bool, load: bool) -> bool: ...
+    def command(self, servo: int, kind: str, value: float) -> None:
+        """Have a servo do so from now on. kind: angle [rad], rate [rad/s], torque [N m]; law: what the law asks."""
+
     def singular_mode(self) -> int | None:
         """The first mode that makes the mass matrix singular in the present state; None where it is definite."""
 

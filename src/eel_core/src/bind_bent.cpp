@@ -3,6 +3,8 @@
 // compiled.
 #include "bind_bent.hpp"
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 
 #include "eel_core/bending/bent_march.hpp"
@@ -103,7 +105,7 @@ class PyBentMarch {
         const std::size_t rows = law->tables->rows();
         if (rows < modes.modes || law->tables->node.blocks != march_.swimmer().grid.blocks)
             throw py::value_error("law must be tabulated on the nodes of the swimmer, with the modes as its last rows");
-        BentSettings settings{{*law, rows - modes.modes, {}, std::move(drive), {}},
+        BentSettings settings{{*law, rows - modes.modes, {}, std::move(drive), {}, {}},
                               std::move(breakpoints),
                               bounds,
                               torque_floor,
@@ -167,6 +169,15 @@ class PyBentMarch {
                                    rows_into.data(), done);
         }
         return py::make_tuple(done, static_cast<int>(status));
+    }
+    void command(std::size_t servo, const std::string& kind, double value)
+    {
+        const Driven in_use(*this);
+        constexpr std::array kinds{"law", "angle", "rate", "torque"};
+        const auto* const found = std::find(kinds.begin(), kinds.end(), kind);
+        if (servo >= march_.modes().servos.size() || found == kinds.end())
+            throw py::value_error("a command must be for a servo, and of a known kind");
+        march_.command(servo, static_cast<Command::Kind>(found - kinds.begin()), value);
     }
     bool observe(const py::object& whole, const py::object& row, bool wrench, bool load)
     {
@@ -284,6 +295,7 @@ void bind_bent_marches(py::module_& module)
         .def("record", &PyBentMarch::record, py::arg("times"), py::arg("first"), py::arg("whole"), py::arg("works"),
              py::arg("rows"), py::arg("wrench"), py::arg("load"), py::arg("until"))
         .def("observe", &PyBentMarch::observe, py::arg("whole"), py::arg("row"), py::arg("wrench"), py::arg("load"))
+        .def("command", &PyBentMarch::command, py::arg("servo"), py::arg("kind"), py::arg("value"))
         .def("singular_mode", &PyBentMarch::singular_mode)
         .def_property_readonly("memory", [](const PyBentMarch& march) { return march.march().memory(); })
         .def_property_readonly("time", [](const PyBentMarch& march) { return march.march().time(); })

@@ -14,7 +14,7 @@ The rotor adds gear^2 rotor_inertia to the joint's inertia. With a series spring
 the servo's law then sees th.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
@@ -120,3 +120,15 @@ class Torque(Part):
 
 
 Actuator = Servo | Torque
+AT_LIMIT = 1.0 - 1e-9  # of the torque that a servo can give at its speed, from which it counts as at its limit
+
+
+def at_limit(servos: Sequence[Servo | None], torque: np.ndarray, power: np.ndarray) -> np.ndarray:
+    """Whether motors (..., J) with this `torque` [N m] and `power` [W] are at their limits; None: no servo."""
+    limit, fastest = (
+        np.array([np.inf if each is None else getattr(each, name) or np.inf for each in servos])
+        for name in ("torque_limit", "speed_limit")
+    )
+    along = np.divide(power, np.abs(torque), out=np.zeros(torque.shape), where=torque != 0.0)  # rate along the torque
+    most = limit * np.clip(1.0 - along / fastest, 0.0, 1.0)
+    return np.asarray(np.isfinite(limit) & (np.abs(torque) >= AT_LIMIT * most))

@@ -9,7 +9,7 @@ continuously. In an axis without motors the law is imposed, but for the supports
 
 import os
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -79,24 +79,26 @@ class Robot:
             raise ValueError(not_one_of("joint", name, found))
         return found[name]
 
-    def changed(self, joint: str | None = None, **changes: Any) -> "Robot":
-        """The same robot with other fields of one `joint`, or of all joints; fields of a servo too.
+    @property
+    def servos(self) -> tuple[Servo | None, ...]:
+        """The servos of its joints; None of a joint without."""
+        return tuple(joint.actuator if isinstance(joint.actuator, Servo) else None for joint in self.joints)
+
+    def changed(self, part: str | None = None, **changes: Any) -> "Robot":
+        """The same robot with other fields of one `part`, or of all parts that have them; fields of an actuator too.
 
         Such as robot.changed(torque_limit=1.0), or robot.changed("joint_3", stiffness=2.0). `ValueError` for a name
-        that a joint, and its servo, does not have.
+        that no part has, or the part does not have.
         """
-        names = [joint] if joint is not None else [each.name for each in self.joints]
-        for each in names:
-            self.joint(each)
-        return Robot(
-            (
-                _changed(part, changes) if isinstance(part, Joint) and part.name in names else part
-                for part in self.parts
-            ),
-            name=self.name,
-            body=self.body,
-            notes=self.notes,
-        )
+        names = [each.name for each in self.parts]
+        if part is not None and part not in names:
+            raise ValueError(not_one_of("part", part, names))
+        for name in changes:
+            if not any(_has(each, name) for each in self.parts if part in (None, each.name)):
+                whose = "no part of the robot has" if part is None else f"{shown(part)} has no"
+                raise ValueError(f"{whose} {shown(name)}")
+        parts = (_changed(each, changes) if part in (None, each.name) else each for each in self.parts)
+        return Robot(parts, name=self.name, body=self.body, notes=self.notes)
 
     def __repr__(self) -> str:
         kinds = [type(part).__name__ for part in self.parts]
@@ -127,6 +129,13 @@ class Robot:
 
 
 KINDS = (Joint, PassiveTail, Muscle)
+
+
+def robot_of(text: str) -> Robot | None:
+    """The robot called `text`, or in that file; None for an empty text. `ValueError` if there is none."""
+    if not text:
+        return None
+    return Robot.from_file(text) if Path(text).suffix else Robot.named(text)
 
 
 def checked_robot(robot: Any) -> Robot | None:
@@ -161,13 +170,20 @@ def _named(parts: list[Any]) -> tuple[Any, ...]:
     return tuple(part if part.name else replace(part, name=name) for part, name in zip(parts, names, strict=True))
 
 
-def _changed(joint: Joint, changes: dict[str, Any]) -> Joint:
-    """`joint` with the `changes`, those of its actuator's fields in the actuator."""
-    own = {name: value for name, value in changes.items() if hasattr(joint, name)}
-    inner = {name: value for name, value in changes.items() if name not in own}
-    for name in inner:
-        if not hasattr(joint.actuator, name):
-            raise ValueError(f"joint {shown(joint.name)} has no {shown(name)}")
-    if inner and joint.actuator is not None:
-        own["actuator"] = replace(joint.actuator, **inner)
-    return replace(joint, **own)
+def _has(part: Any, name: str) -> bool:
+    return any(name in {item.name for item in fields(each)} for each in _with_actuator(part))
+
+
+def _with_actuator(part: Any) -> tuple[Any, ...]:
+    actuator = getattr(part, "actuator", None)
+    return (part,) if actuator is None else (part, actuator)
+
+
+def _changed(part: Any, changes: dict[str, Any]) -> Any:
+    """`part` with those of the `changes` that it has; the actuator's in the actuator."""
+    own = {name: value for name, value in changes.items() if name in {item.name for item in fields(part)}}
+    rest = {name: value for name, value in changes.items() if name not in own}
+    if len(_with_actuator(part)) > 1 and "actuator" not in own:
+        inner = {item.name for item in fields(part.actuator)} & rest.keys()
+        own |= {"actuator": replace(part.actuator, **{name: rest[name] for name in inner})} if inner else {}
+    return replace(part, **own)

@@ -16,6 +16,7 @@ from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.flow.plain import flow_of
 from eel_dynamics.flow.text import flow_from_text, text_of_flow
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.robot.robot import robot_of
 from eel_dynamics.ros.parameters import FRAMES, ROOT, DynamicsParameters
 from eel_dynamics.ros.simulation_from_parameters import body_of
 
@@ -85,6 +86,8 @@ class Declaration:
             self._check_clock(values, given.get(USE_SIM_TIME, self._node.get_parameter(USE_SIM_TIME).value))
             if "body" in found:
                 body_of(values.body)
+            if "robot" in found:
+                robot_of(values.robot)
             if "flow" in found:
                 flow_from_text(values.flow)
             if "accuracy" in found:

@@ -91,14 +91,17 @@ class SampleMessages:
         yaw, pitch = parameters.yaw_joints, parameters.pitch_joints
         robots = (2, slice(0, yaw), yaw), (1, slice(yaw, yaw + pitch), pitch)  # section axis, place, number of joints
         self._joints = [(axis, place, Joints(x, float(x[-1]), count)) for axis, place, count in robots if count]
-        if self._joints:
+        robot = simulation.robot
+        if self._joints or robot is not None:
             from sensor_msgs.msg import JointState  # here, for its package takes a tenth of the node's start
 
             names = [f"{name}_{k + 1}" for name, count in (("yaw", yaw), ("pitch", pitch)) for k in range(count)]
+            if robot is not None:
+                names = [joint.name for joint in robot.joints]
             zeros = [0.0] * len(names)
-            effort = zeros if scene.internal_wrench else []
+            effort = zeros if scene.internal_wrench or robot is not None else []
             joint_state = JointState(name=names, position=zeros, velocity=zeros, effort=effort)
-            topics["joint_states"] = joint_state, "", self._fill_joints
+            topics["joint_states"] = joint_state, "", self._fill_joints if robot is None else self._fill_robot
         self.kinds = {name: type(message) for name, (message, *_) in topics.items()}
         self._topics = {name: (SerialisedMessage(message), fill) for name, (message, _, fill) in topics.items()}
         self._clock = SerialisedMessage(Clock())
@@ -206,6 +209,11 @@ class SampleMessages:
             numbers["velocity"][place] = joints.angle(snapshot.curvature_rate)[:, axis]
             if "effort" in numbers:
                 numbers["effort"][place] = joints.motor_torque(snapshot.torque)[:, axis]
+
+    def _fill_robot(self, numbers: Numbers, snapshot: Snapshot) -> None:
+        joints = snapshot.joints
+        for field, name in (("position", "joint_angle"), ("velocity", "joint_rate"), ("effort", "joint_torque")):
+            numbers[field][:] = joints[name]
 
 
 def _lengthen(message: Any, x: np.ndarray) -> None:

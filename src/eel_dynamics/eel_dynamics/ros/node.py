@@ -35,6 +35,7 @@ from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.current_subscription import CurrentSubscription
 from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration
+from eel_dynamics.ros.joint_command import JointCommandSubscription, interfaces_of
 from eel_dynamics.ros.law_subscription import LawSubscription
 from eel_dynamics.ros.loop.run_loop import RunLoop
 from eel_dynamics.ros.messages import diagnostic_array, root_message, state_from_message, time_message, values_of_status
@@ -42,6 +43,7 @@ from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.publishers import Publishers
 from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
 from eel_dynamics.ros.status import Status
+from eel_dynamics.simulation.simulation import Simulation
 from eel_msgs.srv import SetState, Step
 
 NAME = "dynamics"
@@ -76,6 +78,7 @@ class DynamicsNode(ParameterNode):
         self._ended: float | None = None  # s, steady clock: when the end of the run was seen
         self._laws = LawSubscription(self, self.run_loop, self._report)
         self._current = CurrentSubscription(self, self.run_loop, self.parameters.values.world_frame, self._report)
+        self._subscribe_to_commands(simulation)
         pace, requests = self.run_loop.pace, self.run_loop.requests
         self._followed_clock = ClockSubscription(self, pace, requests) if isinstance(pace, FollowedClock) else None
         self._other_nodes = OtherNodes(self, self.resolve_topic_name("head_pose"), Identity.own(), self._report)
@@ -90,6 +93,15 @@ class DynamicsNode(ParameterNode):
         self._publish_root()
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
+
+    def _subscribe_to_commands(self, simulation: Simulation) -> None:
+        """Take commands for the joints of a robot, in the interfaces that they have from now on."""
+        given, robot = self.parameters.values.command_interfaces, simulation.robot
+        if robot is not None:
+            interfaces = interfaces_of(tuple(joint.name for joint in robot.joints), given)
+            JointCommandSubscription(self, self.run_loop, interfaces, self._report)
+            for note in robot.notes:
+                self.get_logger().info(f"robot {robot.name}: {note}")
 
     def _serve(self, kind: type, name: str, callback: Any, group: Any) -> None:
         self.create_service(kind, f"~/{name}", callback, qos_profile=SERVICE_QOS, callback_group=group)

@@ -61,6 +61,25 @@ class DynamicsParameters(Quantities):
         "with ' + ' between; empty: not by itself",
         **LATER,
     )
+    robot: str = quantity(
+        "",
+        "",
+        "what bends by itself: name of a robot, or a .yaml or URDF file, whose body is taken unless body is set; its "
+        "servos follow the law; empty: the law is imposed",
+        **LATER,
+    )
+    command_interfaces: tuple[str, ...] = quantity(
+        ("position",),
+        "",
+        "what joint_commands drive: position, velocity or effort, for all joints or for each in their order",
+    )
+    command_timeout: float = quantity(
+        0.5,
+        "s",
+        "simulated time without joint_commands after which a warning says that the last holds; 0: none",
+        0.0,
+        **NOW,
+    )
     default_transition: float = quantity(1.0, "s", "blending time of a law that names none", 0.0, 1e4, exclusive=True)
     initial_position: tuple[float, ...] = quantity(
         (0.0, 0.0, 0.0), "m", "of the head at the start, in the world frame", **LATER
@@ -133,6 +152,8 @@ class DynamicsParameters(Quantities):
                 raise ValueError(f"{name} must not be empty")
             if getattr(self, name) == self.root_frame:
                 raise ValueError(f"root_frame must be another frame than {name}, got {shown(self.root_frame)}")
+        if self.robot and max(self.yaw_joints, self.pitch_joints) > 0:
+            raise ValueError("yaw_joints and pitch_joints must be 0 with a robot, whose own joints are on joint_states")
         if max(self.yaw_joints, self.pitch_joints) > 0 and self.stations < 4:
             raise ValueError(f"stations must be 4 or more where there are joints, got {self.stations}")
         if self.publish_tf_stations and self.stations > MOST_FRAMES:

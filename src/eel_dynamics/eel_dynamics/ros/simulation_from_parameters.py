@@ -6,14 +6,18 @@ from pathlib import Path
 from eel_dynamics.flow.text import flow_from_text
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.robot.robot import robot_of
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.simulation.simulation import Simulation
 
 
 def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene) -> Simulation:
     """The simulation at t = 0; `ValueError` names what does not fit."""
+    robot = robot_of(parameters.robot)
+    own = robot is not None and robot.body is not None and parameters.body == DynamicsParameters.body
     return Simulation(
-        body=body_of(parameters.body),
+        body=None if own else body_of(parameters.body),
+        robot=robot,
         scene=scene,
         accuracy=parameters.accuracy,
         stations=parameters.stations,

@@ -59,6 +59,8 @@ class Status:
             "late": max(0.0, run.pace.lost(run.samples_published)),
             **run.output.totals.values(),
             **run.output.errors.values,
+            **run.commands.values(),
+            **(run.output.saturation.values() if run.output.saturation is not None else {}),
             "samples_published": run.samples_published,
             "publishers_of_laws": publishers_of_laws,
             "warnings": "; ".join(warnings),

@@ -34,6 +34,7 @@ from eel_dynamics.analysis.actuators import MOST_JOINTS
 from eel_dynamics.flow.text import flow_from_text
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.robot.robot import robot_of
 from eel_dynamics.runs.command_options import add_options, body_of, scene_of, set_numbers
 from eel_dynamics.runs.filmed import EEL, add_film_options, beat_from, body_for, effect_of_fit
 from eel_dynamics.runs.run import Run
@@ -95,7 +96,9 @@ def _swim(options) -> int:
 
 def _swim_of(options, beat: Beat | None) -> Swim:
     """The swim that the options tell: of a gait, a file of a motion, or the `beat` of a film."""
-    body = body_of(options.body or "boyer2010") if beat is None else body_for(options.body, beat.film)
+    robot = robot_of(options.robot)
+    own = None if robot is None or options.body else robot.body
+    body = own or (body_of(options.body or "boyer2010") if beat is None else body_for(options.body, beat.film))
     law, duration = _law(options, body, beat), options.duration
     if duration is None and beat is not None:
         duration = UNTIL_SETTLED
@@ -103,6 +106,7 @@ def _swim_of(options, beat: Beat | None) -> Swim:
         duration = law.duration if isinstance(law, SampledLaw) else DURATION
     more = {
         "flow": flow_from_text(options.flow),
+        "robot": robot,
         "duration": duration,
         "sample_period": options.sample_period,
         "stations": options.stations or STATIONS,
@@ -116,6 +120,7 @@ def _scene_of_file(options) -> Swim:
         *options.set,
         *options.scene,
         options.flow,
+        options.robot,
         options.body,
         options.file,
         options.midlines,
@@ -190,7 +195,8 @@ def _parser() -> Parser:
     parser.add_argument("--unsmoothed", action="store_true", help="do not smooth what was measured")
     duration = None, f"{DURATION:g}; of a file: all of it; of midlines: {UNTIL_SETTLED}"
     add_options(
-        parser, "--scale", "--duration", "--accuracy", "--bare", "--body", "--scene", "--flow", "--sample-period",
+        parser, "--scale", "--duration", "--accuracy", "--bare", "--body", "--scene", "--flow", "--robot",
+        "--sample-period",
         duration=duration, accuracy=(None, "standard"),
         body=(None, f"boyer2010; with --midlines {EEL}, as long as the swimmer in the film"),
     )  # fmt: skip

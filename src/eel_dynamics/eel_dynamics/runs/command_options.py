@@ -20,6 +20,7 @@ from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.flow.text import NAMES
 from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.robot.ready import READY
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, until_settled
 
 TRUTH = {"true": True, "on": True, "false": False, "off": False}
@@ -168,6 +169,11 @@ OPTIONS = {  # what argparse takes
         "metavar": "FLOW",
         "help": f"how the water moves: {', '.join(NAMES)} with numbers, as 'shear velocity=0.1,0,0 width=0.5', a .nc "
         "file of a grid, or several with ' + ' between: docs/howto/flow.md",
+    },
+    "--robot": {
+        "default": "",
+        "metavar": "ROBOT",
+        "help": f"what bends by itself, and follows the law: {', '.join(READY)}, or a .yaml or URDF file",
     },
     "--body": {"default": "boyer2010", "help": f"{', '.join(NAMED)}, or a .csv or .npz file of half-axes"},
     "--accuracy": {

@@ -114,6 +114,10 @@ class ErrorMeter:
         """As the march has done: `LawFollower.add`."""
         self._repeat(lambda companion: companion.follower.add(sample))
 
+    def command(self, joint: str, kind: str, value: float):
+        """As the march has done: `BentMarch.command`."""
+        self._repeat(lambda companion: companion.command(joint, kind, value))
+
     def _repeat(self, action: Callable[[March], object]):
         if self._companion is None:
             return

@@ -250,6 +250,10 @@ class March:
 
     joints: Any = None  # of a robot: `JointMotion` of the last `record`
 
+    def command(self, joint: str, kind: str, value: float) -> None:
+        """Of a robot alone: `BentMarch.command`."""
+        raise ValueError("joints can be commanded where there is a robot, got none")
+
     # -- the present
 
     def observe(self, wrench: bool = True, load: bool = True) -> Snapshot:

@@ -10,7 +10,7 @@ from functools import cache, partial
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import checked_row, is_finite
+from eel_base.quantity import checked_row, is_finite, number
 from eel_base.wording import shown
 from eel_gaits.gaits.diving import falling
 from eel_gaits.gaits.swimming import straight
@@ -31,6 +31,7 @@ from eel_dynamics.model.body import Body
 from eel_dynamics.model.grid import Grid
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.robot.actuators import Servo
 from eel_dynamics.robot.robot import Robot
 from eel_dynamics.simulation.bending.bent_march import march_of
 from eel_dynamics.simulation.bending.joint_motion import JointMotion
@@ -98,7 +99,7 @@ class Simulation:
             at_hand = partial(swim_time, setup.body, setup.scene, setup.x.tobytes())
             setup = replace(setup, accuracy=within_budget(setup.accuracy, setup.scene, at_hand))
         self._setup = setup
-        self.body, self.scene, self.x = setup.body, setup.scene, setup.x
+        self.body, self.scene, self.x, self.robot = setup.body, setup.scene, setup.x, setup.robot
         self._march = march_of(setup).from_start(setup, law)
         self.ready, self._started = law is not None, False
         self.currents = CurrentStream(setup.default_transition)
@@ -256,6 +257,39 @@ class Simulation:
     def flow(self) -> Flow | None:
         """How the water moves at present, beside the scene's current."""
         return self._march.setup.flow
+
+    def command(
+        self,
+        joint: str,
+        *,
+        position: float | None = None,
+        velocity: float | None = None,
+        effort: float | None = None,
+    ) -> None:
+        """Have the servo of a robot's `joint` hold a position [rad], turn with a velocity [rad/s], or give an effort
+        [N m], from now on and whatever the law; with none of them, follow the law again.
+
+        A velocity moves the reference of the position. All are limited by the servo. The sign is the joint's.
+        `ValueError` for an unknown joint, one without a servo, a number that is not finite, or several at once.
+        """
+        robot = self.robot
+        if robot is None:
+            raise ValueError(f"joint {shown(joint)} cannot be commanded: there is no robot")
+        if not isinstance(robot.joint(joint).actuator, Servo):
+            raise ValueError(f"joint {shown(joint)} cannot be commanded: it has no servo")
+        given = {"angle": ("position", position), "rate": ("velocity", velocity), "torque": ("effort", effort)}
+        wanted = [(kind, name, value) for kind, (name, value) in given.items() if value is not None]
+        if len(wanted) > 1:
+            raise ValueError(
+                f"joint {shown(joint)} must be commanded in one mode, got {' and '.join(n for _, n, _ in wanted)}"
+            )
+        kind, name, value = wanted[0] if wanted else ("law", "", 0.0)
+        value = number(f"{name} of joint {shown(joint)}", value)
+        if self._meter is not None:
+            self._meter.catch_up(self._march)
+        self._march.command(joint, kind, value)
+        if self._meter is not None:
+            self._meter.command(joint, kind, value)
 
     def copy_with(self, accuracy: Accuracy) -> "Simulation":
         """A copy in the present state that continues with the settings `accuracy`."""

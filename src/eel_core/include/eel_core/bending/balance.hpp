@@ -26,7 +26,7 @@ class BentBody {
           acceleration(modes.coordinates),
           momentum_rate(modes.coordinates),
           drift(modes.coordinates),
-          reference(modes.servos.size()),
+          target(modes.servos.size()),
           swimmer_(&swimmer),
           modes_(&modes),
           load_(swimmer.grid.blocks),
@@ -43,7 +43,7 @@ class BentBody {
     std::vector<double> momentum_rate;       // pidot
     std::vector<double> drift;  // rates of the coordinates' rates that momenta at rest would leave, by M and b alone
     Forces forces;
-    std::vector<Jet> reference;  // of the servos
+    std::vector<Target> target;  // of the servos
     State head_rate{};           // of the head's part of the state
     std::size_t singular = 0;    // row of M that is not positive definite
 
@@ -61,7 +61,7 @@ class BentBody {
         work.factor.resize(law.law.tables->rows());
         for (std::size_t m = 0; m < modes_->modes; ++m) work.factor[law.first_mode + m] = {x[m], 0.0, 0.0};
         configure(*swimmer_, law.law, time, work);
-        set_references(law, work.factor, reference);
+        set_targets(law, work.factor, time, target);
         set_pushing(*modes_, law, time, drive_, forces.pushing);
         work.head = head_frame(y, M());
         work.momentum = momentum_in_head(y, work.head);
@@ -101,7 +101,7 @@ class BentBody {
         find_loads(*swimmer_, work);
         if (swimmer_->weighs()) set_weight(*swimmer_, 0.0, work);  // its energy is that of what is observed
         set_mode_loads();
-        set_forces(*modes_, reference, x, rate.data(), forces);
+        set_forces(*modes_, target, x, rate.data(), forces);
     }
 
     // Motion and loads from the rates of the coordinates.

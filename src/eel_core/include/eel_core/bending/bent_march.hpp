@@ -70,11 +70,24 @@ class BentMarch {
         observing_.reset();
     }
 
-    // As `March::follow`.
+    // As `March::follow`. Commands hold.
     void follow(BentSettings settings, bool smoothly)
     {
+        settings.law.commands = std::move(settings_.law.commands);
         settings_ = std::move(settings);
         if (!smoothly) begin();
+    }
+
+    // Has a servo do so from now on, whatever the law; the next step begins anew.
+    void command(std::size_t servo, Command::Kind kind, double value)
+    {
+        std::vector<Command>& commands = settings_.law.commands;
+        commands.resize(modes_->servos.size());
+        const Command& last = commands[servo];
+        const bool by_angle = last.kind == Command::angle || last.kind == Command::rate;
+        const double from = by_angle ? target_of(last, time_).reference[0] : x_[modes_->servos[servo].coordinate];
+        commands[servo] = {kind, value, time_, from};
+        begin();
     }
 
     // Stands at the start, at time 0, with these coordinates and rates and the momenta of the head's twist relative to

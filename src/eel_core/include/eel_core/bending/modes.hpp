@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -63,6 +64,22 @@ struct Modes {
     std::vector<GivenTorque> torques;
 };
 
+// What a servo is told to do in place of following the law.
+struct Command {
+    enum Kind : std::uint8_t { law, angle, rate, torque };  // law: none
+    Kind kind = law;
+    double value = 0.0;  // [rad], [rad/s] or [N m], as a bend
+    double since = 0.0;  // [s]
+    double from = 0.0;   // [rad]: of a rate, the reference at that time
+};
+
+// What a servo follows at an instant.
+struct Target {
+    Jet reference{};      // [rad]
+    double torque = 0.0;  // [N m], in place of its feedback
+    bool by_torque = false;
+};
+
 // The law that drives a body with modes. The rows of the modes are the last ones of its tables.
 struct BentLaw {
     LawOnGrid law;
@@ -70,7 +87,8 @@ struct BentLaw {
     std::vector<double> reference;  // (servos, first_mode): what a servo follows, by the factors of the law
     // What muscles do to the coordinates: by the factors of another law.
     std::shared_ptr<const LawOnGrid> drive;
-    std::vector<double> push;  // (coordinates, rows of `drive`)
+    std::vector<double> push;       // (coordinates, rows of `drive`)
+    std::vector<Command> commands;  // (servos), or none
 };
 
 // Forces at an instant, and what the ledger needs of them.
@@ -83,14 +101,26 @@ struct Forces {
     double damping_power = 0.0;   // [W], <= 0
 };
 
-// The jets that the servos follow.
-inline void set_references(const BentLaw& law, const std::vector<Jet>& factor, std::vector<Jet>& reference)
+// What a commanded servo follows at `time` [s].
+inline Target target_of(const Command& command, double time)
 {
-    for (std::size_t s = 0; s < reference.size(); ++s) {
-        reference[s] = {};
+    if (command.kind == Command::torque) return {{}, command.value, true};
+    if (command.kind == Command::angle) return {{command.value, 0.0, 0.0}};
+    return {{command.from + command.value * (time - command.since), command.value, 0.0}};
+}
+
+// What the servos follow at `time` [s].
+inline void set_targets(const BentLaw& law, const std::vector<Jet>& factor, double time, std::vector<Target>& target)
+{
+    for (std::size_t s = 0; s < target.size(); ++s) {
+        if (!law.commands.empty() && law.commands[s].kind != Command::law) {
+            target[s] = target_of(law.commands[s], time);
+            continue;
+        }
+        target[s] = {};
         for (std::size_t row = 0; row < law.first_mode; ++row)
             for (std::size_t d = 0; d < 3; ++d)
-                reference[s][d] += law.reference[s * law.first_mode + row] * factor[row][d];
+                target[s].reference[d] += law.reference[s * law.first_mode + row] * factor[row][d];
     }
 }
 
@@ -119,13 +149,14 @@ inline TorqueRange torque_range(const Servo& servo, double rate)
     const double by = rate / servo.speed_limit;
     return {-servo.torque_limit * std::clamp(1.0 + by, 0.0, 1.0), servo.torque_limit * std::clamp(1.0 - by, 0.0, 1.0)};
 }
-inline double wanted_torque(const Servo& servo, const Jet& reference, double x, double rate)
+inline double wanted_torque(const Servo& servo, const Target& target, double x, double rate)
 {
-    return servo.kp * (reference[0] - x) + servo.kd * (reference[1] - rate);
+    if (target.by_torque) return target.torque;
+    return servo.kp * (target.reference[0] - x) + servo.kd * (target.reference[1] - rate);
 }
 
-// Forces for the coordinates x and their rates. `forces.pushing` and the references hold those of the instant.
-inline void set_forces(const Modes& modes, const std::vector<Jet>& reference, const double* x, const double* rate,
+// Forces for the coordinates x and their rates. `forces.pushing` and the targets are those of the instant.
+inline void set_forces(const Modes& modes, const std::vector<Target>& target, const double* x, const double* rate,
                        Forces& forces)
 {
     const std::size_t n = modes.coordinates;
@@ -153,14 +184,14 @@ inline void set_forces(const Modes& modes, const std::vector<Jet>& reference, co
         const Servo& servo = modes.servos[s];
         const std::size_t i = servo.coordinate;
         const auto [low, high] = torque_range(servo, rate[i]);
-        forces.torque[s] = std::clamp(wanted_torque(servo, reference[s], x[i], rate[i]), low, high);
+        forces.torque[s] = std::clamp(wanted_torque(servo, target[s], x[i], rate[i]), low, high);
         forces.total[i] -= forces.torque[s];
         forces.motor_power += forces.torque[s] * rate[i];
     }
 }
 
 // Derivatives of the forces by coordinates and rates, and of what a reference that moves adds to their rate.
-inline void linearise(const Modes& modes, const std::vector<Jet>& reference, const double* x, const double* rate,
+inline void linearise(const Modes& modes, const std::vector<Target>& target, const double* x, const double* rate,
                       std::vector<double>& stiffness, std::vector<double>& damping, std::vector<double>& in_time)
 {
     const std::size_t n = modes.coordinates;
@@ -172,11 +203,13 @@ inline void linearise(const Modes& modes, const std::vector<Jet>& reference, con
     for (std::size_t s = 0; s < modes.servos.size(); ++s) {
         const Servo& servo = modes.servos[s];
         const std::size_t i = servo.coordinate;
-        const double wanted = wanted_torque(servo, reference[s], x[i], rate[i]), by = rate[i] / servo.speed_limit;
+        const double wanted = wanted_torque(servo, target[s], x[i], rate[i]), by = rate[i] / servo.speed_limit;
         const auto [low, high] = torque_range(servo, rate[i]);
         if (low < wanted && wanted < high) {
+            if (target[s].by_torque) continue;
+            const Jet& reference = target[s].reference;
             stiffness[i * n + i] += servo.kp, damping[i * n + i] += servo.kd;
-            in_time[i] += servo.kp * reference[s][1] + servo.kd * reference[s][2];
+            in_time[i] += servo.kp * reference[1] + servo.kd * reference[2];
         } else if (const double slope = wanted >= high ? by : -by; 0.0 < slope && slope < 1.0) {
             damping[i * n + i] += servo.torque_limit / servo.speed_limit;
         }

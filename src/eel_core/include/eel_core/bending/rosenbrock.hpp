@@ -202,7 +202,7 @@ class BentStepper {
         point.acceleration = body_.acceleration, point.drift = body_.drift, point.head = body_.work.head;
         point.force = body_.forces.total;
         point.mass = body_.columns.mass;
-        linearise(*modes_, body_.reference, point.y.x.data(), point.rate.data(), point.stiffness, point.damping,
+        linearise(*modes_, body_.target, point.y.x.data(), point.rate.data(), point.stiffness, point.damping,
                   point.in_time);
         if (settings.ledger) point.powers = all_powers();
         return true;

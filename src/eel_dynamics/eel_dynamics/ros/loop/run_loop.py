@@ -27,6 +27,7 @@ from eel_ros.loop.requests import Answer, RequestQueue
 from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.loop.current_taker import CurrentTaker
+from eel_dynamics.ros.loop.joint_commander import Command, JointCommander
 from eel_dynamics.ros.loop.law_adopter import LawAdopter
 from eel_dynamics.ros.loop.run_gate import RunGate
 from eel_dynamics.ros.loop.sample_output import SampleOutput, nanoseconds
@@ -51,7 +52,7 @@ class RunLoop:
         standing: what the simulation waits for, as text; empty while it runs.
         requests: RequestQueue, for other threads.
         wall_time: [s] spent on samples.
-        gate: RunGate. laws: LawAdopter. output: SampleOutput. pace: Pace.
+        gate: RunGate. laws: LawAdopter. commands: JointCommander. output: SampleOutput. pace: Pace.
     """
 
     def __init__(
@@ -69,6 +70,7 @@ class RunLoop:
         self.gate = RunGate(simulation, publishers, values.wait_for_subscribers)
         self.pace = (FollowedClock if values.follow_clock else Pace)(1.0 / values.rate, values.real_time_factor)
         self.laws, self._current = LawAdopter(simulation, report), CurrentTaker(report)
+        self.commands = JointCommander(simulation, report)
         self.output = SampleOutput(simulation, parameters, publishers, report)
         self._sample_begun: float | None = None  # s, steady clock: when the computation of the next sample began
         self.time, self.samples_published, self.standing = 0.0, 0, ""
@@ -143,7 +145,9 @@ class RunLoop:
             self.standing = ""
             self.pace.restart(self.samples_published, now, values.real_time_factor)
         next_time, period, timeout = self._next_time, self.pace.period, values.subscriber_timeout
-        if self.pace.factor == 0.0 and self.laws.waits_for_samples(next_time, period, now, timeout):
+        if self.pace.factor == 0.0 and (
+            self.laws.waits_for_samples(next_time, period, now, timeout) or self.commands.waits(now, timeout)
+        ):
             self.output.clock.repeat(self._stamp, now)
             self.requests.wait(TICK)
             return False
@@ -171,6 +175,7 @@ class RunLoop:
         self.time, now = self._next_time, time.monotonic()
         self.wall_time, self._lap = self.wall_time + now - self._lap, now
         self.laws.report_samples(self.time)
+        self.commands.check(self._parameters.values.command_timeout)
         self._current.look(self._simulation)
         delay = self.pace.give_up_delay(self.samples_published, now)
         if delay > 0.0:
@@ -188,10 +193,16 @@ class RunLoop:
         if self._sample_begun is None:
             self._sample_begun = time.monotonic()
         since, requests = self._sample_begun, self.requests
-        reached = self._simulation.advance(self._next_time, lambda: requests.interrupt(since))
-        if reached:
-            self._sample_begun = None
-        return reached
+        while True:  # a step ends where a command takes effect
+            instant = self.commands.next_instant(self._next_time)
+            until = self._next_time if instant is None else instant
+            if not self._simulation.advance(until, lambda: requests.interrupt(since)):
+                return False
+            if instant is None:
+                break
+            self.commands.execute()
+        self._sample_begun = None
+        return True
 
     def _fail(self, error: SimulationStopped) -> None:
         self.gate.failed, self._sample_begun = True, None
@@ -223,6 +234,10 @@ class RunLoop:
         """Take a sample of a current, as `Simulation.add_current` does."""
         self._current.take(self._simulation, stamp, velocity)
         self.output.forget_start()
+
+    def take_command(self, command: Command) -> None:
+        """Have joints of the robot do so from its time on."""
+        self.commands.add(command)
 
     def pause(self, paused: bool) -> None:
         """Pause the run, or continue it."""
@@ -258,7 +273,8 @@ class RunLoop:
         if simulation is not None and values is not None:
             self._parameters.begin(values, simulation.scene)
             self._publishers.begin(simulation)
-            self._simulation = self.gate.simulation = self.laws.simulation = simulation
+            self._simulation = self.gate.simulation = simulation
+            self.laws.simulation = self.commands.simulation = simulation
             self.pace.period = 1.0 / values.rate
         now = time.monotonic()
         self.time, self.samples_published = 0.0, 0
@@ -268,4 +284,5 @@ class RunLoop:
         self._report.end("stopped")
         self.pace.restart(0, now)
         self.laws.reset()
+        self.commands.reset()
         self._report.info("reset to t = 0 s")

@@ -13,6 +13,7 @@ from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.loop.error_monitor import ErrorMonitor
 from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
 from eel_dynamics.ros.loop.run_totals import RunTotals
+from eel_dynamics.ros.loop.saturation_monitor import SaturationMonitor
 from eel_dynamics.ros.publishers import Publishers
 from eel_dynamics.simulation.simulation import Simulation
 
@@ -26,6 +27,7 @@ class SampleOutput:
         clock: ClockTicks.
         totals: RunTotals since the start.
         errors: ErrorMonitor.
+        saturation: SaturationMonitor of a robot; None without.
     """
 
     def __init__(self, simulation: Simulation, parameters: Declaration, publishers: Publishers, report: Report) -> None:
@@ -33,9 +35,14 @@ class SampleOutput:
         self._publishers, self._report = publishers, report
         self.clock, self.totals = ClockTicks(parameters.values.clock_rate, publishers), RunTotals()
         self.errors, self._limits = ErrorMonitor(simulation, report), LimitsMonitor(simulation, report)
+        self.saturation = self._watch()
         self._whole_snapshot_due = True
         self._start_shown = -math.inf  # s, steady clock: last sample 0
         self._start_audience: tuple[int, ...] | None = None  # who had it
+
+    def _watch(self) -> SaturationMonitor | None:
+        robot = self._simulation.robot
+        return None if robot is None else SaturationMonitor(robot, self._report)
 
     def request_whole_snapshot(self) -> None:
         """Let the next snapshot hold everything that the totals use, even without subscribers."""
@@ -52,6 +59,8 @@ class SampleOutput:
         parts["wrench"] |= limit > 0.0
         snapshot = self._simulation.observe(**{part: wanted or whole for part, wanted in parts.items()})
         self.totals.add(snapshot)
+        if self.saturation is not None:
+            self.saturation.add(snapshot)
         self._limits.add(snapshot, check=whole)
         self._limits.check_torque(snapshot, limit)
         if whole:
@@ -96,6 +105,9 @@ class SampleOutput:
         """Begin again with the start of a `simulation`, which may be another one."""
         self._simulation = simulation
         self.totals, self.errors = RunTotals(), ErrorMonitor(simulation, self._report)
+        if self.saturation is not None:
+            self.saturation.end()
+        self.saturation = self._watch()
         self.clock.restart(self._parameters.values.clock_rate)
         self.change_state()
 

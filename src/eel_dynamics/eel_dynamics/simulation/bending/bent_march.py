@@ -91,6 +91,13 @@ class BentMarch(March):
     def _motion(self, rows: np.ndarray) -> JointMotion:
         return JointMotion(self.robot.on_grid, self.core.row, rows)
 
+    def command(self, joint: str, kind: str, value: float) -> None:
+        """As `Simulation.command`."""
+        table = self.robot.on_grid.table
+        mode = table.name.index(joint)
+        servo = list(self.robot.on_grid.servo_modes).index(mode)
+        self.core.command(servo, kind, float(table.sign[mode] * value))
+
 
 def with_tolerance(bounds: eel_core.StepBounds, tolerance: float) -> eel_core.StepBounds:
     """The same `bounds` with another tolerance; infinite: steps of one length."""

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which servos are at their limit of torque, and how long: for /diagnostics and the log."""
+
+from typing import Any
+
+import numpy as np
+from eel_ros.loop.diagnostics import Report
+
+from eel_dynamics.robot.actuators import at_limit
+from eel_dynamics.robot.robot import Robot
+from eel_dynamics.simulation.observations import Snapshot
+
+
+class SaturationMonitor:
+    """Watches the servos of a `robot`. A servo counts as at its limit from one sample to the next."""
+
+    def __init__(self, robot: Robot, report: Report) -> None:
+        self._servos = robot.servos
+        self._names = [joint.name for joint in robot.joints]
+        self._report, count = report, len(self._names)
+        self._total, self._lasting = np.zeros(count), np.zeros(count)  # s
+        self._before, self._time = np.zeros(count, dtype=bool), 0.0
+
+    def add(self, snapshot: Snapshot) -> None:
+        """Look at the motors of an instant."""
+        joints, step = snapshot.joints, snapshot.time - self._time
+        here = at_limit(self._servos, joints["motor_torque"], joints["motor_power"])
+        self._total += step * self._before
+        self._lasting = np.where(here, self._lasting + step * self._before, 0.0)
+        self._before, self._time = here, snapshot.time
+        if here.any():
+            told = ", ".join(f"{self._names[k]} for {self._lasting[k]:.3g} s" for k in np.flatnonzero(here))
+            self._report.begin("saturated", f"at the torque limit at t = {snapshot.time:.4g} s: {told}")
+        else:
+            self._report.end("saturated", f"all motors are below their torque limits at t = {snapshot.time:.4g} s")
+
+    def end(self) -> None:
+        """The run begins anew."""
+        self._report.end("saturated")
+
+    def values(self) -> dict[str, Any]:
+        """How long each motor has been at its limit since the start, of those that were."""
+        found = [f"{self._names[k]} {self._total[k]:.4g} s" for k in np.flatnonzero(self._total > 0.0)]
+        return {"at_torque_limit": ", ".join(found)} if found else {}

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Joints that are commanded: position, velocity and effort take effect at once, in the joint's sign, and hold."""
+
+from copy import deepcopy
+
+import numpy as np
+import pytest
+
+from eel_dynamics import Joint, Robot, Scene, Servo, Simulation, Torque
+from eel_gaits import Law, straight
+
+PLANE = Scene(planar=True)
+STILL = Law(name="still")
+SERVO = Servo(kp=8.0, kd=0.3, torque_limit=2.0, speed_limit=8.0, rotor_inertia=4e-7, gear=200.0)
+PAIR = Robot([Joint(0.35, actuator=SERVO), Joint(0.65, "-yaw", actuator=SERVO)])
+
+
+def swimming(robot=PAIR, law=STILL, **options):
+    return Simulation(scene=PLANE, robot=robot, law=law, **options)
+
+
+@pytest.mark.parametrize("joint", ["joint_1", "joint_2"])
+def test_a_position_is_reached_and_held_in_the_joint_s_own_sign(joint):
+    simulation = swimming()
+    simulation.command(joint, position=0.3)
+    simulation.advance(4.0)
+    joints, index = simulation.observe().joints, int(joint[-1]) - 1
+    wanted = np.where(np.arange(2) == index, 0.3, 0.0)
+    assert joints["joint_angle"] == pytest.approx(wanted, abs=5e-3)  # some torque is left: the body turns yet
+    # to the left is towards +y for the part behind
+    backbone = simulation.observe().backbone
+    ahead, behind = backbone[1] - backbone[0], backbone[-1] - backbone[-2]
+    turn = np.arcsin((behind[0] * ahead[1] - behind[1] * ahead[0]) / np.linalg.norm(ahead) / np.linalg.norm(behind))
+    assert turn == pytest.approx(0.3 * (1.0 if joint == "joint_1" else -1.0), abs=5e-3)
+
+
+def test_a_velocity_moves_the_reference_of_the_position():
+    simulation = swimming()
+    simulation.command("joint_1", velocity=0.2)
+    simulation.advance(3.0)
+    joints = simulation.observe().joints
+    assert joints["joint_rate"][0] == pytest.approx(0.2, abs=0.01)
+    assert joints["joint_angle"][0] == pytest.approx(0.6, abs=0.03)
+    simulation.command("joint_1", velocity=0.0)  # from the reference of that moment
+    simulation.advance(5.0)
+    assert simulation.observe().joints["joint_angle"][0] == pytest.approx(0.6, abs=5e-3)
+
+
+@pytest.mark.parametrize(("effort", "given"), [(0.7, 0.7), (5.0, 2.0), (-5.0, -2.0)])
+def test_an_effort_is_given_within_the_limit(effort, given):
+    simulation = swimming()
+    simulation.command("joint_2", effort=effort)
+    simulation.advance(1e-6)
+    assert simulation.observe().joints["motor_torque"] == pytest.approx([0.0, given], abs=2e-3)
+
+
+def test_a_command_takes_effect_at_its_instant_and_not_before():
+    simulation, silent = swimming(), swimming()
+    for each in (simulation, silent):
+        each.advance(0.123)
+    assert np.array_equal(simulation.state, silent.state)
+    before = simulation.observe().joints
+    simulation.command("joint_1", position=0.1)
+    now = simulation.observe().joints
+    assert now["joint_angle"][0] == before["joint_angle"][0] and now["joint_rate"][0] == before["joint_rate"][0]
+    assert now["motor_torque"][0] - before["motor_torque"][0] == pytest.approx(SERVO.kp * 0.1, abs=1e-9)
+
+
+def test_commands_that_say_what_the_law_says_change_nothing():
+    """Straight and at rest by the law, or by commands: the same motion but for where the steps end."""
+    simulations = [swimming(accuracy=1e-6, twist=(0, 0, 0.5, 0.3, 0, 0)) for _ in range(2)]
+    for joint in ("joint_1", "joint_2"):
+        simulations[1].command(joint, position=0.0)
+    for each in simulations:
+        each.advance(1.0)
+    one, other = (each.observe() for each in simulations)
+    assert one.position == pytest.approx(other.position, abs=1e-8)
+
+
+def test_without_a_command_the_joint_follows_the_law_again():
+    simulation, silent = swimming(law=straight()), swimming(law=straight())
+    simulation.advance(0.5)
+    simulation.command("joint_1", position=0.5)
+    simulation.advance(0.6)
+    simulation.command("joint_1")
+    for each in (simulation, silent):
+        each.advance(4.0)
+    angles = [each.observe().joints["joint_angle"] for each in (simulation, silent)]
+    assert angles[0] == pytest.approx(angles[1], abs=2e-3)
+
+
+def test_commands_hold_through_another_law_and_its_grid_and_end_with_a_reset():
+    simulation = swimming()
+    simulation.command("joint_1", position=0.3)
+    simulation.advance(1.0)
+    simulation.adopt(straight() * 0.1)
+    simulation.advance(6.0)
+    assert simulation.observe().joints["joint_angle"][0] == pytest.approx(0.3, abs=0.05)
+    simulation.reset()
+    assert simulation.observe().joints["motor_torque"][0] == pytest.approx(0.0, abs=0.1)
+
+
+def test_copies_with_the_same_commands_move_alike_to_the_last_bit():
+    simulation = swimming(law=straight())
+    simulation.advance(0.3)
+    simulation.command("joint_2", effort=0.4)
+    other = deepcopy(simulation)
+    for each in (simulation, other):
+        each.advance(0.7)
+    assert np.array_equal(simulation.state, other.state)
+
+
+def test_the_error_is_measured_under_commands_too():
+    simulation = swimming(measure_error=True)
+    simulation.command("joint_1", position=0.4)
+    simulation.advance(1.0)
+    assert 0.0 < simulation.error_estimate.position < 1e-3
+
+
+@pytest.mark.fault(
+    "parameters",
+    "a command for an unknown joint, one without a servo, in two modes at once, or with NaN",
+    "refused: one line with the joint and the value; the last command holds",
+)
+@pytest.mark.parametrize(
+    ("joint", "given", "told"),
+    [
+        ("neck", {"position": 0.1}, "joint must be one of joint_1, joint_2, joint_3, got 'neck'"),
+        ("joint_3", {"position": 0.1}, "joint 'joint_3' cannot be commanded: it has no servo"),
+        ("joint_1", {"position": 0.1, "effort": 1.0}, "must be commanded in one mode, got position and effort"),
+        ("joint_1", {"velocity": np.nan}, "velocity of joint 'joint_1' must be finite, got nan"),
+        ("joint_1", {"position": "up"}, "position of joint 'joint_1' must be a number, got 'up'"),
+    ],
+)
+def test_a_command_that_does_not_fit_is_refused(joint, given, told):
+    simulation = swimming(Robot([*PAIR.joints, Joint(0.85, width=0.05, actuator=Torque(np.sin))]))
+    with pytest.raises(ValueError) as refused:
+        simulation.command(joint, **given)
+    assert told in str(refused.value)
+
+
+def test_a_swimmer_without_a_robot_cannot_be_commanded():
+    with pytest.raises(ValueError, match="joint 'joint_1' cannot be commanded: there is no robot"):
+        Simulation(law=STILL).command("joint_1", position=0.1)

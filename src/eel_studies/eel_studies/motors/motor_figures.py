@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Will the motors do it? What each joint of a robot does in the steady part of a swim, as numbers and as a table.
+
+The steady part is the second half of the swim, in whole periods of the law. A servo's error is its angle less its
+reference, the law's bend over the part of the body that its joint stands for.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from eel_dynamics.robot.actuators import at_limit
+from eel_dynamics.robot.compiled import HINGE, mode_table
+from eel_dynamics.robot.robot import Robot
+from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.swim import Swim
+from eel_gaits.laws.law import Law
+
+from eel_studies.table import Table
+
+SAMPLES = 100  # in a period
+STATIONS = 5  # enough for what is read of a run
+
+
+class JointFigures(NamedTuple):
+    """One joint in the steady part. All but the shares and the mean power are greatest magnitudes, or root mean
+    squares (rms)."""
+
+    name: str
+    position: float  # m
+    reference: float  # rad
+    angle: float  # rad
+    error_rms: float  # rad
+    rate: float  # rad/s
+    torque: float  # N m, of the motor
+    torque_rms: float  # N m
+    torque_limit: float  # N m; infinite without one
+    at_limit: float  # share of the time
+    power: float  # W, mean; negative: it brakes
+
+
+@dataclass(frozen=True)
+class MotorFigures:
+    """The steady part of a `run`.
+
+    Attributes:
+        speed: [m/s] of the centre of mass, along the way from the part's start to its end.
+        power: [W] of the actuators: of motors, and of what imposes the law; less what they take back.
+        drawn_power: [W] that the motors draw where nothing is taken back; NaN without motors.
+        tracking_error: root mean square of the servos' errors over that of their references; NaN without a reference.
+    """
+
+    run: Run
+    joints: tuple[JointFigures, ...]
+    speed: float
+    power: float
+    drawn_power: float
+    tracking_error: float
+
+    @property
+    def energy_per_metre(self) -> float:
+        """Drawn energy [J/m]; that of `power` without motors."""
+        power = self.power if np.isnan(self.drawn_power) else self.drawn_power
+        return power / self.speed if self.speed > 0.0 else np.inf
+
+    def table(self) -> Table:
+        """A row for each joint."""
+        head = ("joint", "X [m]", "asked [rad]", "angle [rad]", "error rms", "rate [rad/s]", "torque [N m]", "rms")
+        rows = [
+            (
+                each.name,
+                f"{each.position:.3f}",
+                *(f"{value:.3g}" for value in (each.reference, each.angle, each.error_rms, each.rate)),
+                f"{each.torque:.3g}" + (f" of {each.torque_limit:.3g}" if np.isfinite(each.torque_limit) else ""),
+                f"{each.torque_rms:.3g}",
+                f"{100.0 * each.at_limit:.0f} %",
+                f"{each.power:.3g}",
+            )
+            for each in self.joints
+        ]
+        return Table((*head, "at limit", "mean power [W]"), rows)
+
+    def about(self) -> str:
+        """The sentence below the table."""
+        busy = [each.name for each in self.joints if each.at_limit > 0.0]
+        limits = f"at the torque limit: {', '.join(busy)}" if busy else "no motor comes to its torque limit"
+        return (
+            f"speed {self.speed:.4g} m/s, actuators {self.power:.3g} W (motors draw {self.drawn_power:.3g} W, "
+            f"{self.energy_per_metre:.3g} J/m), tracking error {100.0 * self.tracking_error:.3g} %; {limits}"
+        )
+
+
+def motor_figures(run: Run) -> MotorFigures:
+    """The figures of a `run` of a robot. `ValueError` without one."""
+    robot = run.robot
+    if robot is None:
+        raise ValueError("motor figures need a run of a robot")
+    steady = steady_part(run.law, run.time)
+    joints, time = robot.joints, run.time[steady]
+    servos = robot.servos
+    names = "motor_torque", "motor_power", "joint_angle", "joint_rate"
+    torque, power, angle, rate = (getattr(run, name)[steady] for name in names)
+    saturated = at_limit(servos, torque, power)
+    asked = references(run, time)
+    followed = np.array([servo is not None for servo in servos])
+    error = angle - asked
+    figures = tuple(
+        JointFigures(
+            joint.name,
+            joint.position,
+            float(np.max(np.abs(asked[:, k]))),
+            float(np.max(np.abs(angle[:, k]))),
+            _rms(error[:, k]) if followed[k] else np.nan,
+            float(np.max(np.abs(rate[:, k]))),
+            float(np.max(np.abs(torque[:, k]))),
+            _rms(torque[:, k]),
+            getattr(servos[k], "torque_limit", None) or np.inf,
+            float(np.mean(saturated[:, k])),
+            float(np.mean(power[:, k])),
+        )
+        for k, joint in enumerate(joints)
+    )
+    scale = np.sqrt(np.mean(asked[:, followed] ** 2)) if followed.any() else 0.0
+    centre = run.center_of_mass[steady]
+    return MotorFigures(
+        run,
+        figures,
+        float(np.linalg.norm(centre[-1] - centre[0]) / (time[-1] - time[0])),
+        float(np.mean(run.energy.actuator_power[steady]))
+        if run.energy is not None
+        else float(power.sum(axis=1).mean()),
+        float(np.mean(np.maximum(power, 0.0).sum(axis=1))) if any(joint.actuator for joint in joints) else np.nan,
+        float(np.sqrt(np.mean(error[:, followed] ** 2)) / scale) if scale > 0.0 else np.nan,
+    )
+
+
+def references(run: Run, time: np.ndarray) -> np.ndarray:
+    """The references (T, J) [rad] of the joints of a run's robot at `time` (T,) [s], in the joints' signs."""
+    assert run.robot is not None
+    table = mode_table(run.robot, run.body, bool(run.scene.planar))
+    hinges = np.flatnonzero(table.degree == HINGE)
+    bends = np.array([run.law.curvature(float(each), table.points)[0] for each in time])  # (T, P, 3)
+    asked = np.einsum("mp,tpm->tm", table.projection[hinges], bends[:, :, table.axis[hinges]])
+    return np.asarray(asked * table.sign[hinges])
+
+
+def _rms(values: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def steady_part(law: Any, time: np.ndarray) -> slice:
+    """The samples of the second half, in whole periods of the `law`."""
+    period = max((term.period for term in getattr(law, "terms", ())), default=0.0)
+    span = 0.5 * (time[-1] - time[0])
+    if 0.0 < period <= span:
+        span = period * np.floor(span / period * (1.0 + 1e-9))
+    return slice(int(np.searchsorted(time, time[-1] - span - 1e-9)), len(time))
+
+
+def motor_swim(robot: Robot, swim: Swim) -> MotorFigures:
+    """The figures of a `robot` that swims a `swim`."""
+    period = max((term.period for term in swim.law.terms), default=0.0) if isinstance(swim.law, Law) else 0.0
+    body = robot.body or swim.body
+    return motor_figures(swim.run(robot=robot, body=body, sample_period=(period or 1.0) / SAMPLES, stations=STATIONS))
+
+
+def varied(robot: Robot, field: str, values: Sequence[float | None]) -> Iterable[Robot]:
+    """The robot with these `values` of a `field` of its joints, servos or tails."""
+    changes: Iterable[dict[str, Any]] = ({field: value} for value in values)
+    return (robot.changed(**each) for each in changes)
+
+
+def comparison(robot: Robot, swim: Swim, field: str, values: Sequence[float | None]) -> "Comparison":
+    """The figures for each of the `values` of a `field`."""
+    return Comparison(field, tuple(values), tuple(motor_swim(each, swim) for each in varied(robot, field, values)))
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Figures over the `values` of a `field` of a robot."""
+
+    field: str
+    values: tuple[float | None, ...]
+    figures: tuple[MotorFigures, ...]
+
+    def __iter__(self) -> Iterator[tuple[float | None, MotorFigures]]:
+        return zip(self.values, self.figures, strict=True)
+
+    def table(self) -> Table:
+        """A row for each value."""
+        head = (
+            self.field,
+            "speed [m/s]",
+            "tracking error",
+            "at limit",
+            "torque [N m]",
+            "power [W]",
+            "drawn [W]",
+            "J/m",
+        )
+        return Table(head, [self._row(value, figures) for value, figures in self], left=())
+
+    def _row(self, value: float | None, figures: MotorFigures) -> tuple[str, ...]:
+        joints = figures.joints
+        return (
+            "none" if value is None else f"{value:g}",
+            f"{figures.speed:.4g}",
+            "" if np.isnan(figures.tracking_error) else f"{100.0 * figures.tracking_error:.3g} %",
+            f"{100.0 * max((each.at_limit for each in joints), default=0.0):.0f} %",
+            f"{max((each.torque for each in joints), default=0.0):.3g}",
+            f"{figures.power:.3g}",
+            "" if np.isnan(figures.drawn_power) else f"{figures.drawn_power:.3g}",
+            f"{figures.energy_per_metre:.3g}",
+        )
