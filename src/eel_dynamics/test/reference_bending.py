@@ -195,10 +195,10 @@ class BentReference(Reference):
 
     def mode_loads(self, K, K_rate, mu):
         """What drag, weight and wake do on the motion of each mode (M,)."""
-        R, _ = self.configuration(K)
+        R, r = self.configuration(K)
         eta = self.twists(K, K_rate, mu)
-        torque, force = self.resistive(eta)
-        torque = torque + np.einsum("xji,xj->xi", R, self.righting(R))
+        of_weight = (np.einsum("xji,xj->xi", R, each) for each in self.weight(R, r))
+        torque, force = (one + other for one, other in zip(self.resistive(eta), of_weight, strict=True))
         tail_eta = self.at_tail(eta)
         shed = self.scene.wake * self.tail_added
         wake = tail_eta[3] * shed * tail_eta
@@ -218,7 +218,9 @@ class BentReference(Reference):
         still, step = np.zeros(6), 1j * STEP
         head = self.loads(K, K_rate, mu)
         head[3] += self.nose_force(mu, still)
-        head[:3] += self.space.weights @ self.righting(self.configuration(K)[0])
+        R, r = self.configuration(K)
+        hung, net = self.weight(R, r)
+        head += self.space.weights @ np.concatenate([hung + np.cross(r, net), net], axis=1)
         head = head - self.momentum_rate(K, K_rate, fields[2], mu, still)
         moved = self.mode_momenta(K + step * K_rate, K_rate + step * fields[2], mu.astype(complex)).imag / STEP
         slope = [sum(self.energies(K + step * shape, K_rate, mu)).imag / STEP for shape in self.shapes]
