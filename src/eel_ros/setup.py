@@ -10,7 +10,7 @@ setup(
         ("share/ament_index/resource_index/packages", ["resource/eel_ros"]),
         ("share/eel_ros", ["package.xml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "numpy"],
     extras_require={"test": ["pytest"]},
     zip_safe=False,
     maintainer="Eel simulator maintainers",

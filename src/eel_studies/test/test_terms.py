@@ -70,6 +70,9 @@ def test_terms_of_robots_and_weights():
     own = {"compliance of the robot", "limits of the servos", "rotors"}
     assert own <= set(found.effects) and found.within
     assert "limits of the servos" not in found.dropped  # a robot without them bears no name
+    assert all(np.isfinite(each.torque) for each in found.effects.values())
+    row = next(row for row in found.table().rows if row[0] == "limits of the servos")
+    assert row[-1] == "little, but no file can be without it"
     heavy = swim_of({"gait": "straight", "scene": {"weight": True, "density": 1100}, "duration": 4})
     assert terms(heavy, tolerance=0.05).effects["weight"].path > 0.5  # it sinks
     assert "higher modes" in terms_of(swim_of({"gait": "straight", "robot": "passive_tail"}))

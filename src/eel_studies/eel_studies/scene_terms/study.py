@@ -109,7 +109,11 @@ class Terms:
         return (path, *map(_percent, effect.values[1:]), f"{1e3 * effect.seconds:.3g}")
 
     def _verdict(self, name: str) -> str:
-        return "can go" if name in self.dropped else "needed with others" if name in self.restored else "matters"
+        if name in self.dropped:
+            return "can go"
+        if name in self.restored:
+            return "needed with others"
+        return "matters" if self.effects[name].worst > self.tolerance else "little, but no file can be without it"
 
     def about(self) -> str:
         """The recommendation in words."""
@@ -191,10 +195,18 @@ def _effect(run: Run | Exception, whole: Run) -> Effect:
         return Effect(np.inf, np.inf, np.inf, np.inf, np.nan, np.inf, one_line(run))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        found, base = (measures_of(each, tuple(MEASURES)) for each in (run, whole))
+        found, base = _measures(run), _measures(whole)
     speed, torque, cost = ((found[name] - base[name]) / abs(base[name]) if base[name] else np.nan for name in MEASURES)
     error = np.inf if run.error_estimate is None else run.error_estimate.worst
     return Effect(relative_errors(run, whole).position, speed, torque, cost, np.nan, error)
+
+
+def _measures(run: Run) -> dict[str, float]:
+    """The `MEASURES` of a run; the greatest torque at a sample where none is known between them, as of a robot."""
+    found = measures_of(run, tuple(MEASURES))
+    if np.isnan(found["greatest_torque"]) and run.torque is not None:
+        found["greatest_torque"] = float(np.linalg.norm(run.torque, axis=2).max())
+    return found
 
 
 def _seconds(swims: list[Swim], duration: float) -> list[float]:
