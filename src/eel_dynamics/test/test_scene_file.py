@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 import yaml
+from eel_dynamics.model.fins import Fin, RollHold
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.runs import command
 from eel_dynamics.runs.scene_file import WORDS, swim_of, words_of
@@ -62,11 +63,21 @@ def test_a_robot_is_a_word(tmp_path):
         words_of(swim._replace(robot=swim.robot.changed(torque_limit=None)))
 
 
+def test_fins_are_words():
+    fins = {
+        "pectoral": {"station": 0.3, "side": "both", "area": 2e-3, "aspect_ratio": 3, "k_p": 1.5, "time_constant": 0.05}
+    }
+    swim = swim_of({"gait": "straight", "fins": fins, "duration": 0.3, "accuracy": 1e-2})
+    assert swim.fins == Fin.pair(0.3, 2e-3, 3.0, angle=RollHold(k_p=1.5), time_constant=0.05)
+    assert swim_of(words_of(swim)).fins == swim.fins
+    assert swim.run() == simulate(straight(), 0.3, fins=swim.fins, accuracy=1e-2)
+
+
 def test_the_words_are_parameters_of_the_nodes(tmp_path):
-    """All but the period of samples, and the robot until the node has one; the flow as a text (test_node_water.py)."""
+    """All but the period of samples, and robot and fins, which the node does not have."""
     save_scene(load_scene(scene_in(tmp_path)), tmp_path / "again.yaml")
     words = yaml.safe_load((tmp_path / "again.yaml").read_text())["/**"]["ros__parameters"]
-    named = {name for name in WORDS if name not in ("scene", "sample_period", "robot")}
+    named = {name for name in WORDS if name not in ("scene", "sample_period", "robot", "fins")}
     assert named <= {*vars(DynamicsParameters()), *Settings.known_names()}
     values = DynamicsParameters.among({**words, "flow": ""})
     assert (values.accuracy, values.duration, values.body) == (1e-3, 2.0, "kern2006")
@@ -111,6 +122,9 @@ def test_cross_flow_is_a_switch_of_the_scene():
         ("flow: gusty", "flow must be one of"),
         ("flow: gust begin=1", "flow Gust has no field 'begin'"),
         ("flow: {a: 3}", "flow must be a str, got {'a': 3}"),
+        ("fins: {a: {station: 0.3, side: up, area: 1, aspect_ratio: 1}}", "fin side must be one of right, left"),
+        ("fins: {a: {station: 0.3, side: left, area: 1}}", "fin a must have the field aspect_ratio"),
+        ("fins: {a: {stations: 0.3}}", "fin a has no field 'stations' (did you mean 'station'?)"),
         ("robot: nine_servos", "robot must be one of eight_servos"),
         ("initial_position: [1, 2]", "initial position must be 3 numbers, got 2"),
         ("- a list", "its content must be a Mapping"),

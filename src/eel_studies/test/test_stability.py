@@ -39,7 +39,15 @@ EMPTY = "stability_gait", "a map", lambda figure: figure.subplots(), (2.0, 2.0),
 def test_maps_keep_the_target_and_tell_what_stops(tmp_path):
     items = {item.name: item for item in maps_of(2)}
     coarse = replace(items.pop("method"), across=Axis("tolerance of a step", "tolerance", 1e-2, 1.0))
-    for dear in ("preset", "vortex", "shear", "wave", "velocity"):  # seconds, for what other tests show
+    for dear in (
+        "preset",
+        "vortex",
+        "shear",
+        "wave",
+        "velocity",
+        "fins",
+        "servos",
+    ):  # seconds, for what other tests show
         items.pop(dear)
     measured = {name: measure(item) for name, item in items.items()}
     for name in ("gait", "water", "viscosity", "body", "gust"):
@@ -154,6 +162,7 @@ def test_a_map_of_a_scene_of_the_users(tmp_path, capsys):
         ("straight --over periode=1:2 --over step=1:2", "'periode'"),
         ("straight --over flow.core=1:2 --over step=1:2", "flow has no field 'core': the scene has no flow"),
         ("straight --over flow_speed=1:2 --over step=1:2", "flow_speed needs a flow with a velocity"),
+        ("straight --over fins.area=1:2 --over step=1:2", "fins have no field 'area': the scene has no fins"),
         ("straight --over robot.stiffness=1:2 --over step=1:2", "robot has no fields: the scene has no robot"),
         ("straight --over scene.plane=1:2 --over step=1:2", "scene has no field 'plane'"),
         ("straight --over period=1:2 --over step=1:2 --study drift", "--study goes without a scene, got 'drift'"),

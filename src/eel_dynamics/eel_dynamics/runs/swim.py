@@ -9,6 +9,7 @@ from eel_gaits.gaits.settings import Settings
 
 from eel_dynamics.flow.flow import Flow
 from eel_dynamics.model.body import Body
+from eel_dynamics.model.fins import Fin
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.robot.robot import Robot
@@ -16,7 +17,15 @@ from eel_dynamics.runs.run import Run, simulate
 from eel_dynamics.simulation.simulation import Simulation
 
 AT_REST = InitialState(np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), np.zeros(6))
-OF_SWIMMER = ("body", "scene", "accuracy", "stations", "flow", "robot")  # fields that are arguments of `Simulation`
+OF_SWIMMER = (
+    "body",
+    "scene",
+    "accuracy",
+    "stations",
+    "flow",
+    "robot",
+    "fins",
+)  # fields that are arguments of `Simulation`
 
 
 class Swim(NamedTuple):
@@ -29,6 +38,7 @@ class Swim(NamedTuple):
     start: InitialState = AT_REST
     flow: Flow | None = None
     robot: Robot | None = None
+    fins: tuple[Fin, ...] = ()
     duration: float | str = 10.0  # s, or "settled"
     sample_period: float | None = None  # s
     stations: Any = 51  # how many, or their X [m]

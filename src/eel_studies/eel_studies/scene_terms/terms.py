@@ -75,6 +75,7 @@ TERMS: dict[str, Off] = {
     "mass off the axis": _on_the_axis,
     "current": _scene(current=(0.0, 0.0, 0.0)),
     "flow": lambda swim: swim._replace(flow=None),
+    "fins": lambda swim: swim._replace(fins=()),
     "third dimension": planar,
     "compliance of the robot": lambda swim: swim._replace(robot=None),
     "limits of the servos": _joints(torque_limit=None, speed_limit=None),
@@ -114,4 +115,4 @@ def _physics(swim: Swim) -> tuple[Any, ...]:
         scene = replace(scene, nose=False)
     if scene.planar:
         scene = replace(scene, metacentric_height=0.0)
-    return scene, swim.flow, swim.law, swim.robot, swim.body, *(row.tobytes() for row in swim.start)
+    return scene, swim.flow, swim.law, swim.robot, swim.body, swim.fins, *(row.tobytes() for row in swim.start)

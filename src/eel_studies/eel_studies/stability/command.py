@@ -87,8 +87,9 @@ def _parser() -> Parser:
         "the inertia, drift over 100,000 periods, growth out of a plane.",
     )
     add_scene_options(parser)
-    about = "a number of the map: of the gait, scene., body., initial. or flow., amplitude, density_ratio, flow_speed, "
-    add_repeated(parser, "--over", "NAME=LOW:HIGH", f"{about}step, tolerance, resolution; twice")
+    groups = "scene., body., initial., flow., robot. or fins. with a field"
+    own = "amplitude, density_ratio, flow_speed, spin, step, tolerance, resolution"
+    add_repeated(parser, "--over", "NAME=LOW:HIGH", f"a number of the map: of the gait, {groups}, {own}; twice")
     parser.add_argument(
         "--study", action="append", choices=STUDIES, metavar="NAME", help=f"one of {', '.join(STUDIES)} (all)"
     )

@@ -4,6 +4,7 @@
 from eel_dynamics.accuracy.accuracy import ORDERS, PRESETS, Accuracy
 from eel_dynamics.flow.sources import Gust, Shear, Vortex
 from eel_dynamics.model.body import Body
+from eel_dynamics.model.fins import Fin, RollHold
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.scene_file import swim_of
 from eel_dynamics.runs.swim import Swim
@@ -36,6 +37,18 @@ def wave_swim() -> Swim:
     return swim_of({"gait": "straight", "duration": 4.0})._replace(accuracy=Accuracy.of(TARGET))
 
 
+def servos() -> Swim:
+    """Half a period of a robot with eight servos, in the plane."""
+    words = {"gait": "straight", "robot": "eight_servos", "scene": {"planar": True}, "duration": 0.5}
+    return swim_of(words)._replace(accuracy=Accuracy.of(TARGET))
+
+
+def finned() -> Swim:
+    """A period of the paper's robot, which rolls a little, with a pair of fins that hold the roll."""
+    fins = Fin.pair(0.3, 1e-3, 3.0, angle=RollHold(), time_constant=0.05)
+    return varied(wave_swim()._replace(fins=fins, duration=1.0), {"initial.omega_x": 0.1})
+
+
 def maps_of(points: int = 13) -> tuple[Map, ...]:
     """The maps, of `points` by `points` runs each. Maps over presets or methods have one row for each of them."""
     swim = wave_swim()
@@ -63,5 +76,9 @@ def maps_of(points: int = 13) -> tuple[Map, ...]:
          Axis("circulation (m²/s)", "flow.circulation", 1e-4, 1.0), swept),
         ("shear", "width and speed of a shear layer: 4 s", Axis("width (m)", "flow.width", 1e-2, 10.0), SPEED,
          swim._replace(flow=Shear(), scene=Scene(planar=True))),
+        ("servos", "stiffness and damping of eight servos: 0.5 s", Axis("kp (N m/rad)", "robot.kp", 0.1, 1e6),
+         Axis("kd (N m s/rad)", "robot.kd", 1e-4, 1e2), servos()),
+        ("fins", "area of fins that hold the roll, and their servo: 1 s", Axis("area (m²)", "fins.area", 1e-5, 0.3),
+         Axis("time constant (s)", "fins.time_constant", 1e-2, 10.0), finned()),
     )  # fmt: skip
     return tuple(Map(name, title, across, up, points, *at) for name, title, across, up, *at in rows)
