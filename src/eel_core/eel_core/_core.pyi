@@ -346,6 +346,9 @@ class BentMarch:
     @property
     def memory(self) -> int: ...
     @property
+    def hardest(self) -> int:
+        """The coordinate with the greatest error in the last step."""
+    @property
     def coordinates(self) -> list[float]:
         """(C,)."""
     @property

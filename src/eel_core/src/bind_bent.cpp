@@ -297,6 +297,7 @@ void bind_bent_marches(py::module_& module)
         .def("observe", &PyBentMarch::observe, py::arg("whole"), py::arg("row"), py::arg("wrench"), py::arg("load"))
         .def("command", &PyBentMarch::command, py::arg("servo"), py::arg("kind"), py::arg("value"))
         .def("singular_mode", &PyBentMarch::singular_mode)
+        .def_property_readonly("hardest", [](const PyBentMarch& march) { return march.march().hardest(); })
         .def_property_readonly("memory", [](const PyBentMarch& march) { return march.march().memory(); })
         .def_property_readonly("time", [](const PyBentMarch& march) { return march.march().time(); })
         .def_property_readonly("state",

@@ -6,10 +6,20 @@ from copy import deepcopy
 import numpy as np
 import pytest
 from eel_dynamics.robot.actuators import Servo
+from eel_dynamics.robot.continuous import PassiveTail
 from eel_dynamics.robot.joint import Joint
 from eel_dynamics.robot.robot import Robot
 
-from eel_dynamics import Accuracy, Scene, Simulation, Uniform, simulate
+from eel_dynamics import (
+    Accuracy,
+    Run,
+    Scene,
+    Simulation,
+    SimulationStopped,
+    Uniform,
+    simulate,
+    simulate_batch,
+)
 from eel_gaits import Law, Term, falling, straight
 
 READY = "eight_servos", "series_elastic", "passive_tail"
@@ -132,3 +142,52 @@ def test_law_of_a_robot_may_have_no_pitch_joints():
     law = Law(Term(axis="pitch", amplitude=(0.3,), period=0.0, phase=0.5 * np.pi), *straight().terms, name="both")
     run = simulate(law, 1.0, robot=Robot.named("eight_servos"), estimate=False)
     assert np.allclose(run.curvature[-1, :, 1], 0.3)
+
+
+def test_run_of_a_robot_comes_back_from_a_file(tmp_path):
+    run = simulate(straight(), 0.5, robot=Robot.named("series_elastic"), accuracy=1e-3)
+    run.save(tmp_path / "robot.nc")
+    assert Run.load(tmp_path / "robot.nc") == run
+
+
+def test_batch_of_robots_has_the_runs_of_each():
+    robots = [Robot.named("eight_servos"), None, Robot.named("passive_tail")]
+    batch = simulate_batch(straight(), 0.5, robots=robots, accuracy=1e-3, stations=11)
+    for index, robot in enumerate(robots):
+        alone = simulate(straight(), 0.5, robot=robot, accuracy=1e-3, stations=11)
+        assert batch[index] == alone
+    with pytest.raises(ValueError, match="batch with robots"):
+        batch.save("batch.nc")
+    with pytest.raises(ValueError, match="swimmer 0: joint"):
+        simulate_batch(straight(), 0.5, robots=Robot([Joint(0.999)]))
+
+
+def test_stopped_robot_names_the_part_to_blame():
+    robot = Robot([Joint(0.3, name="hinge", stiffness=1e6, actuator=Servo(kp=1e3))])
+    with pytest.raises(SimulationStopped, match="'hinge'"):
+        simulate(straight(), 5.0, robot=robot, accuracy=1e-8, estimate=False, most_evaluations=10.0)
+
+
+def test_tuned_tail_swims_fastest_at_one_stiffness():
+    """Speed over bending stiffness has one peak, near 0.6 N m^2 at a period of 1 s."""
+    speeds = [
+        simulate(straight(), 6.0, robot=Robot([PassiveTail(0.6, EI, 0.01)]), accuracy=1e-3, estimate=False).mean_speed
+        for EI in (0.075, 0.3, 0.6, 1.2, 4.8)
+    ]
+    best = int(np.argmax(speeds))
+    assert best in (1, 2, 3), speeds
+    assert (np.diff(speeds[: best + 1]) > 0.0).all() and (np.diff(speeds[best:]) < 0.0).all(), speeds
+
+
+def test_momentum_and_energy_are_kept_in_vacuum():
+    """A bent chain in yaw and pitch tumbles: its springs give and take."""
+    robot = Robot(
+        [Joint(0.15 + 0.1 * k, axis=("yaw", "pitch")[k % 2], stiffness=0.3, rest_angle=0.3) for k in range(8)]
+    )
+    scene = Scene(reactive=False, resistive=False, nose=False)
+    spin = (0.5, 2.0, 3.0, 0.0, 0.0, 0.0)
+    run = simulate(Law(name="none"), 1.0, robot=robot, scene=scene, accuracy=1e-5, twist=spin, estimate=False)
+    speed = np.diff(run.center_of_mass, axis=0) / 0.05
+    assert greatest(speed - speed[0]) < 3e-5 * greatest(speed)
+    energy = run.energy.kinetic_body + run.energy.elastic
+    assert greatest(energy - energy[0]) < 1e-5 * energy[0] and run.energy.elastic.max() > 0.01 * energy[0]

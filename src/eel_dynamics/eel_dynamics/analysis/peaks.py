@@ -54,13 +54,15 @@ def peaks(x: np.ndarray, values: np.ndarray, size=np.abs, start=-np.inf, end=np.
 def greatest_torque_of(run) -> tuple[float, float, float]:
     """Greatest magnitude [N m] of the internal torque of `run`, with its X [m] and its time [s].
 
-    A run is not swum anew if it was recorded elsewhere, has a single sample, or is a later part of one in a flow.
+    A run is not swum anew if it was recorded elsewhere, has a single sample, or is a later part of one in a flow or of
+    a robot.
     """
     greatest = torque_size(run.torque).max(axis=0)
     near = np.flatnonzero(greatest >= NEAR * greatest.max())
     sizes, times = peaks(run.time, run.torque[:, near], torque_size)
     station, time = near[np.argmax(sizes)], times[np.argmax(sizes)]
-    if not run.steps or len(run.time) < 2 or (run.flow is not None and run.time[0] != 0.0):
+    from_start = run.flow is not None or run.robot is not None
+    if not run.steps or len(run.time) < 2 or (from_start and run.time[0] != 0.0):
         return peak_along(run.time, run.x, run.torque)
     times, x, torque = _swum_anew(run, time, int(station))
     size = torque_size(torque)
@@ -88,7 +90,8 @@ def _swum_anew(run, time: float, station: int) -> tuple[np.ndarray, np.ndarray, 
     times = np.linspace(run.time[first], run.time[last], (last - first) * FINE + 1)
     near = run.x[max(0, station - AROUND) : station + AROUND + 1]
     x = np.linspace(near[0], near[-1], (len(near) - 1) * FINE + 1)
-    first = first if run.flow is None else 0  # a flow has its own time
+    if run.flow is not None or run.robot is not None:  # a flow has its own time, a robot a state of its own
+        first = 0
     start = run.time[first]
     swimmer = Simulation(
         body=run.body,
@@ -100,6 +103,7 @@ def _swum_anew(run, time: float, station: int) -> tuple[np.ndarray, np.ndarray, 
         twist=run.twist[first],
         most_evaluations=np.finfo(float).max,
         flow=run.flow,
+        robot=run.robot,
     )
     swimmer.adopt(run.law, origin=-start)
     out, _, _, stopped = swimmer.record(times - start, True, False)

@@ -33,6 +33,7 @@ from eel_dynamics.flow.plain import flow_of
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.broadcast import swimmers_of
 from eel_dynamics.runs.companion import with_error_estimate
 from eel_dynamics.runs.motions import check_duration
@@ -45,6 +46,7 @@ from eel_dynamics.runs.storage.netcdf import loaded, write
 from eel_dynamics.runs.storage.run_contents import contents_of_batch, observed_of_batch, with_warnings
 from eel_dynamics.runs.storage.tables import dataset_of, frame_of_all, needed
 from eel_dynamics.runs.variables import COUNTS, Contents, documented_arrays
+from eel_dynamics.simulation.bending.joint_motion import JointMotion
 from eel_dynamics.simulation.energy import WORKS, EnergyLedger
 from eel_dynamics.simulation.observations import FINS, LOAD, Observations
 from eel_dynamics.simulation.stopping import SimulationStopped
@@ -89,6 +91,8 @@ class Batch:
     fluid_force: np.ndarray | None
     energy: EnergyLedger | None
     flows: tuple[Flow | None, ...] = ()
+    robots: tuple[Robot | None, ...] = ()
+    _joints: tuple[JointMotion | None, ...] = ()
     _out: tuple[Any, ...] = ()  # observations, works, energy at the start, of all, for `__getitem__`
 
     def __len__(self) -> int:
@@ -101,7 +105,8 @@ class Batch:
         return hash((self.laws, self.bodies, self.scenes))
 
     def __reduce__(self) -> tuple[Any, ...]:  # each array once
-        return _batch_from, (contents_of_batch(self, *self._out), self.laws, self.bodies, self.scenes, self.flows)
+        more = self.flows, self.robots, self._joints
+        return _batch_from, (contents_of_batch(self, *self._out), self.laws, self.bodies, self.scenes, *more)
 
     def __repr__(self) -> str:
         return (
@@ -138,7 +143,7 @@ class Batch:
         out, works, start = self._out
         scene, done = self.scenes[index], int(self.samples[index])
         return run_of(
-            Swimmer(self.laws[index], self.bodies[index], scene, self.x[index], self.flows[index]),
+            Swimmer(self.laws[index], self.bodies[index], scene, self.x[index], self.flows[index], self.robots[index]),
             out[index],
             works=works[index, :done],
             start=start[index],
@@ -151,10 +156,13 @@ class Batch:
             evaluations=int(self.evaluations[index]),
             nodes=int(self.nodes[index]),
             error_estimate=self.error_estimates[index],
+            joints=self._joints[index],
         )
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the whole batch to a netCDF file (.nc), as `Run.save` does a run."""
+        """Write the whole batch to a netCDF file (.nc), as `Run.save` does a run. `ValueError` for one with robots."""
+        if any(self.robots):
+            raise ValueError("a batch with robots cannot be saved: save its runs one by one, batch[0].save(...)")
         write(with_warnings(self, contents_of_batch(self, *self._out)), path)
 
     @staticmethod
@@ -202,6 +210,7 @@ def simulate_batch(
     progress: Callable[[int, int], None] | None = None,
     most_evaluations: float = MOST_EVALUATIONS,
     flows: Any = None,
+    robots: Any = None,
 ) -> Batch:
     """Simulate B swimmers for `duration` [s] each, with samples every `sample_period` [s] from t = 0 on.
 
@@ -222,12 +231,13 @@ def simulate_batch(
         threads: None for one per available core.
         progress: progress(done, B) is called after each swimmer.
         most_evaluations: of each, as in `simulate`.
-        flows: one for all, or a sequence of B, each a flow or None. A `FlowField` runs one swimmer at a time.
+        flows, robots: one for all, or a sequence of B, each a flow, or a robot, or None. A `FlowField` runs one swimmer
+            at a time.
     """
     accuracy = accuracy.tolist() if isinstance(accuracy, np.ndarray) else accuracy
     along = [0.0] if stations is None else stations
     states = positions, orientations, twists
-    swimmers = swimmers_of(laws, bodies, scenes, accuracy, along, *states, most_evaluations, flows)
+    swimmers = swimmers_of(laws, bodies, scenes, accuracy, along, *states, most_evaluations, flows, robots)
     seconds = duration_of(duration, swimmers)
     if sample_period is None:
         sample_period = default_sample_period({law for law, _ in swimmers}, seconds)
@@ -244,6 +254,7 @@ def simulate_batch(
     settings = [setup.accuracy for _, setup in swimmers]
     errors: list[SimulationStopped | None] = [None] * count
     estimates: list[ErrorEstimate | None] = [None] * count
+    joints: list[JointMotion | None] = [None] * count
 
     def swim(index: int) -> None:
         request = SwimRequest(*swimmers[index], times, wrench[index], load)
@@ -261,26 +272,28 @@ def simulate_batch(
                 getattr(out, name)[index, : len(array)] = array
         works[index], start[index], errors[index] = found.works, found.energy_at_start, found.stopped
         settings[index], estimates[index] = run.accuracy, run.error_estimate
+        joints[index] = found.joints
         counts[:, index] = len(run.time), run.steps, run.evaluations, run.nodes
 
     _for_each(swim, count, threads, progress)
     for index in np.flatnonzero(samples < len(times)).tolist():
         for array in (*out[index].arrays().values(), works[index]):
             array[samples[index] :] = 0.0
-    swum = [Swimmer(law, setup.body, setup.scene, setup.x, setup.flow) for law, setup in swimmers]
-    found = settings, errors, estimates, counts
+    swum = [Swimmer(law, setup.body, setup.scene, setup.x, setup.flow, setup.robot) for law, setup in swimmers]
+    found = settings, errors, estimates, counts, joints
     return _batch_of(swum, found, times, out, works, start, wrench, load, stations)
 
 
 class Swimmer(NamedTuple):
-    """A swimmer of a batch: its law, its body in a scene, its stations (M,) [m], and the flow of its water."""
+    """A swimmer of a batch: its law, its body in a scene, its stations (M,) [m], the flow of its water, and
+    what bends by itself."""
 
     law: Law | SampledLaw
     body: Body
     scene: Scene
     x: np.ndarray
     flow: Flow | None
-    robot: None = None
+    robot: Robot | None
     fins: tuple[()] = ()
 
 
@@ -295,7 +308,13 @@ def _batch_of(
     load: bool,
     stations: Any,
 ) -> Batch:
-    settings, errors, estimates, (samples, steps, evaluations, nodes) = found
+    settings, errors, estimates, (samples, steps, evaluations, nodes), joints = found
+    robots = None
+    if any(each is not None for each in joints):
+        robots = np.zeros((len(swimmers), len(times), 3))
+        for index, each in enumerate(joints):
+            if each is not None:
+                robots[index, : samples[index]] = each.ledger()[: samples[index]]
     absent = {"energies", "powers", "closure", *LOAD, *FINS} - ({"fluid_force"} if load else set())
     observed: dict[str, Any] = {name: array for name, array in out.arrays().items() if name not in absent}
     none = [*(ALONG if stations is None else ()), *(() if all(wrench) else ("torque", "force"))]
@@ -313,17 +332,25 @@ def _batch_of(
         nodes=nodes,
         error_estimates=tuple(estimates),
         x=np.array([each.x for each in swimmers]),
-        energy=EnergyLedger.of(out.energies, out.powers, works, start[:, None]) if ledger else None,
+        energy=EnergyLedger.of(out.energies, out.powers, works, start[:, None], robots) if ledger else None,
         flows=tuple(each.flow for each in swimmers),
+        robots=tuple(each.robot for each in swimmers),
+        _joints=tuple(joints),
         _out=(out, works, start),
         **{"fluid_force": None} | observed | dict.fromkeys(none),
     )
 
 
 def _batch_from(
-    contents: Contents, laws: Any = None, bodies: Any = None, scenes: Any = None, flows: Any = None
+    contents: Contents,
+    laws: Any = None,
+    bodies: Any = None,
+    scenes: Any = None,
+    flows: Any = None,
+    robots: Any = None,
+    joints: Any = None,
 ) -> Batch:
-    """The batch of these contents; laws, bodies, scenes and flows too, where they are at hand."""
+    """The batch of these contents; the others too, where they are at hand."""
     values, arrays = contents.values, contents.arrays
     laws = laws or plain.row_of(values["laws"], plain.law_of)
     bodies = bodies or plain.row_of(values["bodies"], plain.body_of)
@@ -339,8 +366,8 @@ def _batch_from(
     stations, start = values["stations"] or None, arrays["energy_at_start"]
     wrench = [scene.internal_wrench and stations is not None for scene in scenes]
     flows = flows or [flow_of(each) for each in values.get("flows", count * [None])]
-    swum = list(map(Swimmer, laws, bodies, scenes, arrays["x"], flows))
-    found = settings, errors, estimates, counts
+    swum = list(map(Swimmer, laws, bodies, scenes, arrays["x"], flows, robots or count * [None]))
+    found = settings, errors, estimates, counts, joints or count * [None]
     return _batch_of(swum, found, arrays["time"], out, works, start, wrench, "fluid_force" in arrays, stations)
 
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks the arguments of `simulate_batch`, and broadcasts them to its swimmers."""
 
+from dataclasses import replace
+
 import numpy as np
 from eel_base.quantity import checked_instance, checked_row, numbers, positive
 from eel_base.wording import shown
@@ -13,8 +15,15 @@ from eel_dynamics.flow.flow import Flow
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.initial_state import InitialState, check_planar, checked_quaternion
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.robot.robot import Robot, checked_robot
 from eel_dynamics.runs.motions import LAWS
-from eel_dynamics.simulation.simulation_setup import SimulationSetup, check_flow, check_planar_law, checked_stations
+from eel_dynamics.simulation.simulation_setup import (
+    SimulationSetup,
+    check_flow,
+    check_planar_law,
+    check_possible,
+    checked_stations,
+)
 
 
 def swimmers_of(
@@ -28,19 +37,21 @@ def swimmers_of(
     twists,
     most_evaluations=MOST_EVALUATIONS,
     flows=None,
+    robots=None,
 ) -> list[tuple[Law | SampledLaw, SimulationSetup]]:
     """Laws and set-ups of B swimmers, with `stations` on each body, and `most_evaluations` per simulated second.
 
-    flows: None for none. Each other argument is one for all, or a sequence of B (for the last three the rows of an
-    array (B, .)); a sequence of length 1 counts as one for all. `ValueError` names what does not fit, and the swimmer's
-    number.
+    flows, robots: None for none. Each other argument is one for all, or a sequence of B (for the last three the rows of
+    an array (B, .)); a sequence of length 1 counts as one for all. `ValueError` names what does not fit, and the
+    swimmer's number.
     """
-    laws, bodies, scenes, settings, flows, *states = _broadcast(
+    laws, bodies, scenes, settings, flows, robots, *states = _broadcast(
         laws=_several("laws", laws, LAWS),
         bodies=_several("bodies", Body.boyer2010() if bodies is None else bodies, Body),
         scenes=_several("scenes", Scene() if scenes is None else scenes, Scene),
         accuracy=[Accuracy.of(each) for each in (accuracy if isinstance(accuracy, (list, tuple)) else [accuracy])],
         flows=[None] if flows is None else _several("flows", flows, (Flow, type(None))),
+        robots=[None] if robots is None else _several("robots", robots, (Robot, type(None))),
         positions=_rows("positions", positions, lambda name, row: checked_row(name, row, 3)),
         orientations=_rows("orientations", orientations, checked_quaternion),
         twists=_rows("twists", twists, lambda name, row: checked_row(name, row, 6)),
@@ -48,12 +59,14 @@ def swimmers_of(
     most = positive("most_evaluations", most_evaluations, "per simulated second")
     x = {length: checked_stations(stations, length) for length in dict.fromkeys(body.length for body in bodies)}
     swimmers = []
-    for index, (law, body, scene, accuracy, flow, *state) in enumerate(
-        zip(laws, bodies, scenes, settings, flows, *states, strict=True)
+    for index, (law, body, scene, accuracy, flow, robot, *state) in enumerate(
+        zip(laws, bodies, scenes, settings, flows, robots, *states, strict=True)
     ):
         initial = InitialState(*state)
         _check_swimmer(index, law, scene, flow, initial)
+        robot = _checked_robot(index, robot, body, scene, flow)
         setup = SimulationSetup(body, scene, accuracy, x[body.length], initial, most_evaluations=most, flow=flow)
+        setup = replace(setup, robot=robot)
         swimmers.append((law, setup))
     return swimmers
 
@@ -84,6 +97,16 @@ def _rows(name: str, values, check) -> list[np.ndarray]:
     if array.ndim == 1:
         return [check(name, array)]
     return [check(f"{name}[{index}]", row) for index, row in enumerate(np.atleast_1d(array))]
+
+
+def _checked_robot(index: int, robot: Robot | None, body: Body, scene: Scene, flow: Flow | None) -> Robot | None:
+    try:
+        robot = checked_robot(robot)
+        if robot is not None:
+            check_possible(robot, body, scene, flow)
+    except ValueError as error:
+        raise ValueError(f"swimmer {index}: {error}") from None
+    return robot
 
 
 def _check_swimmer(index: int, law: Law | SampledLaw, scene: Scene, flow: Flow | None, initial: InitialState):

@@ -491,6 +491,7 @@ class SwimResult(NamedTuple):
     works: np.ndarray  # (T, 6) J
     energy_at_start: float  # J
     stopped: SimulationStopped | None
+    joints: JointMotion | None = None  # of a robot
 
 
 class SwimRequest(NamedTuple):
@@ -535,7 +536,7 @@ class SwimRequest(NamedTuple):
             nodes=len(simulation.grid.x),
             joints=simulation.joints,
         )
-        return SwimResult(run, out, works, start, stopped)
+        return SwimResult(run, out, works, start, stopped, simulation.joints)
 
 
 def run_of(

@@ -176,6 +176,11 @@ class BentMarch {
         return true;
     }
 
+    // The coordinate that has asked for the last step's length.
+    std::size_t hardest() const
+    {
+        return std::visit([](const auto& stepper) { return stepper.hardest(); }, stepper_);
+    }
     // The first of the modes that make M singular in the present state; none where it is positive definite.
     std::optional<std::size_t> singular_mode()
     {

@@ -82,6 +82,7 @@ class BentStepper {
     BentBody<M>& body() { return body_; }
     const BentBody<M>& body() const { return body_; }
     const Counts& counts() const { return counts_; }
+    std::size_t hardest() const { return hardest_; }  // coordinate with the greatest error in the last step
     double end_time() const { return here_.time; }
     const BentPoint<M>& end() const { return here_; }
 
@@ -325,7 +326,7 @@ class BentStepper {
 
     // The difference of the two results over the tolerance: of the head as elsewhere; of the coordinates as angles, and
     // as the torques of springs and dampers.
-    double error_of(const BentSettings& settings, double length) const
+    double error_of(const BentSettings& settings, double length)
     {
         const std::size_t c = modes_->coordinates;
         std::array<double, Tableau::stages> weight;
@@ -351,8 +352,9 @@ class BentStepper {
             for (std::size_t j = 0; j < c; ++j)
                 torque += here_.stiffness[i * c + j] * dx[j] + here_.damping[i * c + j] * du[j];
             const bool mode = i < modes_->modes;
-            worst = std::max({worst, (mode ? modes_->span[i] : 1.0) * std::abs(dx[i]),
-                              (mode ? modes_->moment[i] : 1.0) * std::abs(torque) / scale});
+            const double here = std::max((mode ? modes_->span[i] : 1.0) * std::abs(dx[i]),
+                                         (mode ? modes_->moment[i] : 1.0) * std::abs(torque) / scale);
+            if (here > worst) worst = here, hardest_ = i;
         }
         return std::max(worst / settings.bounds.tolerance,
                         error_by_tolerance(settings.bounds, scale_, trial_.head, defect, length));
@@ -439,6 +441,7 @@ class BentStepper {
     std::array<std::vector<double>, Tableau::stages> step_x_, step_p_, step_u_;
     BentPowers works_{}, works_before_{}, middle_{};  // at the end and the start of the step; powers at its middle
     MomentumScale scale_;
+    std::size_t hardest_ = 0;
     double torque_scale_ = 0.0, proposed_ = 0.0, budget_ = 0.0;
     Counts counts_;
     bool anew_ = true;

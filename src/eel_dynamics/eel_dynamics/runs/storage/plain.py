@@ -27,6 +27,8 @@ from eel_dynamics.model.shapes import (
     coefficients_of,
     polynomials_through,
 )
+from eel_dynamics.robot.robot import Robot
+from eel_dynamics.robot.robot_file import RobotReader, plain_of_robot
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 HALF_AXES = ("half_width", "half_height")
@@ -101,6 +103,20 @@ def body_of(plain: dict) -> Body:
         if isinstance(plain.get(name), dict):
             arguments[name] = PolynomialAlong(**{key: _tuples(value) for key, value in plain[name].items()})
     return Body(**arguments)
+
+
+def plain_robot(robot: Robot | None, body: Body) -> dict | None:
+    """A robot on its `body` as plain values; None as it is. `ValueError` for a torque that is a function."""
+    if robot is None:
+        return None
+    return {"parts": plain_of_robot(robot, body.length), "own_body": robot.body is not None}
+
+
+def robot_of(plain: dict | None, body: Body) -> Robot | None:
+    """The robot that has become plain values."""
+    if plain is None:
+        return None
+    return Robot(**RobotReader().arguments(plain["parts"]) | {"body": body if plain["own_body"] else None})
 
 
 def accuracy_of(plain: dict) -> Accuracy | Budget:

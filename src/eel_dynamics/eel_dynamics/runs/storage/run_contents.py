@@ -13,6 +13,7 @@ from eel_dynamics.model.fins import Fin, RollHold
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.variables import COUNTS, ENERGY, LEDGER, OWN, Contents
+from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS
 from eel_dynamics.simulation.energy import WORKS, EnergyLedger
 from eel_dynamics.simulation.observations import OBSERVED, Observations
 
@@ -21,22 +22,25 @@ def contents_of_run(run) -> Contents:
     """The contents of a `Run`. `ValueError` for one without samples."""
     if not len(run.time):
         raise ValueError("a run without samples holds no data")
-    if run.robot is not None:
-        raise ValueError(f"a run of a robot cannot be saved yet, got one of {run.robot!r}")
     values = {
         **{name: plain.plain_of(getattr(run, name)) for name in ("law", "body", "scene", "accuracy", "error_estimate")},
         "flow": plain_of_flow(run.flow),
         "fins": [asdict(fin) for fin in run.fins],
+        "robot": plain.plain_robot(run.robot, run.body),
         "warnings": list(run.warnings),
         **{name: int(getattr(run, name)) for name in COUNTS},
     }
     arrays = {name: getattr(run, name) for name in OWN if getattr(run, name) is not None}
+    arrays = {name: each for name, each in arrays.items() if each.size or name not in JOINT_ARRAYS}  # of no joints
     return Contents("run", values, arrays | _of_ledger(run.energy), run.axes)
 
 
 def fields_of_run(contents: Contents) -> dict:
     """The fields of the `Run` of these contents."""
     values, arrays = contents.values, contents.arrays
+    if values.get("robot"):
+        none = np.zeros((len(arrays["time"]), 0))
+        arrays = dict.fromkeys(JOINT_ARRAYS, none) | arrays
     energy = None
     if ENERGY + "residual" in arrays:
         energy = EnergyLedger(**_ledger_of(arrays))
@@ -49,6 +53,7 @@ def fields_of_run(contents: Contents) -> dict:
         "energy": energy,
         "flow": flow_of(values.get("flow")),
         "fins": tuple(Fin(**each) for each in map(_with_hold, values.get("fins", ()))),
+        "robot": plain.robot_of(values.get("robot"), plain.body_of(values["body"])),
         "axes": contents.axes,
         **{name: arrays.get(name) for name in OWN},
         **{name: _count(name, values[name]) for name in COUNTS},

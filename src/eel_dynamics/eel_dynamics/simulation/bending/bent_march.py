@@ -4,6 +4,7 @@
 from typing import Any
 
 import numpy as np
+from eel_base.wording import shown
 
 import eel_core
 from eel_dynamics.accuracy.error_estimate import TORQUE_FLOOR
@@ -11,9 +12,10 @@ from eel_dynamics.accuracy.grid_settings import GridSettings
 from eel_dynamics.simulation.bending.joint_motion import JointMotion
 from eel_dynamics.simulation.bending.modes_on_grid import RobotTables
 from eel_dynamics.simulation.discretisation import Discretisation, discretise
-from eel_dynamics.simulation.march import March
+from eel_dynamics.simulation.march import SINGULAR, March
 from eel_dynamics.simulation.observations import Observations, Snapshot
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
+from eel_dynamics.simulation.stopping import SimulationStopped
 
 
 class BentMarch(March):
@@ -66,6 +68,23 @@ class BentMarch(March):
             setup.current,
             smoothly,
         )
+
+    def _stopped(self, status: int) -> SimulationStopped:
+        """As of `March`, with the part that is to blame, and what would help."""
+        stopped, table = super()._stopped(status), self.robot.on_grid.table
+        singular = self.core.singular_mode() if status == SINGULAR else None
+        place = self.core.hardest if singular is None else singular
+        mode = (
+            place
+            if place < len(table)
+            else int(table.actuators.mode[np.flatnonzero(table.actuators.series)][place - len(table)])
+        )
+        part = shown(table.name[mode])
+        if status == SINGULAR:
+            hint = f"{part} has no inertia of its own: give it an armature, or a support apart from the others"
+        else:
+            hint = f"{part} asks for the shortest steps: give it damping or an armature; or {stopped.hint}"
+        return SimulationStopped(stopped.time, stopped.quantity, stopped.value, hint)
 
     def record(self, times: np.ndarray, *arguments) -> tuple:
         """As `March.record`; `joints` has the coordinates."""
