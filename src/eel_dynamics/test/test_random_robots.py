@@ -7,7 +7,7 @@ from random_robots import drawn
 
 from eel_dynamics import Accuracy, SimulationStopped, simulate
 
-FAST, ALL = 24, 400
+FAST, ALL = 60, 5000
 
 
 def swum(seed: int, accuracy, estimate: bool = True):

@@ -7,6 +7,7 @@ from eel_base.attitude import world_from_body
 import eel_core
 from eel_dynamics.curvature.law_follower import LawFollower
 from eel_dynamics.model.axes import REP103
+from eel_dynamics.simulation.bending.shape_of_run import shapes_of_run
 from eel_dynamics.simulation.simulation import Simulation
 
 
@@ -32,14 +33,18 @@ def drag_powers(run) -> np.ndarray:
     """Powers (T, 4) [W] of the drag along the body at each sample of `run`.
 
     Columns: forces along section axes 1 (friction, k1 of section 7.2.1), 2 and 3 (cross flow), and the torque about
-    axis 1. Positive is into the body, so none is positive. They are evaluated from the law and the head's motion, at
-    the nodes of a simulation with the run's settings; their sum is the ledger's `drag_power`.
+    axis 1. Positive is into the body, so none is positive. They are evaluated from the law, or a robot's joints, and
+    the head's motion, at the nodes of a simulation with the run's settings; their sum is the ledger's `drag_power`.
     """
-    if run.robot is not None:
-        raise ValueError(f"drag_powers needs a run whose law is imposed, got one of {run.robot!r}")
     run = run.in_axes(REP103)
     simulation = Simulation(
-        body=run.body, scene=run.scene, accuracy=run.accuracy.as_it_is(), stations=2, law=run.law, flow=run.flow
+        body=run.body,
+        scene=run.scene,
+        accuracy=run.accuracy.as_it_is(),
+        stations=2,
+        law=run.law,
+        flow=run.flow,
+        robot=run.robot,
     )
     follower, now = LawFollower(simulation.discretisation.tabulation, law=run.law), 0.0
     instant, powers = eel_core.Instant(simulation.discretisation.swimmer), np.zeros((len(run.time), 4))
@@ -47,6 +52,11 @@ def drag_powers(run) -> np.ndarray:
     relative[:, 3:] -= np.asarray(run.scene.current) @ world_from_body(run.orientation)
     water = simulation.setup.current, simulation.setup.core_flow
     poses = np.concatenate([run.position, run.orientation], axis=1)
+    if (modes := simulation.setup.modes) is not None:
+        for k, law in enumerate(shapes_of_run(run, modes, simulation.discretisation)):
+            one = slice(k, k + 1)
+            instant.drag_powers(law, time[one], relative[one], powers[one], *water, poses[one])
+        return powers
     begin = 0
     while begin < len(time):  # once for a law in closed form, and for each row of a `SampledLaw`
         follower.pass_events(now, now := float(time[begin]))

@@ -50,6 +50,8 @@ def _of_the_run(run) -> list[str]:
         e = run.energy
         kinetic = e.kinetic_body[-1] + e.kinetic_fluid[-1] - e.kinetic_body[0] - e.kinetic_fluid[0]
         potential = f"potential {e.potential[-1] - e.potential[0]:+.4g}, " if np.any(e.potential) else ""
+        if run.robot is not None:
+            potential += f"springs {e.elastic[-1] - e.elastic[0]:+.4g}, dampers {e.damping_work[-1]:+.4g}, "
         lines.append(
             f"energy [J]          actuators {e.actuator_work[-1]:+.4g}, wake {e.wake_work[-1]:+.4g}, "
             f"nose {e.nose_work[-1]:+.4g}, "

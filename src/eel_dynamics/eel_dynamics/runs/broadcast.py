@@ -103,7 +103,7 @@ def _checked_robot(index: int, robot: Robot | None, body: Body, scene: Scene, fl
     try:
         robot = checked_robot(robot)
         if robot is not None:
-            check_possible(robot, body, scene, flow)
+            check_possible(robot, body, scene, flow, ())
     except ValueError as error:
         raise ValueError(f"swimmer {index}: {error}") from None
     return robot

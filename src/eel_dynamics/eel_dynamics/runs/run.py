@@ -107,6 +107,7 @@ class Run:
     motor_torque: np.ndarray | None = None
     motor_power: np.ndarray | None = None
     mode_amplitude: np.ndarray | None = None
+    mode_rate: np.ndarray | None = None
     axes: str = REP103  #: of world and head: "rep103" (x forward, y left, z up), or "paper"
 
     def __eq__(self, other: object) -> bool:

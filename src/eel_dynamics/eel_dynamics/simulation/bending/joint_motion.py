@@ -20,6 +20,7 @@ JOINT_ARRAYS = {
     "motor_torque": Variable(JOINT, "N m", "torque of the motor behind its gear"),
     "motor_power": Variable(JOINT, "W", "power of the motor"),
     "mode_amplitude": Variable(("time", "mode"), "rad/m", "curvature of the modes of tails and muscles"),
+    "mode_rate": Variable(("time", "mode"), "rad/m/s", "its rate"),
 }
 ELASTIC, DAMPING_POWER, DAMPING_WORK = "elastic", "damping_power", "damping_work"
 
@@ -66,4 +67,5 @@ class JointMotion:
             "motor_torque": torque * sign + 0.0,
             "motor_power": torque * rate[:, motor],
             "mode_amplitude": x[:, np.flatnonzero(table.degree != HINGE)].copy(),
+            "mode_rate": rate[:, np.flatnonzero(table.degree != HINGE)].copy(),
         }
