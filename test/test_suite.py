@@ -26,7 +26,7 @@ def test_the_list_has_a_line_for_each_command(capsys):
     lines = [line.split(maxsplit=1) for line in capsys.readouterr().out.splitlines() if line.startswith("  ")]
     told = {name: about for name, about in lines if name in suite.commands()}
     own = {name.removeprefix("eel_") for names in EXECUTABLES.values() for name in names - NOT_COMMANDS}
-    assert set(told) == own | {"compare", "completion"}
+    assert set(told) == own | {"ballast", "compare", "completion", "replay-joints"}
     assert all(10 < len(about) < 66 and not about.endswith(".") for about in told.values()), told
 
 
@@ -83,4 +83,5 @@ def test_without_argcomplete_the_commands_are_completed(shell, monkeypatch, caps
     monkeypatch.setitem(sys.modules, "argcomplete", None)
     assert suite.main(["completion", shell]) == 0
     said = capsys.readouterr().out
-    assert "complete -o default -W 'compare simulate " in said and ("bashcompinit" in said) == (shell == "zsh")
+    assert f"complete -o default -W '{' '.join(suite.commands())}' eel" in said
+    assert ("bashcompinit" in said) == (shell == "zsh")
