@@ -10,7 +10,7 @@ function fitTables() {
         cell.toggleAttribute("data-empty", !cell.textContent.trim());
       });
     const room = table.closest(".table-wrapper") || table.parentElement;
-    const tooWide = () => table.scrollWidth > room.clientWidth + 1;
+    const tooWide = () => Math.max(table.scrollWidth, room.scrollWidth) > room.clientWidth + 1;
     table.classList.remove("as-cards", "tight");
     table.classList.toggle("tight", tooWide());
     if (tooWide()) table.classList.replace("tight", "as-cards");
