@@ -10,7 +10,7 @@ setup(
         ("share/ament_index/resource_index/packages", ["resource/eel_dynamics"]),
         ("share/eel_dynamics", ["package.xml"]),
     ],
-    install_requires=["setuptools", "numpy", "scipy"],
+    install_requires=["setuptools", "numpy", "scipy", "PyYAML"],
     extras_require={
         "test": ["pytest"],
         "data": ["xarray"],
