@@ -16,7 +16,13 @@ from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPo
 from rosbags.interfaces import QosDurability
 from rosbags.rosbag2 import Reader
 
-UNPLAYED = ("/clock", "/tf", "/swim_state", "/joint_states")  # the visualiser does not subscribe to them
+UNPLAYED = (
+    "/clock",
+    "/tf",
+    "/swim_state",
+    "/joint_states",
+    "/flow_at_head",
+)  # the visualiser does not subscribe to them
 UNIQUE = ("/body", "/curvature_law")
 
 

@@ -132,7 +132,7 @@ class Loggers:
     def head_twist(self, stamp: int, twist: Twist) -> None:
         """Log the head's speed, and its velocities in base_link."""
         speed = float(np.linalg.norm(twist.linear))
-        self._scene.speed(speed)
+        self._scene.speed(stamp, speed)
         if self._due("head_twist", stamp, self._number_period):
             self._stream.add_scalars(stamp, entities.SPEED, [speed])
             self._stream.add_scalars(stamp, entities.LINEAR, twist.linear)

@@ -1,11 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws the fluid's force on the body as arrows in the world, along the body, and at nose and tail; and the wake.
 
-A load is in section axes, so it needs the backbone of the same stamp; the one that comes first waits for the other.
+A load is in section axes, so it needs the backbone of the same stamp.
 """
-
-from collections import OrderedDict
-from typing import TypeVar
 
 import numpy as np
 import rerun as rr
@@ -14,12 +11,10 @@ from eel_base.attitude import world_from_section
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import Backbone, Load
+from eel_viz.same_stamp import SameStamp
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.load_vectors import LoadVectors
 from eel_viz.scene3d.track import Wake
-
-Waiting = TypeVar("Waiting")
-MAXIMUM_WAITING = 512  # backbones, or loads; the oldest is dropped
 
 
 class Arrows:
@@ -27,27 +22,18 @@ class Arrows:
 
     def __init__(self, stream: BatchedStream, *, load_scale: float, end_scale: float, wake_scale: float) -> None:
         self._stream, self._vectors = stream, LoadVectors(load_scale=load_scale, end_scale=end_scale)
-        self._backbones: OrderedDict[int, Backbone] = OrderedDict()
-        self._loads: OrderedDict[int, Load] = OrderedDict()
+        self._both = SameStamp(self._draw)
         self._wake = Wake(stream, wake_scale)
         stream.log_static(entities.LOAD, rr.Arrows3D.from_fields(colors=[colours.FORCE], radii=[0.0022]))
         stream.log_static(entities.LOAD_ENDS, rr.Arrows3D.from_fields(colors=[colours.ENDS], radii=[0.004]))
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
         """Take the backbone at `stamp` [ns]."""
-        load = self._loads.pop(stamp, None)
-        if load is None:
-            _keep(self._backbones, stamp, backbone)
-        else:
-            self._draw(stamp, backbone, load)
+        self._both.first(stamp, backbone)
 
     def load(self, stamp: int, load: Load) -> None:
         """Take the load at `stamp` [ns]."""
-        backbone = self._backbones.pop(stamp, None)
-        if backbone is None:
-            _keep(self._loads, stamp, load)
-        else:
-            self._draw(stamp, backbone, load)
+        self._both.second(stamp, load)
 
     def _draw(self, stamp: int, backbone: Backbone, load: Load) -> None:
         self._log(stamp, entities.LOAD, *self._vectors.along(backbone, load))
@@ -60,9 +46,3 @@ class Arrows:
         self._stream.add_row(
             stamp, path, rr.Arrows3D, origins=origins.astype(np.float32), vectors=vectors.astype(np.float32)
         )
-
-
-def _keep(waiting: OrderedDict[int, Waiting], stamp: int, value: Waiting) -> None:
-    waiting[stamp] = value
-    if len(waiting) > MAXIMUM_WAITING:
-        waiting.popitem(last=False)

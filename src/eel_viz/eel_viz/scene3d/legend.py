@@ -26,21 +26,24 @@ BAND = (-0.60, -0.39)  # tangents: lower and upper edge of the ground of the leg
 STEPS = 33
 
 
-def log_bar(stream: BatchedStream, stamp: int, *, limit: float, unit: str, name: str) -> None:
-    """Log the bar at `stamp` [ns], with the values -limit to +limit."""
-    right, up = BAR_AT
-    middle = camera.before_eye(DISTANCE, right, up)
+def log_bar(stream: BatchedStream) -> None:
+    """Log the bar and its ground, valid at all times."""
+    middle = camera.before_eye(DISTANCE, *BAR_AT)
     along = np.linspace(-0.5, 0.5, STEPS)[:, None] * BAR_SIZE[0] * camera.RIGHT
     vertices = np.concatenate([middle + along, middle + along + BAR_SIZE[1] * camera.UP])
     k = np.arange(STEPS - 1)
     triangles = np.concatenate([np.stack([k, k + 1, k + STEPS], 1), np.stack([k + 1, k + STEPS + 1, k + STEPS], 1)])
     shades = np.tile(colours.diverging(np.linspace(-1.0, 1.0, STEPS), 1.0), (2, 1))
     mesh = rr.Mesh3D(vertex_positions=vertices, triangle_indices=triangles, vertex_colors=shades)
-    stream.log(stamp, f"{entities.LEGEND}/bar", mesh)
+    stream.log_static(f"{entities.LEGEND}/bar", mesh)
     corners = [camera.before_eye(1.02 * DISTANCE, right, up) for up in BAND for right in (-2.0, 2.0)]
     band = rr.Mesh3D(vertex_positions=corners, triangle_indices=tiles(2, 2), albedo_factor=colours.WATER_BACKGROUND)
     stream.log_static(f"{entities.LEGEND}/band", band)
-    under = middle - 1.3 * LETTERS * camera.UP
+
+
+def log_limit(stream: BatchedStream, stamp: int, *, limit: float, unit: str, name: str) -> None:
+    """Log what the bar shows from `stamp` [ns] on: the values -limit to +limit of the quantity `name`."""
+    under = camera.before_eye(DISTANCE, *BAR_AT) - 1.3 * LETTERS * camera.UP
     places = [under + share * BAR_SIZE[0] * camera.RIGHT for share in (-0.5, 0.0, 0.5)]
     stream.log(
         stamp,

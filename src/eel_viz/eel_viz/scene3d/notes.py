@@ -7,6 +7,7 @@ import rerun as rr
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import Backbone
+from eel_viz.same_stamp import SameStamp
 from eel_viz.scene3d import camera, colours
 from eel_viz.scene3d.lettering import standing_texts
 
@@ -17,19 +18,19 @@ NEARER = 0.25
 SLOW = 0.01  # body lengths per second, below which no direction is shown
 NAME = "greatest torque C3 in 3 s"
 ABOVE, BESIDE = 0.28, 0.12  # of the words over the body, and over the arrow [radii]
+Frame = tuple[np.ndarray, float]  # centre (3,) and radius [m] of what the camera sees
 
 
 class Notes:
     """Draws the arrow ahead of the head with the head's speed, and the greatest torque C3 at its place.
 
-    Attributes:
-        speed: of the head [m/s]. peak: place [m] and size [N m] of the greatest C3. None: not known.
+    Body, speed and torque come in messages of their own: a note is drawn once both that it needs of a stamp are there.
     """
 
     def __init__(self, stream: BatchedStream) -> None:
         self._stream = stream
-        self.speed: float | None = None
-        self.peak: tuple[float, float] | None = None
+        self._heading = SameStamp(self._draw_heading)
+        self._torque = SameStamp(self._draw_torque)
         self._words: dict[str, tuple[str, int]] = {}  # and when they were written [ns]
         stream.log_static(entities.HEADING, rr.Arrows3D.from_fields(colors=[colours.NOTE], radii=[0.004]))
         leader = [[0.05 * camera.UP, (ABOVE - 1.2 * LETTERS) * camera.UP]]
@@ -37,23 +38,36 @@ class Notes:
         stream.log_static(f"{entities.TORQUE_NOTE}/line", line)
         stream.log_static(f"{entities.TORQUE_NOTE}/name", _written(NAME, 1.25 * ABOVE))
 
-    def draw(self, stamp: int, backbone: Backbone, velocity: np.ndarray, frame: tuple[np.ndarray, float]) -> None:
-        """Draw at `stamp` [ns]. velocity: of the whole swimmer, (3,) [m/s]. frame: the camera's."""
+    def body(self, stamp: int, backbone: Backbone, velocity: np.ndarray, frame: Frame) -> None:
+        """Take the body at `stamp` [ns]. velocity: of the whole swimmer, (3,) [m/s]. frame: the camera's."""
+        self._heading.first(stamp, (backbone, velocity, frame))
+        self._torque.first(stamp, (backbone, frame))
+
+    def speed(self, stamp: int, speed: float) -> None:
+        """Take the head's speed [m/s] at `stamp` [ns]."""
+        self._heading.second(stamp, speed)
+
+    def peak(self, stamp: int, place: float, size: float) -> None:
+        """Take the greatest C3 of the last seconds, its place [m] and its size [N m], at `stamp` [ns]."""
+        self._torque.second(stamp, (place, size))
+
+    def _draw_heading(self, stamp: int, body: tuple[Backbone, np.ndarray, Frame], head_speed: float) -> None:
+        backbone, velocity, frame = body
         length, speed = float(backbone.x[-1] - backbone.x[0]), float(np.linalg.norm(velocity))
-        if self.speed is not None and speed > SLOW * length:
+        if speed > SLOW * length:
             begin, end = (backbone.position[0] + share * length / speed * velocity for share in AHEAD)
             ends = {"origins": begin[None].astype(np.float32), "vectors": (end - begin)[None].astype(np.float32)}
             self._stream.add_row(stamp, entities.HEADING, rr.Arrows3D, **ends)
-            self._write(stamp, entities.SPEED_NOTE, f"{self.speed:.2f} m/s", end, frame, BESIDE)
-        if self.peak is not None and self.peak[1] > 0.0:
-            x, torque = self.peak
+            self._write(stamp, entities.SPEED_NOTE, f"{head_speed:.2f} m/s", end, frame, BESIDE)
+
+    def _draw_torque(self, stamp: int, body: tuple[Backbone, Frame], peak: tuple[float, float]) -> None:
+        (backbone, frame), (x, torque) = body, peak
+        if torque > 0.0:
             place = np.array([np.interp(x, backbone.x, column) for column in backbone.position.T])
             words = f"{torque:.2g} N m at X = {x:.2f} m"
             self._write(stamp, entities.TORQUE_NOTE, words, place, frame, ABOVE)
 
-    def _write(
-        self, stamp: int, path: str, words: str, place: np.ndarray, frame: tuple[np.ndarray, float], above: float
-    ) -> None:
+    def _write(self, stamp: int, path: str, words: str, place: np.ndarray, frame: Frame, above: float) -> None:
         """Move the `words` before `place` (3,) [m]; log their letters if they are new, `above` [radii] it.
 
         They are nearer to the eye by the share `NEARER`, and smaller, so that the body does not hide them.

@@ -79,7 +79,7 @@ class SwimmerScene:
         """Draw skin, tail, water and arrows, and move the cameras' frames."""
         position, length = backbone.position, float(backbone.x[-1] - backbone.x[0])
         frame = self._frame.follow(stamp, in_sight(position), length)
-        self._notes.draw(stamp, backbone, self._frame.filter.velocity, frame)
+        self._notes.body(stamp, backbone, self._frame.filter.velocity, frame)
         self._water.draw(stamp, *frame)
         log_frame(self._stream, stamp, entities.FOLLOW, *frame)
         frame = self._path_frame.include(position, length)
@@ -114,10 +114,12 @@ class SwimmerScene:
 
         peak: place [m] and size [N m] of the greatest torque of the last seconds.
         """
-        self._notes.peak = peak
+        self._notes.peak(stamp, *peak)
         if limit != self._torque_limit:
+            if not self._torque_limit:
+                legend.log_bar(self._stream)
             self._torque_limit = limit
-            legend.log_bar(self._stream, stamp, limit=limit, unit="N m", name="C3")
+            legend.log_limit(self._stream, stamp, limit=limit, unit="N m", name="C3")
         if self._skin is not None:
             shades = self._skin.coloured(x, torque, limit)
             self._stream.add_row(stamp, entities.SKIN, rr.Mesh3D, vertex_colors=shades)
@@ -128,9 +130,9 @@ class SwimmerScene:
         vectors = (LONGEST / max(self._fastest, 1e-9) * velocity).astype(np.float32)
         self._stream.add_row(stamp, entities.FLOW, rr.Arrows3D, origins=position.astype(np.float32), vectors=vectors)
 
-    def speed(self, speed: float) -> None:
+    def speed(self, stamp: int, speed: float) -> None:
         """Take the speed of the head [m/s], for the words beside its arrow."""
-        self._notes.speed = speed
+        self._notes.speed(stamp, speed)
 
     def load(self, stamp: int, load: Load) -> None:
         """Draw the force of the water as arrows."""
