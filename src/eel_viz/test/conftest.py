@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rerun raises on bad data instead of warning, and recordings are made in a folder of the test's own."""
+"""Rerun raises on bad data instead of warning; recordings are made in a folder of the test's own."""
 
 import pytest
 
@@ -9,6 +9,12 @@ def strict_rerun():
     import rerun as rr
 
     rr.set_strict_mode(True)
+
+
+@pytest.fixture(autouse=True)
+def no_progress_on_a_slow_machine(monkeypatch):
+    """What a command says does not depend on how long it takes."""
+    monkeypatch.setattr("eel_base.command.progress.QUIET", float("inf"))
 
 
 @pytest.fixture
