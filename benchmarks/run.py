@@ -11,7 +11,7 @@ import sys
 
 from against_paper_scheme import paper_scheme
 from eel_base.wording import did_you_mean
-from evaluations import evaluation, growth, plane, switches, wrench
+from evaluations import evaluation, flows, growth, plane, switches, wrench
 from integrators import integrators
 from lockstep import lockstep
 from measuring import REPEATS
@@ -22,6 +22,7 @@ from swims import batch, falling_gait, gym, start, ticks
 FIGURES = {
     "evaluation": evaluation,
     "plane": plane,
+    "flows": flows,
     "falling": falling_gait,
     "wrench": wrench,
     "switches": switches,

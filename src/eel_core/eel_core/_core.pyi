@@ -481,10 +481,17 @@ class SampledMarches:
         threads: int,
     ) -> None: ...
     def start(
-        self, index: int, bounds: StepBounds, position: Buffer, orientation: Buffer, twist: Buffer, values: Buffer
+        self,
+        index: int,
+        bounds: StepBounds,
+        position: Buffer,
+        orientation: Buffer,
+        twist: Buffer,
+        values: Buffer,
+        flow: Flow | None = None,
     ) -> float:
         """Has a swimmer stand at its start, straight, at time 0, where its sample has the values (6, n). Kinetic and
-        potential energy [J]."""
+        potential energy [J]. flow: how its water moves, no function of Python."""
 
     def advance(self, times: Buffer, values: Buffer, status: Buffer, heads: Buffer) -> None:
         """Marches each to its own of the times (N,) [s], where its sample has its values (N, 6, n).

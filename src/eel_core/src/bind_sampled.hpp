@@ -29,10 +29,11 @@ class PySampledMarches {
     }
 
     double start(std::size_t index, const StepBounds& bounds, const py::object& position, const py::object& orientation,
-                 const py::object& twist, const py::object& values)
+                 const py::object& twist, const py::object& values, std::shared_ptr<Flow> flow)
     {
         const Numbers sample = sized(values, "values", sample_rows * marches_.points());
         const InUse in_use(*this);
+        marches_[index].set_flow(std::move(flow));
         return marches_[index].start(bounds, vector_from(position, "position"), orientation_from(orientation),
                                      twist_from(twist, "twist"), sample.data());
     }
@@ -131,7 +132,7 @@ inline void bind_sampled_marches(py::module_& module)
              py::arg("ledger"), py::arg("current"), py::arg("weights"), py::arg("transition"), py::arg("count"),
              py::arg("threads"))
         .def("start", &PySampledMarches::start, py::arg("index"), py::arg("bounds"), py::arg("position"),
-             py::arg("orientation"), py::arg("twist"), py::arg("values"))
+             py::arg("orientation"), py::arg("twist"), py::arg("values"), py::arg("flow") = py::none())
         .def("advance", &PySampledMarches::advance, py::arg("times"), py::arg("values"), py::arg("status"),
              py::arg("heads"))
         .def("put_head", &PySampledMarches::put_head, py::arg("index"), py::arg("heads"))

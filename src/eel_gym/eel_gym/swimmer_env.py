@@ -2,12 +2,14 @@
 """The base class of the environments: control steps of a swimmer, or of many side by side."""
 
 import copy
+from collections.abc import Callable
 from typing import Any, NamedTuple, Self
 
 import gymnasium
 import numpy as np
-from eel_base.wording import not_one_of, one_line
+from eel_base.wording import not_one_of, one_line, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.flow.flow import Flow
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.head_motion import level_orientation
@@ -47,6 +49,8 @@ class SwimmerEnv(Task):
         action: a `LawAction` or a `KnotAction`; by default that of the task.
         render_mode: by "rgb_array" `render` returns a picture of the present, from above and from the side; by "rerun"
             each episode is written to the folder `recordings`, as the visualiser would show it.
+        flow: how the water moves, as of `Simulation`; or a function of the environment's random numbers
+            (`numpy.random.Generator`) that draws the flow of an episode. None: not by itself.
         swimmers, threads: N swimmers side by side, and the threads that march them: for `ThreadedVectorEnv`.
         numbers: those of the task, see `Numbers`.
     """
@@ -64,12 +68,15 @@ class SwimmerEnv(Task):
         recordings: Any = "recordings",
         swimmers: int | None = None,
         threads: int = 1,
+        flow: Flow | Callable[[np.random.Generator], Flow | None] | None = None,
         **numbers: Any,
     ):
         super().__init__(body, scene, action, () if swimmers is None else (swimmers,), numbers)
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(not_one_of("render_mode", render_mode, self.metadata["render_modes"]))
-        self.render_mode = render_mode
+        if not (flow is None or isinstance(flow, Flow) or callable(flow)):
+            raise ValueError(f"flow must be a Flow, or a function of random numbers that draws one, got {shown(flow)}")
+        self.render_mode, self.flow = render_mode, flow
         self.metadata = self.metadata | {"render_fps": round(1.0 / self.numbers.control_period)}
         count, stations = swimmers or 1, 51 if render_mode else 2
         self.swimmers = SampledSwimmers(
@@ -148,7 +155,8 @@ class SwimmerEnv(Task):
         rows = self.action.begin_one(index, start.own_time) if self.shape else self.restart(start.own_time)
         rows[3] -= start.left_trim
         twist = (start.roll_rate, 0.0, 0.0, start.speed, 0.0, 0.0)
-        self.swimmers.start(index, start.position, level_orientation(start.heading), twist, rows)
+        flow = self.flow if self.flow is None or isinstance(self.flow, Flow) else self.flow(self.np_random)
+        self.swimmers.start(index, start.position, level_orientation(start.heading), twist, rows, flow)
         self._trim[index], self.ticks[index], self._under_way[index] = start.left_trim, 0, True
         if len(start.goal) != len(self.goal):
             self.goal = np.zeros((len(start.goal), *self.shape))

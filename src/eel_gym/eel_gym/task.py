@@ -166,6 +166,6 @@ def checked_numbers(task: str, kind: type[Episode], given: dict[str, Any]) -> Ep
     known = [item.name for item in fields(kind)]
     for name in given:
         if name not in known:
-            others = "body, scene, accuracy, action, render_mode, recordings"
+            others = "body, scene, accuracy, action, flow, render_mode, recordings"
             raise ValueError(f"task {shown(task)} has no parameter {shown(name)}, it has: {', '.join(known)}, {others}")
     return kind(**given)

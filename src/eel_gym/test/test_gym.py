@@ -14,7 +14,7 @@ from eel_dynamics.simulation.sampled_swimmers import SampledSwimmers
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 
-from eel_dynamics import Scene, Simulation, SimulationStopped
+from eel_dynamics import FlowField, Scene, Shear, Simulation, SimulationStopped, Vortex
 from eel_gaits import Law, Term, helix, straight
 from eel_gym import DepthEnv, HeadingEnv, KnotAction, LawAction, SwimmerEnv, WayPointsEnv
 
@@ -163,13 +163,14 @@ def test_the_body_bends_as_the_action_says():
     assert seen.curvature_rate[(0, -1), 2] == pytest.approx((rate[0], rate[-1]), abs=1e-9)
 
 
-def test_an_environment_swims_as_a_simulation_with_the_same_samples_to_the_bit():
-    env = HeadingEnv(scene=Scene(planar=True))
+@pytest.mark.parametrize("flow", [None, Vortex(circulation=0.2, core=0.8, centre=(-0.5, 0.4, 0.0))])
+def test_an_environment_swims_as_a_simulation_with_the_same_samples_to_the_bit(flow):
+    env = HeadingEnv(scene=Scene(planar=True), flow=flow)
     env.reset(seed=3)
     (start,) = env.starts
     twist, orientation = (0.0, 0.0, 0.0, start.speed, 0.0, 0.0), level_orientation(start.heading)
     settings = {"accuracy": env.swimmers.accuracy, "stations": 2}
-    simulation = Simulation(scene=env.scene, orientation=orientation, twist=twist, **settings)
+    simulation = Simulation(scene=env.scene, orientation=orientation, twist=twist, flow=flow, **settings)
     other = LawAction(straight(), {"left_bend": (-0.5, 0.5)})
     rows, trim = other.begin(start.own_time), np.zeros((6, 21))
     trim[3] = start.left_trim
@@ -179,8 +180,39 @@ def test_an_environment_swims_as_a_simulation_with_the_same_samples_to_the_bit()
         simulation.add_samples(0.02 * k, other.x, *(other.advance(action, 0.02) - trim), waves=other.waves)
         simulation.advance(0.02 * k)
         seen = simulation.observe()
-        assert env.head.position.tolist() == seen.position.tolist()
-        assert env.head.velocity.tolist() == seen.twist[3:].tolist()
+        if flow is None:
+            assert env.head.position.tolist() == seen.position.tolist()
+            assert env.head.velocity.tolist() == seen.twist[3:].tolist()
+        assert np.allclose(env.head.position, seen.position, rtol=0.0, atol=1e-5)
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_each_episode_draws_its_own_flow_from_the_environment_s_random_numbers(threads):
+    drawn = []
+
+    def flow(random):
+        drawn.append(Shear(velocity=(random.uniform(-0.3, 0.3), 0.0, 0.0), width=1.0, centre=(0.0, 0.5, 0.0)))
+        return drawn[-1]
+
+    envs = gymnasium.make_vec("Eel/Heading-v0", num_envs=3, threads=threads, flow=flow)
+    envs.reset(seed=11)
+    for _ in range(5):
+        envs.step(np.zeros((3, 1)))
+    envs.close()
+    first = list(drawn)
+    assert len(set(first)) == 3
+    still = swum(HeadingEnv(), np.zeros((20, 1)), seed=11)
+    moved = swum(HeadingEnv(flow=flow), np.zeros((20, 1)), seed=11)
+    again = swum(HeadingEnv(flow=lambda random: flow(random)), np.zeros((20, 1)), seed=11)
+    assert drawn[3] == first[0] and np.array_equal(moved, again) and not np.allclose(moved, still)
+
+
+def test_a_flow_that_does_not_fit_side_by_side_is_named():
+    with pytest.raises(ValueError, match="flow must be a Flow, or a function of random numbers"):
+        HeadingEnv(flow=3.0)
+    for flow, told in ((FlowField(lambda x, t: 0.0 * x), "no functions"), (Vortex(core=0.05), "at most 2 waves")):
+        with pytest.raises(ValueError, match=f"flow must have {told}"):
+            HeadingEnv(flow=flow).reset(seed=1)
 
 
 def test_the_grid_fits_the_waves_of_the_action():

@@ -4,6 +4,7 @@
 from dataclasses import replace
 
 import numpy as np
+from eel_base.wording import shown
 from numpy.typing import NDArray
 
 import eel_core
@@ -12,17 +13,20 @@ from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
 from eel_dynamics.accuracy.step_bounds import step_bounds_of
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
+from eel_dynamics.flow.flow import Flow, core_flow, parts_of
+from eel_dynamics.flow.functions import FlowField
 from eel_dynamics.model.body import Body
-from eel_dynamics.model.initial_state import time_scale
+from eel_dynamics.model.initial_state import InitialState, time_scale
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.discretisation import discretise
 from eel_dynamics.simulation.march import MARCHED, SINGULAR, UNFINISHED
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
-from eel_dynamics.simulation.simulation_setup import checked_state
+from eel_dynamics.simulation.simulation_setup import check_flow, checked_state
 from eel_dynamics.simulation.stopping import SimulationStopped, stopped_by
 
 LEFT_OUT = -1
+MOST_WAVES = 2.0  # of a flow on the body: the nodes resolve as many at the least
 
 Array = NDArray[np.float64]
 
@@ -92,19 +96,32 @@ class SampledSwimmers:
             0.0, self._points, tuple(rows), waves=self._waves, length=length, planar=planar, now=0.0, begun=False
         )
 
-    def start(self, index: int, position, orientation, twist, rows: Array) -> None:
+    def start(self, index: int, position, orientation, twist, rows: Array, flow: Flow | None = None) -> None:
         """Put a swimmer at the start, straight, at time 0, where its sample has the `rows` (6, n).
 
-        position, orientation, twist: as of `Simulation`.
+        position, orientation, twist, flow: as of `Simulation`; a `FlowField` is refused, for Python runs in one thread.
+        The nodes stay those of the samples: `ValueError` for a flow that asks for more.
         """
         self.check(rows)
         state = checked_state(self.scene, position, orientation, twist)
-        relative = state.in_water(self._setup.current)
-        self._bounds[index] = bounds = self._bounds_of(relative)
-        energy = self._marches.start(index, bounds, state.position, state.orientation, relative, rows)
+        relative, water = state.in_water(self._setup.current), self._water_of(flow, state)
+        scale = np.inf if flow is None else flow.time_scale
+        self._bounds[index] = bounds = self._bounds_of(relative, scale)
+        energy = self._marches.start(index, bounds, state.position, state.orientation, relative, rows, water)
         if not (np.isfinite(energy) and self._marches.put_head(index, self.heads)):
             raise SimulationStopped(0.0, "kinetic energy", energy, "start slower")
         self._energy_at_start[index] = energy
+
+    def _water_of(self, flow: Flow | None, state: InitialState) -> eel_core.Flow | None:
+        if flow is None:
+            return None
+        check_flow(flow, self.scene, state)
+        if any(isinstance(part, FlowField) for part in parts_of(flow)):
+            raise ValueError(f"flow must have no functions where many swim side by side, got {shown(flow)}")
+        waves = self.body.length / flow.shortest_wave
+        if waves > MOST_WAVES:
+            raise ValueError(f"flow must have at most {MOST_WAVES:g} waves on the body, got {waves:.3g}: {shown(flow)}")
+        return core_flow(flow, bool(self.scene.planar))
 
     def advance(self, times: Array, rows: Array, status: NDArray[np.int64]) -> dict[int, SimulationStopped]:
         """March each swimmer to its own of the `times` (N,) [s], where its sample has its `rows` (N, 6, n).
@@ -140,7 +157,7 @@ class SampledSwimmers:
     def _stopped(self, index: int, status: int) -> SimulationStopped:
         return stopped_by(status, self._marches.present(index)[0], self._bounds[index], self.accuracy)
 
-    def _bounds_of(self, twist: Array) -> eel_core.StepBounds:
+    def _bounds_of(self, twist: Array, flow_scale: float = np.inf) -> eel_core.StepBounds:
         """The bounds of the steps of a swimmer that starts with this `twist` (6,) relative to the water."""
         length, discretisation = self.body.length, self._discretisation
         return step_bounds_of(
@@ -151,6 +168,6 @@ class SampledSwimmers:
             mass=discretisation.mass,
             length=length,
             speed=0.0,
-            scale=min(time_scale(twist, length), discretisation.weight_time),
+            scale=min(time_scale(twist, length), discretisation.weight_time, flow_scale),
             most_evaluations=self._setup.most_evaluations,
         )

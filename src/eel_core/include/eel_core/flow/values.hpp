@@ -30,6 +30,8 @@ class FlowValues {
             place_ = Field<Vector3<double>>(blocks), in_world_ = Field<WaterAt<double>>(blocks);
             here_ = Field<FlowSample<M, double>>(blocks);
         }
+        const auto alone = [&](const auto& each) { return set_alone(each, water, time, nose, head, position); };
+        if (water.flow->sources.size() == 1 && std::visit(alone, water.flow->sources.front())) return;
         for (std::size_t k = 0; k < blocks; ++k) place_.store(k, placed(nose, head.parent(position[k])));
         WaterAt<double> at_nose{};
         bool first = true;
@@ -60,6 +62,29 @@ class FlowValues {
         s.u_t += s.g.times(current);
         const FlowSample<M, T> part = part_in(M(), s);
         return {head.local(part.u), head.local(part.u_t), part.g.in(head)};
+    }
+
+    // Sets all at once from the only source; false where that is evaluated point by point.
+    template <class Source>
+    bool set_alone(const Source& source, const Water& water, double time, const Vector3<double>& nose,
+                   const Frame<M, double>& head, const Field<Vector<M, double>>& position)
+    {
+        const auto& now = source.at(time);
+        for (std::size_t k = 0; k < here_.stride() / width - 1; ++k)
+            here_.store(k, turned(now(placed(nose, head.parent(position[k]))), water.current, head));
+        nose_ = turned(now(nose), water.current, head);
+        outside_.reset();
+        return true;
+    }
+    bool set_alone(const GriddedFlow&, const Water&, double, const Vector3<double>&, const Frame<M, double>&,
+                   const Field<Vector<M, double>>&)
+    {
+        return false;
+    }
+    bool set_alone(const FunctionFlow&, const Water&, double, const Vector3<double>&, const Frame<M, double>&,
+                   const Field<Vector<M, double>>&)
+    {
+        return false;
     }
 
     template <class Source>

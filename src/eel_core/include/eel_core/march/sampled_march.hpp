@@ -61,6 +61,9 @@ class SampledMarch {
     March& march() { return march_; }
     const March& march() const { return march_; }
 
+    // Lets the water move by a flow, from the next start on; none: not by itself. It may be no function of Python.
+    void set_flow(std::shared_ptr<const Flow> flow) { flow_ = std::move(flow); }
+
     // Stands at the start, straight, with the head's twist relative to the water; `values`: the sample at time 0.
     // Returns the kinetic and potential energy [J].
     double start(const StepBounds& bounds, const Vector3<double>& position, const Quaternion<double>& orientation,
@@ -153,11 +156,12 @@ class SampledMarch {
 
     void follow(std::vector<double> breakpoints, bool smoothly)
     {
-        march_.follow({law_, std::move(breakpoints), bounds_, kind_->ledger, {kind_->current}}, smoothly);
+        march_.follow({law_, std::move(breakpoints), bounds_, kind_->ledger, {kind_->current, flow_}}, smoothly);
     }
 
     std::shared_ptr<const SampledKind> kind_;
     March march_;
+    std::shared_ptr<const Flow> flow_;
     std::shared_ptr<LawTables> tables_;  // of the quintic, then of the blend
     LawOnGrid law_;
     StepBounds bounds_{};
