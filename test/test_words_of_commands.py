@@ -21,6 +21,7 @@ GIVEN = {  # each with an argument that does not fit, as long as can be
     "tradeoff": ["eel", "tradeoff", LONG],
     "stability": ["eel", "stability", "--study", LONG],
     "steering": ["eel", "steering", "--points", LONG],
+    "drafting": ["eel", "drafting", "--phases", LONG],
     "figures": ["eel", "figures", LONG],
     "replay": ["eel", "replay", LONG],
     "render": ["eel", "render", LONG, "-o", "picture.png"],

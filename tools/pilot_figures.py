@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """How well the pilot swims: random courses, held courses and stations. `make pilot` writes the table of
-docs/howto/pilot.md and its picture; `--courses N` swims fewer than 100 of each.
+docs/howto/pilot.md and its picture; `--courses N` swims fewer than 100 of each, `--water N` other than 12.
 """
 
 import argparse
@@ -16,6 +16,7 @@ from eel_base.files import markdown
 from eel_gaits.pilot.settings import PilotSettings
 from eel_studies.pictures import BLUE, ORANGE, write_picture
 from eel_studies.pilot.courses import figures_of, random_path, swim_path
+from eel_studies.pilot.moving_water import figures_in
 from matplotlib.patches import Circle
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -62,6 +63,27 @@ def table(courses: int, processes: int) -> str:
     return f"{told}\n\n{markdown.table(['', *heads], cells)}"
 
 
+WATER = (  # figures of WaterFigures: name, factor of the unit
+    ("station in a shear: greatest distance in the last 30 s [cm]", "station", 100.0),
+    ("course across a street of vortices: greatest error of the heading [degrees]", "heading", math.degrees(1.0)),
+    ("the same, in the last 10 s, beyond the street", "after", math.degrees(1.0)),
+    ("depth held below waves: greatest error in the last 30 s [cm]", "depth", 100.0),
+    ("radius on which the waves move the water there [cm]", "orbit", 100.0),
+)
+
+
+def water_table(tasks: int, processes: int) -> str:
+    """The figures of so many `tasks` of each kind in water that moves, as Markdown."""
+    with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
+        found = list(pool.map(figures_in, range(tasks)))
+    rows = []
+    for told, name, factor in WATER:
+        values = factor * np.array([getattr(each, name) for each in found])
+        rows.append((told, f"{np.median(values):.2g}", f"{np.max(values):.2g}"))
+    told = f"{tasks} random tasks of each kind, seeds 0 to {tasks - 1}, without a keel."
+    return f"{told}\n\n{markdown.table(['', 'median', 'greatest'], rows)}"
+
+
 def draw(path: Path):
     """One course from above and from the side: way points, tubes of tolerance, the head's path."""
     settings = PilotSettings()
@@ -89,14 +111,21 @@ def main() -> int:
     """Swim, and write the page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--courses", type=int, default=100)
+    parser.add_argument("--water", type=int, default=12, help="tasks of each kind in water that moves")
     parser.add_argument("--processes", type=int, default=2)
     options = parser.parse_args()
     page = PAGE.read_text(encoding="utf-8")
-    markdown.with_part(page, "pilot", "")  # refused before the swims
-    draw(PICTURE)
-    text = table(options.courses, options.processes)
-    markdown.write_page(PAGE, markdown.with_part(page, "pilot", text))
-    print(text)
+    for part in ("pilot", "water"):
+        markdown.with_part(page, part, "")  # refused before the swims
+    if options.courses:
+        draw(PICTURE)
+    parts = {"pilot": (table, options.courses), "water": (water_table, options.water)}
+    for part, (made, count) in parts.items():
+        if count:  # 0: as it was
+            text = made(count, options.processes)
+            page = markdown.with_part(page, part, text)
+            print(text)
+    markdown.write_page(PAGE, page)
     return 0
 
 

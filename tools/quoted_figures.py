@@ -23,6 +23,7 @@ WRITTEN_WHOLE = (
     "docs/appendix/tradeoff.md",
     "docs/explanation/accuracy.md",
     "docs/explanation/steering.md",
+    "docs/explanation/drafting.md",
     "docs/figures/README.md",
 )  # by commands of their own
 MARKED = re.compile(r"<!-- ([a-z]+): written by `(.*?)`.*? -->\n(.*?)<!-- end of \1 -->", re.DOTALL)

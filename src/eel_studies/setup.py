@@ -44,6 +44,7 @@ setup(
             "identify = eel_studies.identification.command",
             "steering = eel_studies.steering.command",
             "motors = eel_studies.motors.command",
+            "drafting = eel_studies.drafting.command",
             "terms = eel_studies.scene_terms.command",
             "tradeoff = eel_studies.tradeoff.command",
             "stability = eel_studies.stability.command",

@@ -199,7 +199,7 @@ def warnings_of(run) -> tuple[str, ...]:
         limits.of_contact(run.time, run.curvature, run.backbone, run.section_orientation),
         limits.of_speed(speed),
         "" if run.flow is None else limits.of_flow(run.flow, run.time, placed.backbone, placed.section_orientation),
-        limits.of_tail(run.energy.wake_power[later]) if run.energy is not None else "",
+        limits.of_tail(run.energy.wake_power[later]) if run.energy is not None and run.flow is None else "",
         limits.of_ledger(run.energy, ledger_tolerance(run.accuracy.target), floor) if run.energy is not None else "",
     ]
     return tuple(text for text in found if text)

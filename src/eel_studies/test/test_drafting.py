@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The study of a swimmer behind a cylinder: its street, its measures, its page."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from eel_studies.drafting import command, study
+from eel_studies.drafting.study import Wake, swim
+
+from eel_dynamics import Uniform
+
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "explanation" / "drafting.md"
+
+
+@pytest.fixture
+def short(monkeypatch):
+    monkeypatch.setattr(study, "SETTLE", 3)
+    monkeypatch.setattr(study, "MEASURED", 2)
+
+
+def test_the_street_is_von_karman_s():
+    """The rows carry each other at half of circulation / spacing, times a tanh; that is the water's mean in between."""
+    wake = Wake(speed=0.8, spacing=1.2)
+    x = np.linspace(10.0, 11.2, 241)[:-1]
+    water = wake.flow(0.3).sample(np.stack([x, 0 * x, 0 * x], axis=1))
+    assert water.velocity[:, 0].mean() == pytest.approx(wake.mean, rel=0.02)  # of a street that ends
+    assert abs(water.velocity[:, 1].mean()) < 5e-3
+    assert wake.circulation / (2 * wake.spacing) * np.tanh(np.pi * study.WIDTH) == pytest.approx(
+        study.FOLLOWING * wake.speed, rel=1e-3
+    )
+    assert wake.diameter * (1 - study.FOLLOWING) / study.STROUHAL / wake.diameter == pytest.approx(4.25)
+
+
+def test_uniform_water_carries_the_swimmer_along_at_the_same_power(short, monkeypatch):
+    monkeypatch.setattr(study, "SETTLE", 14)
+    still, carried = swim(None), swim(Uniform((0.3, 0.0, 0.0)), 0.3)
+    assert carried.relative == pytest.approx(still.speed, rel=1e-2)  # it starts against the water
+    assert carried.power == pytest.approx(still.power, rel=5e-2)
+
+
+def test_the_command_writes_table_picture_and_numbers(short, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(command, "SPACINGS", (1.0, 2.0))
+    page = tmp_path / "drafting.md"
+    page.write_text(PAGE.read_text())
+    assert command.main(["--phases", "1", "--page", str(page), "--out", str(tmp_path)]) == 0
+    assert "spacing 1 m: cylinder 0.24 m" in capsys.readouterr().out
+    text = page.read_text()
+    assert (tmp_path / "drafting.png").is_file() and "![Behind a cylinder](drafting.png)" in text
+    assert "| 1 | 0.24 | 0.12 |" in text and "| 2 | 0.47 | 0.24 |" in text
+    assert command.main(["--phases", "0"]) == 2
