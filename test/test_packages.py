@@ -25,6 +25,7 @@ EXECUTABLES = {
         "midlines",
         "laws",
         "life",
+        "motors",
         "optimise",
         "sweep",
         "stability",

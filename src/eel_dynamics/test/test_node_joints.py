@@ -74,7 +74,9 @@ def test_a_controller_of_joints_runs_in_lockstep_and_each_time_alike(start, clie
     digests = []
     for _ in range(3):
         swim = client(topics=("joint_states", "head_pose"))
-        node = start("dynamics", *FAST, "-p", "duration:=1.5", "-p", "subscriber_timeout:=60")
+        node = start(
+            "dynamics", *FAST, "-p", "duration:=1.5", "-p", "subscriber_timeout:=60", "-p", "estimate_error:=false"
+        )
         controller = Controller(swim)
 
         def done(controller=controller, swim=swim):
