@@ -4,7 +4,6 @@
 import numpy as np
 
 from eel_dynamics.analysis.analysis import Analysis
-from eel_dynamics.analysis.peaks import peak_along
 from eel_dynamics.analysis.trim import trim_of
 from eel_dynamics.robot.actuators import at_limit
 
@@ -34,8 +33,7 @@ def _of_the_run(run) -> list[str]:
     if run.scene.weight:
         lines.append(f"weight              {trim_of(run.body, run.scene).about()}")
     if run.torque is not None:
-        # of a robot, whose joints have a state of their own, from the samples
-        size, x, time = run.greatest_torque() if run.robot is None else peak_along(run.time, run.x, run.torque)
+        size, x, time = run.greatest_torque()
         lines.append(f"greatest torque     {size:.4g} N m at X = {x:.3f} m, t = {time:.3f} s")
     if run.robot is not None and run.robot.joints:
         joint = np.unravel_index(np.argmax(np.abs(run.motor_torque)), run.motor_torque.shape)[1]
@@ -100,16 +98,14 @@ def _of_the_power(a: Analysis) -> list[str]:
         lines[0] += (
             f"; positive part: mean {a.positive_actuator_power:.4g} W, peak {a.peak_positive_actuator_power:.4g} W"
         )
-    bent = run.robot is not None  # its shape is not that of a law: the parts of its drag are not told apart
-    friction = "" if bent else f"axial friction {a.friction_power:.4g} W, "
     return [
         *lines,
-        f"power of the water  wake {a.wake_power:.4g} W, {friction}nose {a.nose_power:.4g} W",
+        f"power of the water  wake {a.wake_power:.4g} W, axial friction {a.friction_power:.4g} W, "
+        f"nose {a.nose_power:.4g} W",
         f"cost of transport   {shown(a.cost_of_transport, '.4g', 'J/(kg m)')}, by the weight "
         f"{shown(a.specific_cost_of_transport)}",
-        f"efficiency          hydromechanical {shown(a.hydromechanical_efficiency)}"
-        + ("" if bent else f", propulsive {shown(a.propulsive_efficiency)}")
-        + (" (the tail leads)" if a.tail_leads else ""),
+        f"efficiency          hydromechanical {shown(a.hydromechanical_efficiency)}, "
+        f"propulsive {shown(a.propulsive_efficiency)}" + (" (the tail leads)" if a.tail_leads else ""),
     ]
 
 
