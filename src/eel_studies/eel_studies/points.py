@@ -7,6 +7,7 @@
 | `scene.fluid_density`, ... | a field of `Scene` |
 | `body` | a `Body`, or the name of one |
 | `body.lateral_drag`, ... | a number of `Body` |
+| `flow`, `flow.spacing`, ... | a `Flow`, or its text as of `eel simulate --flow`; a field of it |
 | `accuracy` | as in `simulate` |
 | `initial.position_x`, `_y`, `_z` | head at the start [m], world |
 | `initial.omega_x`, ..., `initial.v_z` | twist of the head at the start [rad/s, m/s], its axes |
@@ -22,6 +23,9 @@ from eel_base.wording import did_you_mean, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import measures_of
+from eel_dynamics.flow.flow import Flow
+from eel_dynamics.flow.plain import KINDS
+from eel_dynamics.flow.text import flow_from_text
 from eel_dynamics.model.body import NUMBERS, Body, checked_body
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.scene import Scene
@@ -38,6 +42,7 @@ AccuracyLike = str | float | Accuracy
 Stations = int | np.ndarray
 Progress = Callable[[int, int], object] | bool | None  # as in `sweep`
 GROUPS = "scene.", "body.", "initial."  # what begins a name of theirs
+FLOW = "flow."
 POSITIONS = ("position_x", "position_y", "position_z")
 VELOCITIES = ("omega_x", "omega_y", "omega_z", "v_x", "v_y", "v_z")
 
@@ -122,15 +127,17 @@ def _named(value: object) -> bool:
 
 
 def _point(values: Numbers, gait: Gait, base: Swim) -> Swim:
-    body, accuracy = base.body, base.accuracy
+    body, accuracy, flow = base.body, base.accuracy, base.flow
     own: dict[str, Any] = {}
-    groups: dict[str, dict[str, Any]] = {group.rstrip("."): {} for group in GROUPS}
+    groups: dict[str, dict[str, Any]] = {group.rstrip("."): {} for group in (*GROUPS, FLOW)}
     for name, value in values.items():
         group, _, field = name.partition(".")
         if field and group in groups:
             groups[group][field] = value
         elif name == "body":
             body = Body.named(value) if isinstance(value, str) else value
+        elif name == "flow":
+            flow = flow_from_text(value) if isinstance(value, str) else value
         elif name == "accuracy":
             accuracy = Accuracy.of(value)
         else:
@@ -140,7 +147,19 @@ def _point(values: Numbers, gait: Gait, base: Swim) -> Swim:
     law = (find(gait) if isinstance(gait, str) else gait)(**own)
     body = body.changed(**groups["body"]) if groups["body"] else body
     scene, start = replace(base.scene, **groups["scene"]), _start(base.start, groups["initial"])
-    return base._replace(law=law, body=body, scene=scene, accuracy=accuracy, start=start)
+    flow = _flow_with(flow, groups["flow"])
+    return base._replace(law=law, body=body, scene=scene, accuracy=accuracy, start=start, flow=flow)
+
+
+def _flow_with(flow: Flow | None, changes: Numbers) -> Flow | None:
+    """The `flow` with other fields; of a sum, whose parts may have the same, none can be changed."""
+    if not changes:
+        return flow
+    known = [item.name for item in fields(flow)] if type(flow) in KINDS.values() else []  # type: ignore[arg-type]
+    if not known:
+        raise ValueError(f"flow must be one built-in flow for {', '.join(changes)} to change, got {shown(flow)}")
+    check_names("flow", changes, known)
+    return replace(flow, **changes)  # type: ignore[type-var]
 
 
 def _start(start: InitialState, changes: Numbers) -> InitialState:

@@ -5,10 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_studies.drafting import command, study
 from eel_studies.drafting.study import Wake, swim
+from eel_studies.points import SwimSettings, base_point, batch_of_points, point_at
 
-from eel_dynamics import Uniform
+from eel_dynamics import Uniform, VortexStreet
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "explanation" / "drafting.md"
 
@@ -49,3 +51,16 @@ def test_the_command_writes_table_picture_and_numbers(short, tmp_path, monkeypat
     assert (tmp_path / "drafting.png").is_file() and "![Behind a cylinder](drafting.png)" in text
     assert "| 1 | 0.24 | 0.12 |" in text and "| 2 | 0.47 | 0.24 |" in text
     assert command.main(["--phases", "0"]) == 2
+
+
+def test_a_sweep_varies_the_numbers_of_a_flow():
+    base = base_point(None, None, Accuracy.of("draft"))
+    flow = "vortex_street core=0.3"
+    point = point_at({"flow.spacing": 2.0, "period": 0.9}, "straight", {"flow": flow}, base)
+    assert point.flow == VortexStreet(core=0.3, spacing=2.0)
+    with pytest.raises(ValueError, match="flow has no field 'width_'"):
+        point_at({"flow.width_": 2.0}, "straight", {"flow": flow}, base)
+    with pytest.raises(ValueError, match="flow must be one built-in flow for spacing to change, got"):
+        point_at({"flow.spacing": 2.0}, "straight", {}, base)
+    swims = batch_of_points([point, point._replace(flow=None)], SwimSettings(1.0, 0.25, 2, ("mean_speed",), False))
+    assert not np.allclose(swims.position[0], swims.position[1])

@@ -8,6 +8,7 @@ eel sweep straight --vary body=boyer2010,kern2006 --vary wavelength=0.6:1.2:7 --
 import argparse
 import time
 from functools import partial
+from typing import Any
 
 import numpy as np
 from eel_base.command.command_line import Parser
@@ -38,7 +39,9 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _sweep(options: argparse.Namespace) -> int:
     start = time.perf_counter()
-    numbers, vary = set_numbers(options.set), named_texts("--vary", options.vary)
+    numbers: dict[str, Any] = set_numbers(options.set)
+    numbers |= {"flow": options.flow} if options.flow else {}
+    vary = named_texts("--vary", options.vary)
     check_names([*numbers, *(name for name, _ in vary)])
     grid = {name: varied_values(text, partial(check_points, name)) for name, text in vary}
     data = sweep(
@@ -78,11 +81,19 @@ def _parser() -> Parser:
         description="Simulate every combination of parameters, and keep the measures of each run in a NetCDF file. "
         "After an interruption the same command resumes.",
     )
-    about = "a number of the gait, scene.FIELD, body or accuracy; values a,b,c or start:end:count"
+    about = "a number of the gait, scene.FIELD, flow.FIELD, body or accuracy; values a,b,c or start:end:count"
     add_options(parser, "gait", gait="straight")
     add_repeated(parser, "--vary", "NAME=VALUES", about, required=True)
     add_options(
-        parser, "--set", "--duration", "--accuracy", "--body", "--bare", "--sample-period", duration=UNTIL_SETTLED
+        parser,
+        "--set",
+        "--flow",
+        "--duration",
+        "--accuracy",
+        "--body",
+        "--bare",
+        "--sample-period",
+        duration=UNTIL_SETTLED,
     )
     parser.add_argument("--measures", metavar="NAMES", help=f"what to keep, with commas: {', '.join(MEASURES)} (all)")
     parser.add_argument("-o", "--out", required=True, metavar="FILE.nc", help="NetCDF file; parts lie in FILE.nc.parts")

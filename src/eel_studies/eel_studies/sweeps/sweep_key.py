@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from eel_base.wording import shown
+from eel_dynamics.flow.plain import plain_of_flow
 from eel_dynamics.model.body import DRAGS, MASSES, Body
 from eel_dynamics.model.shapes import NamedHalfAxis
 from eel_dynamics.runs.storage.plain import plain_of
@@ -41,6 +42,7 @@ def key_of(points: list[Swim], how: SwimSettings) -> str:
             bodies[id(point.body)] = _content_of_body(point.body)
         content.update(bodies[id(point.body)])
         content.update(repr((plain_of(point.law), point.scene, point.accuracy)).encode())
+        content.update(repr(plain_of_flow(point.flow)).encode())
         content.update(np.concatenate(point.start).tobytes())
     return content.hexdigest()[:32]
 
