@@ -117,6 +117,11 @@ def test_reynolds_number_counts_the_speed_over_the_water():
     assert any("Reynolds number" in text for text in slow.warnings)
 
 
+def test_the_tail_is_not_judged_by_the_power_of_the_wake_in_water_that_moves():
+    flow = Shear(velocity=(-1.0, 0.0, 0.0), width=5.0, centre=(0.0, -20.0, 0.0))
+    assert not any("the tail leads" in text for text in simulate(straight(), 6.0, flow=flow).warnings)
+
+
 def test_the_tail_leads_in_a_body_that_starts_backwards():
     run = swum(still(), 1.0, twist=(0.0, 0.0, 0.0, -0.5, 0.1, 0.0))
     assert any("the tail leads" in text for text in run.warnings)

@@ -82,6 +82,8 @@ class LimitsMonitor:
             )
 
     def _check_tail(self, time: float, wake_power: float) -> None:
+        if self._simulation.flow is not None:  # the power of the wake is no sign of V1(l) in water that moves
+            return
         law, (begin, end) = self._simulation.law, self._window
         if law is not self._law or begin == math.inf:
             self._law, self._wake_power = law, []
