@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from eel_dynamics import Accuracy, Body, Scene
+from eel_dynamics import Accuracy, Body, Fin, Gust, RollHold, Scene, Shear, Uniform
 from eel_gaits import Law, Ramp, Term, falling, straight
 
 SUDDEN = 0.1  # s, when ramps of a microsecond begin
@@ -127,3 +127,56 @@ def robots_anywhere(count, seed):
 
     laws, scenes, twists = zip(*(swimmer(index) for index in range(count)), strict=True)
     return {"laws": laws, "scenes": scenes, "twists": np.array(twists)}
+
+
+def weighed(body, rng):
+    """The body with up to a third more or less mass than its water, unevenly along it, off its axis."""
+    length, extra, slope = body.length, rng.uniform(-0.3, 0.3), rng.uniform(-0.4, 0.4)
+    x = np.linspace(0.0, length, 65)
+    low = rng.uniform(-0.2, 0.3) * float(body.half_height(x).max())
+
+    def mass(x):
+        area = np.pi * body.half_width(x) * body.half_height(x)
+        return 1000.0 * area * (1.0 + extra + slope * (np.asarray(x) / length - 0.5))
+
+    return body.changed(mass_per_length=mass, centre_of_mass_offset=low)
+
+
+def finned(length, rng):
+    """One to three places of fins, given angles, servos or a hold of the roll among them."""
+    stations = np.sort(rng.uniform(0.15, 0.85, size=rng.integers(1, 4))) * length
+    found = []
+    for station in stations:
+        area, ratio = length**2 * 10.0 ** rng.uniform(-3.7, -2.7), rng.uniform(1.5, 5.0)
+        kind = rng.integers(4)
+        times = np.sort(rng.uniform(0.0, 1.0, size=4)) + np.arange(4) * 0.05
+        angle = (rng.uniform(-0.6, 0.6), (times, rng.uniform(-0.6, 0.6, size=4)), RollHold(2.0, 0.15), 0.4)[kind]
+        lag = {"time_constant": float(rng.uniform(0.03, 0.3))} if kind >= 2 else {}
+        made = Fin.pair(float(station), area, ratio, dihedral=rng.uniform(-0.3, 0.6), angle=angle, **lag)
+        found += list(made) if rng.random() < 0.7 else [made[0]]
+    return found
+
+
+def with_weight_and_fins(count, seed):
+    """Arguments of `simulate` of `count` swimmers that weigh, have fins, or both, in still or moving water; every
+    eighth is planar: neutral, without fins."""
+    rng = np.random.default_rng(seed)
+    flows = [None, None, Gust(velocity=(0.1, -0.2, 0.1)), Shear(velocity=(0.2, 0.0, 0.0), across=(0.0, 1.0, 2.0))]
+    for index in range(count):
+        body = shapes(2, rng)[index % 2]
+        planar, period = index % 8 == 7, float(rng.uniform(0.6, 2.0))
+        size = rng.uniform(0.2, 1.5) / body.length
+        axes = ("yaw",) if planar or index % 2 else ("yaw", "pitch")
+        wave = {"wavelength": body.length * rng.uniform(0.6, 2.0), "period": period}
+        law = Law(*(Term(axis=axis, amplitude=(size,), envelope=(Ramp(0.0, period, 1.0),), **wave) for axis in axes))
+        heavy, steered = not planar and index % 3 != 1, not planar and index % 3 != 0
+        water = Uniform((0.1, 0.1, 0.0)) if planar else flows[index % 4]
+        speed = body.length * rng.uniform(0.2, 0.8)
+        yield {
+            "law": law,
+            "body": weighed(body, rng) if heavy else body,
+            "scene": Scene(planar=planar, weight=heavy or planar, friction=str(rng.choice(["laminar", "printed"]))),
+            "flow": water,
+            "fins": finned(body.length, rng) if steered else None,
+            "twist": (0.0, 0.0, 0.1, speed, 0.0, 0.0),
+        }

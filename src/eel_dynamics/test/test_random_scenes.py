@@ -5,10 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from eel_dynamics.simulation.energy import WORKS
 from eel_dynamics.simulation.sample_check import OPEN
-from random_scenes import anywhere, robots_anywhere
+from random_scenes import anywhere, robots_anywhere, with_weight_and_fins
 
-from eel_dynamics import Scene, Simulation, simulate, simulate_batch
+from eel_dynamics import Scene, Simulation, SimulationStopped, simulate, simulate_batch
 from eel_gaits import Law, Ramp, Term
 
 MOST_STEPS = 100_000  # of half a second or one, where steps are chosen; the worst of 10,000 takes 5e4
@@ -73,6 +74,28 @@ def test_a_swimmer_driven_anywhere_finishes_or_says_why_not(scenes, count, durat
         if aimed[index]:
             of_one = batch.laws[index], batch.bodies[index], batch.scenes[index], batch.accuracies[index]
             assert share_with_ramps(*of_one, cases["twists"][index], duration) < AIMED
+
+
+@pytest.mark.timeout(3600)
+@pytest.mark.parametrize("count", [60, pytest.param(3000, marks=pytest.mark.soak)])
+@pytest.mark.filterwarnings("ignore")
+def test_swimmers_that_weigh_and_have_fins_close_their_ledger(count):
+    """In each combination: the ledger, the wrench at the nose, and an error estimate that says what it is."""
+    stopped = 0
+    for index, arguments in enumerate(with_weight_and_fins(count, seed=count)):
+        try:
+            run = simulate(duration=1.0, accuracy=1e-3, sample_period=0.05, stations=11, **arguments)
+        except SimulationStopped as error:
+            assert error.hint and error.quantity
+            stopped += 1
+            continue
+        energy = run.energy
+        works = sum(np.abs(energy[f"{part}_work"]).max() for part in WORKS)
+        passed = works + energy.kinetic_body.max() + energy.kinetic_fluid.max() + np.ptp(energy.potential)
+        assert np.abs(energy.residual).max() < 1e-2 * passed, index
+        assert run.closure_force.max() < 1e-10 * max(np.abs(run.force).max(), 1e-9), index
+        assert np.isfinite(run.error_estimate.position) and run.error_estimate.growth_rate is not None, index
+    assert stopped <= count // 20
 
 
 def test_steps_of_adams_that_stability_keeps_short_fall_in_order():

@@ -20,6 +20,7 @@ import eel_core
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 
+COMMANDED = "commanded"  # angle of a fin that follows commands
 SIDES = {"right": 1.0, "left": -1.0}  # along axis 2 of the sections
 APART = 1e-9  # of the body's length: stations that are closer count as one place
 Table = tuple[tuple[float, ...], tuple[float, ...]]  # times [s], angles [rad]
@@ -46,10 +47,10 @@ class Fin:
 
     station: X [m] of its hinge, inside the body. side: "left" or "right". area [m^2]. aspect_ratio: effective, twice
     span^2 by area. dihedral [rad]: how much its tip rises. angle: [rad], or (times [s], angles [rad]), which a smooth
-    spline joins, or a `RollHold`; above 0 the leading edge rises. time_constant [s]: of the servo that follows the
-    angle; None: none, the fin has the angle. limit [rad]: of the servo. lift_slope: of sine times cosine of the
-    incidence; None: Whicker's and Fehlner's. normal_drag, friction_drag: coefficients of a plate across the stream and
-    along it. efficiency: of its lift, in the induced drag.
+    spline joins, a `RollHold`, or "commanded": what `Simulation.command_fins` asks for, 0 at first; above 0 the leading
+    edge rises. time_constant [s]: of the servo that follows the angle; None: none, the fin has the angle. limit [rad]:
+    of the servo. lift_slope: of sine times cosine of the incidence; None: Whicker's and Fehlner's. normal_drag,
+    friction_drag: coefficients of a plate across the stream and along it. efficiency: of its lift, in the induced drag.
     """
 
     station: float
@@ -75,8 +76,9 @@ class Fin:
         values["angle"] = _checked_angle(self.angle)
         if self.time_constant is not None:
             values["time_constant"] = positive("fin time_constant", self.time_constant, "s")
-        elif isinstance(self.angle, RollHold):
-            raise ValueError("fin time_constant must be given for a RollHold, in s, got none")
+        elif isinstance(self.angle, RollHold) or self.angle == COMMANDED:
+            kind = "a RollHold" if self.angle != COMMANDED else "a commanded fin"
+            raise ValueError(f"fin time_constant must be given for {kind}, in s, got none")
         if self.lift_slope is not None:
             values["lift_slope"] = number("fin lift_slope", self.lift_slope, minimum=0.0)
         for name in ("normal_drag", "friction_drag"):
@@ -130,12 +132,12 @@ class Fin:
     @property
     def servo(self) -> tuple:
         """What turns it: fins that are equal in this have one servo."""
-        held = isinstance(self.angle, RollHold)
-        return self.angle, self.time_constant, self.limit, self.station if held else None
+        own: Any = self.name if self.angle == COMMANDED else None
+        return self.angle, self.time_constant, self.limit, self.station if isinstance(self.angle, RollHold) else own
 
 
 def _checked_angle(angle: Any) -> Any:
-    if isinstance(angle, RollHold):
+    if isinstance(angle, RollHold) or (isinstance(angle, str) and angle == COMMANDED):
         return angle
     if is_finite(angle):
         return number("fin angle", angle, "rad")
@@ -145,7 +147,7 @@ def _checked_angle(angle: Any) -> Any:
         time, values = angle
     except (TypeError, ValueError):
         raise ValueError(
-            f"fin angle must be a number in rad, (times, angles) or a RollHold, got {shown(angle)}"
+            f"fin angle must be a number in rad, (times, angles), a RollHold or commanded, got {shown(angle)}"
         ) from None
     time, values = checked_row("fin angle times", time, None), checked_row("fin angle angles", values, None)
     if len(time) < 2 or np.any(np.diff(time) <= 0.0) or len(values) != len(time):
@@ -226,9 +228,22 @@ def core_fins(body: Body, scene: Scene, grid, x: np.ndarray, fins: tuple[Fin, ..
     return rows, turns
 
 
-def given_angles(fins: tuple[Fin, ...]) -> list[tuple[np.ndarray, np.ndarray]]:
-    """What each servo is given: knots (n,) [s] and coefficients (n - 1, 4) of cubics [rad], from the constant on."""
-    return [_cubics(angle) for angle, *_ in servos_of(fins)]
+def given_angles(fins: tuple[Fin, ...], commands: dict[str, float]) -> list[tuple[np.ndarray, np.ndarray]]:
+    """What each servo is given: knots (n,) [s] and coefficients (n - 1, 4) of cubics [rad], from the constant on.
+
+    commands: [rad] by the names of commanded fins."""
+    return [
+        _cubics(commands.get(where, 0.0) if angle == COMMANDED else angle) for angle, _, _, where in servos_of(fins)
+    ]
+
+
+def checked_commands(fins: tuple[Fin, ...], commands: Any) -> dict[str, float]:
+    """Angles [rad] by the names of commanded `fins`. `ValueError` for another name, or an angle that is no number."""
+    known = [fin.name for fin in fins if fin.angle == COMMANDED]
+    for name in commands:
+        if name not in known:
+            raise ValueError(not_one_of("commanded fin", name, tuple(known)))
+    return {name: number(f"angle of fin {name}", angle, "rad") for name, angle in commands.items()}
 
 
 def _cubics(angle: Any) -> tuple[np.ndarray, np.ndarray]:

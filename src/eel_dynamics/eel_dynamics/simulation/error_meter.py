@@ -100,6 +100,10 @@ class ErrorMeter:
         self._setup = replace(self._setup, flow=flow)
         self._repeat(lambda companion: companion.change_flow(flow))
 
+    def command_fins(self, commands: dict[str, float]):
+        """As the march has done: `March.command_fins`."""
+        self._repeat(lambda companion: companion.command_fins(commands))
+
     def begin_with(self, march: March, law: Law | SampledLaw, origin: float):
         """As the `march` has done before its start: `March.from_start`."""
         if (there := self._companion) is not None:

@@ -46,6 +46,7 @@ class March:
     def __init__(self, setup: SimulationSetup, settings: GridSettings, needs: ShapeNeeds, law=None, origin=0.0):
         self.setup, self._needs, self._time_scale = setup, needs, setup.time_scale
         self.time, self.settings = 0.0, settings
+        self._commands: dict[str, float] = {}  # rad, of fins
         self.discretisation = self._discretise(settings)
         self.follower = LawFollower(self.discretisation.tabulation, setup.default_transition, law, origin)
         self.core = self._new_core()
@@ -120,6 +121,11 @@ class March:
         self._use(self.settings.at_least(self.setup.grid_for(self._needs)))
         self._hand_over_law()
 
+    def command_fins(self, commands: dict[str, float]):
+        """Have the servos of fins follow these angles [rad] from now on."""
+        self._commands = self._commands | commands
+        self._hand_over_law()
+
     def _fit(self, needs: ShapeNeeds):
         """Make the grid fine enough for the `needs` and, once no finer motion is left, not much finer."""
         wanted = self.setup.grid_for(needs)
@@ -152,7 +158,14 @@ class March:
             breakpoints = sorted({*breakpoints, *knots_of(setup.fins)})
         ledger, flow = bool(setup.scene.ledger), setup.core_flow
         self.core.follow(
-            self.law_on_grid, breakpoints, self._bounds, ledger, setup.current, flow, smoothly, given_angles(setup.fins)
+            self.law_on_grid,
+            breakpoints,
+            self._bounds,
+            ledger,
+            setup.current,
+            flow,
+            smoothly,
+            given_angles(setup.fins, self._commands),
         )
 
     def _step_bounds(self) -> eel_core.StepBounds:

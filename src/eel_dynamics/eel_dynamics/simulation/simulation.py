@@ -3,7 +3,7 @@
 
 import math
 import time as clock
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import replace
 from functools import cache, partial
@@ -28,6 +28,7 @@ from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 from eel_dynamics.flow.flow import Flow
 from eel_dynamics.flow.stream import CurrentStream
 from eel_dynamics.model.body import Body
+from eel_dynamics.model.fins import Fin, checked_commands
 from eel_dynamics.model.grid import Grid
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.scene import Scene
@@ -124,6 +125,11 @@ class Simulation:
     def accuracy(self) -> Accuracy:
         """The settings in force."""
         return self._setup.settings
+
+    @property
+    def fins(self) -> tuple[Fin, ...]:
+        """The fins, each of a pair by itself."""
+        return self._setup.fins
 
     @property
     def grid(self) -> Grid:
@@ -247,6 +253,18 @@ class Simulation:
         self._march.change_flow(flow)
         if self._meter is not None:
             self._meter.change_flow(flow)
+
+    def command_fins(self, commands: Mapping[str, float]) -> None:
+        """Have the servos of commanded fins follow these angles [rad], by `Fin.name`, from the present time on.
+
+        A reset forgets them. `ValueError` for a fin that is not commanded, or an angle that is no number.
+        """
+        angles = checked_commands(self._setup.fins, commands)
+        if self._meter is not None:
+            self._meter.catch_up(self._march)
+        self._march.command_fins(angles)
+        if self._meter is not None:
+            self._meter.command_fins(angles)
 
     def water_at(self, place: ArrayLike) -> np.ndarray:
         """Velocity (3,) [m/s], world, that the water has at a `place` (3,) [m] at present, without the swimmer."""
