@@ -142,7 +142,7 @@ def test_parameters_are_described(start, client):
         and rate.floating_point_range[0].to_value == 1e4
     )
     assert not factor.read_only and factor.floating_point_range[0].from_value == 0.0
-    assert friction.additional_constraints == "one of printed, laminar, blended, none" and friction.description
+    assert friction.additional_constraints == "one of printed, laminar, blended, taylor, none" and friction.description
     assert "[m]" in height.description and not height.floating_point_range  # top-heavy bodies too
 
 

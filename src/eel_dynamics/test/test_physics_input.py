@@ -305,4 +305,4 @@ def test_help_on_a_scene_tells_each_field():
     for item in fields(Scene):
         assert f"{item.name} = {item.default!r}: {item.metadata['description']}" in Scene.__doc__
     assert "kinematic viscosity of the water [m^2/s]; >= 0 m^2/s" in Scene.__doc__
-    assert "c_f(Re); one of printed, laminar, blended, none" in Scene.__doc__
+    assert "c_f(Re); one of printed, laminar, blended, taylor, none" in Scene.__doc__

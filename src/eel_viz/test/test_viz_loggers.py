@@ -319,7 +319,7 @@ def test_nothing_is_shown_that_no_test_compares_with_the_messages(made):
         f"{root}/{part}" for root in (entities.WATER, entities.PATH_WATER) for part in (GRID, LABELS, WALLS, FLOOR)
     }
     compared |= {entities.SHADOW, entities.RUN, entities.LOG, entities.EYES, entities.WHOLE_PATH}
-    compared |= {f"{entities.LEGEND}/{part}" for part in ("bar", "labels", "arrows")}
+    compared |= {f"{entities.LEGEND}/{part}" for part in ("labels", "arrows")}
     compared.add(f"{entities.HEAT_MAP_FRAME}/labels")
     assert changing - {path for path in changing if path.startswith("/__")} == compared
 
