@@ -21,16 +21,23 @@ OWN = {  # relative: below the swimmer's namespace
     "flow_at_head": "geometry_msgs/msg/Vector3Stamped",
     "joint_states": "sensor_msgs/msg/JointState",
     "joint_commands": "sensor_msgs/msg/JointState",
+    "fin_states": "sensor_msgs/msg/JointState",
     "body": "eel_msgs/msg/BodyGeometry",
     "curvature_law": "eel_msgs/msg/CurvatureLaw",
     "curvature_samples": "eel_msgs/msg/CurvatureSamples",
     "current": "geometry_msgs/msg/Vector3Stamped",
+    "fin_command": "sensor_msgs/msg/JointState",
     "goal": "nav_msgs/msg/Path",
 }
 DIAGNOSTICS = "/diagnostics"
 GLOBAL = {"/clock": "rosgraph_msgs/msg/Clock", DIAGNOSTICS: "diagnostic_msgs/msg/DiagnosticArray"}
 LATCHED = ("body", "curvature_law", "goal")  # transient local
-INPUTS = ("curvature_samples", "joint_commands", "current")  # of a controller or a sensor, by its own clock
+INPUTS = (
+    "curvature_samples",
+    "joint_commands",
+    "current",
+    "fin_command",
+)  # of a controller or a sensor, by its own clock
 SAMPLED = tuple(name for name in OWN if name not in (*LATCHED, *INPUTS))  # once a sample
 SWIMMER = "head_pose"  # without publishers of this topic the swimmer has gone
 ENERGY_FIELDS = (  # of an EnergyLedger, in its order

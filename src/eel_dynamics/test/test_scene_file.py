@@ -64,9 +64,7 @@ def test_a_robot_is_a_word(tmp_path):
 
 
 def test_fins_are_words():
-    fins = {
-        "pectoral": {"station": 0.3, "side": "both", "area": 2e-3, "aspect_ratio": 3, "k_p": 1.5, "time_constant": 0.05}
-    }
+    fins = "pair station=0.3 area=2e-3 aspect_ratio=3 k_p=1.5 time_constant=0.05"
     swim = swim_of({"gait": "straight", "fins": fins, "duration": 0.3, "accuracy": 1e-2})
     assert swim.fins == Fin.pair(0.3, 2e-3, 3.0, angle=RollHold(k_p=1.5), time_constant=0.05)
     assert swim_of(words_of(swim)).fins == swim.fins
@@ -74,10 +72,10 @@ def test_fins_are_words():
 
 
 def test_the_words_are_parameters_of_the_nodes(tmp_path):
-    """All but the period of samples, and robot and fins, which the node does not have."""
+    """All but the period of samples."""
     save_scene(load_scene(scene_in(tmp_path)), tmp_path / "again.yaml")
     words = yaml.safe_load((tmp_path / "again.yaml").read_text())["/**"]["ros__parameters"]
-    named = {name for name in WORDS if name not in ("scene", "sample_period", "robot", "fins")}
+    named = {name for name in WORDS if name not in ("scene", "sample_period")}
     assert named <= {*vars(DynamicsParameters()), *Settings.known_names()}
     values = DynamicsParameters.among({**words, "flow": ""})
     assert (values.accuracy, values.duration, values.body) == (1e-3, 2.0, "kern2006")
@@ -122,9 +120,9 @@ def test_cross_flow_is_a_switch_of_the_scene():
         ("flow: gusty", "flow must be one of"),
         ("flow: gust begin=1", "flow Gust has no field 'begin'"),
         ("flow: {a: 3}", "flow must be a str, got {'a': 3}"),
-        ("fins: {a: {station: 0.3, side: up, area: 1, aspect_ratio: 1}}", "fin side must be one of right, left"),
-        ("fins: {a: {station: 0.3, side: left, area: 1}}", "fin a must have the field aspect_ratio"),
-        ("fins: {a: {stations: 0.3}}", "fin a has no field 'stations' (did you mean 'station'?)"),
+        ("fins: up station=0.3", "fins must be one of pair, right, left, got 'up'"),
+        ("fins: left station=0.3 area=1", "fin aspect_ratio must be given"),
+        ("fins: left stations=0.3", "fins left must have fields NAME=NUMBER of station, area"),
         ("robot: nine_servos", "robot must be one of eight_servos"),
         ("initial_position: [1, 2]", "initial position must be 3 numbers, got 2"),
         ("- a list", "its content must be a Mapping"),

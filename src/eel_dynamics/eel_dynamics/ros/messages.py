@@ -102,6 +102,12 @@ class SampleMessages:
             effort = zeros if scene.internal_wrench or robot is not None else []
             joint_state = JointState(name=names, position=zeros, velocity=zeros, effort=effort)
             topics["joint_states"] = joint_state, "", self._fill_joints if robot is None else self._fill_robot
+        if simulation.fins:
+            from sensor_msgs.msg import JointState
+
+            count = [0.0] * len(simulation.fins)
+            names = [fin.name for fin in simulation.fins]
+            topics["fin_states"] = JointState(name=names, position=count, effort=[]), "", self._fill_fins
         self.kinds = {name: type(message) for name, (message, *_) in topics.items()}
         self._topics = {name: (SerialisedMessage(message), fill) for name, (message, _, fill) in topics.items()}
         self._clock = SerialisedMessage(Clock())
@@ -129,6 +135,9 @@ class SampleMessages:
         for stamp in message.stamps:
             stamp[:] = self._nanoseconds
         return message.data()
+
+    def _fill_fins(self, numbers: Numbers, snapshot: Snapshot) -> None:
+        numbers["position"][:] = snapshot.fin_angle
 
     def _fill_pose(self, numbers: Numbers, snapshot: Snapshot) -> None:
         numbers["pose.position"][:], numbers["pose.orientation"][:] = self._head[POSITION], self._head[ORIENTATION]
@@ -247,6 +256,16 @@ def body_message(simulation: Simulation, section_frame: str) -> msg.BodyGeometry
     for name, values in outline(body, simulation.x).items():
         setattr(message, name, array.array("d", values.tolist()))
     return message
+
+
+def fin_command_from_message(message: Any) -> dict[str, float]:
+    """Angles [rad] by the names of fins, of a JointState. `ValueError` for as many positions as names."""
+    if len(message.name) != len(message.position) or not message.name:
+        raise ValueError(
+            f"fin_command must have a position for each name, one or more, got {len(message.name)} names and "
+            f"{len(message.position)} positions"
+        )
+    return dict(zip(message.name, message.position, strict=True))
 
 
 def law_name(data: bytes) -> str:

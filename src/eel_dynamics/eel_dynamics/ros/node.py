@@ -35,6 +35,7 @@ from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.current_subscription import CurrentSubscription
 from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration
+from eel_dynamics.ros.fin_subscription import FinSubscription
 from eel_dynamics.ros.joint_command import JointCommandSubscription, interfaces_of
 from eel_dynamics.ros.law_subscription import LawSubscription
 from eel_dynamics.ros.loop.run_loop import RunLoop
@@ -79,6 +80,7 @@ class DynamicsNode(ParameterNode):
         self._laws = LawSubscription(self, self.run_loop, self._report)
         self._current = CurrentSubscription(self, self.run_loop, self.parameters.values.world_frame, self._report)
         self._subscribe_to_commands(simulation)
+        self._fins = FinSubscription(self, self.run_loop, self._report) if self.parameters.values.fins else None
         pace, requests = self.run_loop.pace, self.run_loop.requests
         self._followed_clock = ClockSubscription(self, pace, requests) if isinstance(pace, FollowedClock) else None
         self._other_nodes = OtherNodes(self, self.resolve_topic_name("head_pose"), Identity.own(), self._report)

@@ -80,6 +80,13 @@ class DynamicsParameters(Quantities):
         0.0,
         **NOW,
     )
+    fins: str = quantity(
+        "",
+        "",
+        "fins: pair, left or right with numbers (pair station=0.2 area=0.001 aspect_ratio=2.5 k_p=2 k_d=0.15 "
+        "time_constant=0.05), several with ' + ' between; angle=commanded follows fin_command; empty: none",
+        **LATER,
+    )
     default_transition: float = quantity(1.0, "s", "blending time of a law that names none", 0.0, 1e4, exclusive=True)
     initial_position: tuple[float, ...] = quantity(
         (0.0, 0.0, 0.0), "m", "of the head at the start, in the world frame", **LATER

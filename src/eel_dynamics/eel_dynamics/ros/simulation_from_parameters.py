@@ -5,6 +5,7 @@ from pathlib import Path
 
 from eel_dynamics.flow.text import flow_from_text
 from eel_dynamics.model.body import Body
+from eel_dynamics.model.fins_text import fins_from_text
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.robot.robot import robot_of
 from eel_dynamics.ros.parameters import DynamicsParameters
@@ -28,6 +29,7 @@ def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene) -> 
         most_evaluations=parameters.most_evaluations,
         measure_error=parameters.estimate_error,
         flow=flow_from_text(parameters.flow),
+        fins=fins_from_text(parameters.fins),
     )
 
 

@@ -33,6 +33,7 @@ from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.actuators import MOST_JOINTS
 from eel_dynamics.flow.text import flow_from_text
 from eel_dynamics.model.body import Body
+from eel_dynamics.model.fins_text import fins_from_text
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.robot.robot import robot_of
 from eel_dynamics.runs.command_options import add_options, body_of, scene_of, set_numbers
@@ -107,6 +108,7 @@ def _swim_of(options, beat: Beat | None) -> Swim:
     more = {
         "flow": flow_from_text(options.flow),
         "robot": robot,
+        "fins": fins_from_text(options.fins),
         "duration": duration,
         "sample_period": options.sample_period,
         "stations": options.stations or STATIONS,
@@ -121,6 +123,7 @@ def _scene_of_file(options) -> Swim:
         *options.scene,
         options.flow,
         options.robot,
+        options.fins,
         options.body,
         options.file,
         options.midlines,
@@ -195,7 +198,7 @@ def _parser() -> Parser:
     parser.add_argument("--unsmoothed", action="store_true", help="do not smooth what was measured")
     duration = None, f"{DURATION:g}; of a file: all of it; of midlines: {UNTIL_SETTLED}"
     add_options(
-        parser, "--scale", "--duration", "--accuracy", "--bare", "--body", "--scene", "--flow", "--robot",
+        parser, "--scale", "--duration", "--accuracy", "--bare", "--body", "--scene", "--flow", "--robot", "--fins",
         "--sample-period",
         duration=duration, accuracy=(None, "standard"),
         body=(None, f"boyer2010; with --midlines {EEL}, as long as the swimmer in the film"),

@@ -175,6 +175,12 @@ OPTIONS = {  # what argparse takes
         "metavar": "ROBOT",
         "help": f"what bends by itself, and follows the law: {', '.join(READY)}, or a .yaml or URDF file",
     },
+    "--fins": {
+        "default": "",
+        "metavar": "FINS",
+        "help": "pair, left or right with numbers, as 'pair station=0.2 area=0.001 aspect_ratio=2.5 k_p=2 k_d=0.15 "
+        "time_constant=0.05', several with ' + ' between: docs/howto/fins.md",
+    },
     "--body": {"default": "boyer2010", "help": f"{', '.join(NAMED)}, or a .csv or .npz file of half-axes"},
     "--accuracy": {
         "default": "standard",

@@ -11,7 +11,7 @@ Its words are the names of the nodes' parameters, below `/**: ros__parameters:` 
     duration: 10.0            # s; of the library "settled" too
     initial_linear_velocity: [0.3, 0, 0]
     flow: shear velocity=0.1,0,0 width=0.5    # several are joined by " + "
-    fins: {pectoral: {station: 0.3, side: both, area: 0.002, aspect_ratio: 3, k_p: 2, time_constant: 0.05}}
+    fins: pair station=0.2 area=0.001 aspect_ratio=2.5    # likewise
     robot: eight_servos       # or a file, whose body is that of the scene unless there is another
 
 A further word is a line of `WORDS`.
@@ -35,7 +35,7 @@ from eel_gaits.gaits.settings import SEQUENCES, Settings
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.flow.text import flow_from_text, text_of_flow
 from eel_dynamics.model.body import Body
-from eel_dynamics.model.fins import Fin, RollHold
+from eel_dynamics.model.fins_text import fins_from_text, text_of_fins
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.settled_duration import until_settled
@@ -149,37 +149,6 @@ def _plain_robot(swim: Swim) -> str:
     return name
 
 
-def _fins(swim: Swim, value: Any) -> dict[str, Any]:
-    """Of each fin by a name of its own the fields of `Fin`; side may be both; k_p, k_d: of a `RollHold`."""
-    found: tuple[Fin, ...] = ()
-    known = [item.name for item in fields(Fin)] + [item.name for item in fields(RollHold)]
-    for name, given in checked_instance("fins", value, Mapping).items():
-        own = dict(checked_instance(f"fin {name}", given, Mapping))
-        for field in own:
-            if field not in known:
-                raise ValueError(f"fin {name} has no field {shown(field)}{did_you_mean(field, known)}")
-        for field in ("station", "side", "area", "aspect_ratio"):
-            if field not in own:
-                raise ValueError(f"fin {name} must have the field {field}")
-        gains = {field: own.pop(field) for field in ("k_p", "k_d") if field in own}
-        own |= {"angle": RollHold(**gains)} if gains else {}
-        sides = ("left", "right") if own.pop("side") == "both" else (given["side"],)
-        found += tuple(Fin(side=side, **own) for side in sides)
-    return {"fins": found}
-
-
-def _plain_fins(swim: Swim) -> dict[str, Any]:
-    found = {}
-    for fin in swim.fins:
-        own = {item.name: getattr(fin, item.name) for item in fields(Fin)}
-        if isinstance(fin.angle, RollHold):
-            own |= {"angle": None, "k_p": fin.angle.k_p, "k_d": fin.angle.k_d}
-        elif isinstance(fin.angle, tuple):
-            raise ValueError(f"fin {fin.name} cannot be written: a scene holds no table of angles")
-        found[fin.name] = {name: value for name, value in own.items() if value is not None}
-    return found
-
-
 def _listed(values: Mapping[str, Any], defaults: Mapping[str, Any]) -> dict[str, Any]:
     """The `values` by name, rows as lists, without those that are None or the default."""
     others = {name: value for name, value in values.items() if value is not None and value != defaults.get(name)}
@@ -221,6 +190,9 @@ WORDS: dict[str, Word] = {
     "initial_orientation": _of_start("orientation"),
     "initial_angular_velocity": _of_start("twist", slice(3)),
     "initial_linear_velocity": _of_start("twist", slice(3, 6)),
-    "fins": Word(_fins, _plain_fins),
+    "fins": Word(
+        lambda swim, value: {"fins": fins_from_text(checked_instance("fins", value, str))},
+        lambda swim: text_of_fins(swim.fins) or None,
+    ),
     "flow": Word(lambda swim, value: {"flow": flow_from_text(checked_instance("flow", value, str))}, _plain_flow),
 }

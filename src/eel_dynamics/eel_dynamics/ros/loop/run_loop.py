@@ -239,6 +239,14 @@ class RunLoop:
         """Have joints of the robot do so from its time on."""
         self.commands.add(command)
 
+    def command_fins(self, commands: dict[str, float]) -> None:
+        """Have fins follow these angles [rad], as `Simulation.command_fins` does."""
+        try:
+            self._simulation.command_fins(commands)
+        except ValueError as error:
+            self._report.event("fin command", f"fin_command refused: {error}", ERROR)
+        self.output.forget_start()
+
     def pause(self, paused: bool) -> None:
         """Pause the run, or continue it."""
         self.gate.pause(paused, self.time)

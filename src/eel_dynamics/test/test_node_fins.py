@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Fins over DDS: the parameter fins, the topics fin_command and fin_states."""
+
+import numpy as np
+import pytest
+from eel_dynamics.model.fins_text import fins_from_text, text_of_fins
+from eel_gaits.ros.messages import law_to_message
+from rclpy.duration import Duration
+from sensor_msgs.msg import JointState
+from swim_client import LIMIT, nanoseconds
+
+from eel_dynamics import Fin, RollHold, Simulation, load_scene, save_scene
+from eel_gaits import straight
+
+PAIR = "pair station=0.2 area=0.001 aspect_ratio=2.5 k_p=2 k_d=0.15 time_constant=0.05"
+RUDDER = "left station=0.5 area=0.001 aspect_ratio=2.5 dihedral=1.2 angle=commanded time_constant=0.1"
+
+
+def place(pose):
+    return [getattr(pose.pose.position, axis) for axis in "xyz"]
+
+
+def test_commands_reach_the_fins_between_two_samples_as_in_the_library(start, client):
+    swim = client(topics=("head_pose",))
+    swim.listen("fin_states", JointState)
+    commands = swim.node.create_publisher(JointState, "fin_command", 10)
+    swim.laws.publish(law_to_message(straight()))
+    node = start("dynamics", "--ros-args", "-p", f"fins:={PAIR} + {RUDDER}")
+    swim.until(lambda: commands.get_subscription_count() > 0, "subscription")
+    swim.until_time(0.1)
+    paused = swim.stop_the_clock("head_pose")
+    commands.publish(JointState(name=["left_500"], position=[0.3]))
+    commands.publish(JointState(name=["right_900"], position=[0.3]))
+    assert commands.wait_for_all_acked(Duration(seconds=LIMIT))
+    node.wait_for_output("fin_command refused", LIMIT)
+    assert swim.pause(False).success
+    swim.until_time(paused + 0.4)
+    library = Simulation(law=straight(), fins=fins_from_text(f"{PAIR} + {RUDDER}"))
+    library.advance(paused)
+    library.command_fins({"left_500": 0.3})
+    states = {nanoseconds(m.header.stamp): m for m in swim.received["fin_states"]}
+    later = [pose for pose in swim.received["head_pose"] if nanoseconds(pose.header.stamp) > 1e9 * paused + 1e6]
+    for pose in later[:20]:
+        stamp = nanoseconds(pose.header.stamp)
+        library.advance(round(stamp / 1e7) / 100.0)
+        assert np.array_equal(place(pose), library.head.position)
+        assert list(states[stamp].name) == ["left_200", "right_200", "left_500"]
+        assert np.array_equal(states[stamp].position, library.observe(False, False).fin_angle)
+    assert states[stamp].position[2] > 0.1
+
+
+@pytest.mark.parametrize("text", ["top station=0.2", "pair station=0.2", "pair station=2 area=0.001 aspect_ratio=2.5"])
+def test_fins_that_do_not_fit_are_refused(start, text):
+    assert start("dynamics", "--ros-args", "-p", f"fins:={text}").wait(LIMIT) == 2
+
+
+def test_the_text_of_fins_is_read_again(tmp_path):
+    fins = fins_from_text(f"{PAIR} + {RUDDER}")
+    assert fins[:2] == Fin.pair(0.2, 1e-3, 2.5, angle=RollHold(2.0, 0.15), time_constant=0.05)
+    assert fins_from_text(text_of_fins(fins)) == fins
+    path = tmp_path / "swim.yaml"
+    path.write_text(f"/**: {{ros__parameters: {{gait: straight, fins: '{PAIR}'}}}}")
+    swim = load_scene(path)
+    assert swim.fins == fins[:2]
+    save_scene(swim, tmp_path / "again.yaml")
+    assert load_scene(tmp_path / "again.yaml").fins == swim.fins
+
+
+@pytest.mark.parametrize(
+    ("commands", "message"),
+    [({"left_1": 0.1}, "fin must be one of left_500"), ({"left_500": np.nan}, "angle of fin left_500 must be")],
+)
+def test_a_command_that_does_not_fit_is_refused(commands, message):
+    simulation = Simulation(law=straight(), fins=fins_from_text(RUDDER))
+    with pytest.raises(ValueError, match=message):
+        simulation.command_fins(commands)
+    with pytest.raises(ValueError, match="fin time_constant must be given for a commanded fin"):
+        Fin(0.2, "left", 1e-3, 2.5, angle="commanded")
