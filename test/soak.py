@@ -22,12 +22,12 @@ import sys
 import rclpy
 from rclpy.qos import HistoryPolicy, QoSProfile
 from eel_viz.bags.definitions import message_class
-from eel_base.topics import OWN, SAMPLED
+from eel_base.topics import OWN, SAMPLED, WHERE_ASKED_FOR
 
 rclpy.init()
 node = rclpy.create_node("listener")
 every = QoSProfile(history=HistoryPolicy.KEEP_ALL)
-counts = dict.fromkeys((topic for topic in SAMPLED if topic != "joint_states"), 0)
+counts = dict.fromkeys((topic for topic in SAMPLED if topic not in WHERE_ASKED_FOR), 0)
 last = {}
 for topic in counts:
     def count(data, topic=topic):

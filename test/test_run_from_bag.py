@@ -49,7 +49,7 @@ def write_bag(folder, run, *, left_out=(), space="", runs=1, laws=1, origin=0, f
         told = diagnostic_array(0.0, "/dynamics", 0, "swimming", {"law": run.law.name, "accuracy": run.accuracy.name})
         add("/diagnostics", GLOBAL["/diagnostics"], serialize_message(told))
         water = {"water_at": lambda place: run.scene.current, "flow": None}
-        swimmer = SimpleNamespace(x=run.x, scene=run.scene, head_errors=None, robot=None, **water)
+        swimmer = SimpleNamespace(x=run.x, scene=run.scene, head_errors=None, robot=None, fins=(), **water)
         sample = SampleMessages(swimmer, DynamicsParameters())
         whole = [*[(0, 7)] * waiting, *((k, k) for k in range(first, len(run.time)))]
         for stamp, k in whole * runs:

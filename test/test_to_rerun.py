@@ -39,7 +39,7 @@ def node_messages(run, statuses):
     yield "body", body_message(run, "section")
     yield "curvature_law", CurvatureLaw(name=run.law.name)
     yield "diagnostics", statuses[0]
-    swimmer = SimpleNamespace(x=run.x, scene=run.scene, head_errors=None, flow=None, robot=None)
+    swimmer = SimpleNamespace(x=run.x, scene=run.scene, head_errors=None, flow=None, robot=None, fins=())
     sample = SampleMessages(swimmer, DynamicsParameters())
     for k, time in enumerate(run.time):
         sample.set_time(round(time * 1e9))

@@ -39,6 +39,7 @@ INPUTS = (
     "fin_command",
 )  # of a controller or a sensor, by its own clock
 SAMPLED = tuple(name for name in OWN if name not in (*LATCHED, *INPUTS))  # once a sample
+WHERE_ASKED_FOR = ("joint_states", "fin_states", "flow_vectors")  # of `SAMPLED`: with joints, fins, a flow
 SWIMMER = "head_pose"  # without publishers of this topic the swimmer has gone
 ENERGY_FIELDS = (  # of an EnergyLedger, in its order
     *("kinetic_body", "kinetic_fluid", "potential"),

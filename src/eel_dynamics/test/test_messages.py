@@ -51,7 +51,7 @@ def with_errors(simulation, errors):
     """What `SampleMessages` reads of a simulation whose errors are estimated."""
     water = simulation.water_at
     return SimpleNamespace(
-        x=simulation.x, scene=simulation.scene, head_errors=errors, water_at=water, flow=None, robot=None
+        x=simulation.x, scene=simulation.scene, head_errors=errors, water_at=water, flow=None, robot=None, fins=()
     )
 
 
@@ -315,7 +315,9 @@ def test_transforms_of_the_stations_turn_section_axes_into_the_world(swum):
     assert [each.child_frame_id for each in messages["/tf"].transforms] == ["base_link"]
     x = snapshot.x
     parameters = DynamicsParameters(publish_tf_stations=True, section_frame="eel1/section", world_frame="eel1/odom")
-    sample = SampleMessages(SimpleNamespace(x=x, scene=Scene(), head_errors=None, flow=None, robot=None), parameters)
+    sample = SampleMessages(
+        SimpleNamespace(x=x, scene=Scene(), head_errors=None, flow=None, robot=None, fins=()), parameters
+    )
     sample.set_time(2_300_000_000)
     head, *stations = filled(sample, "/tf", snapshot).transforms
     assert head.child_frame_id == "base_link" and head.transform == messages["/tf"].transforms[0].transform
