@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from eel_dynamics.analysis.peaks import peak_along, peaks
 
-from eel_dynamics import Scene, Wave, simulate
+from eel_dynamics import Fin, Robot, Scene, Wave, simulate
 from eel_gaits import gait
 
 
@@ -79,6 +79,17 @@ def test_the_greatest_torque_in_waves_is_that_of_a_swim_in_the_same_waves():
     torque = np.linalg.norm(near.torque, axis=2).max(axis=1)
     assert size == pytest.approx(torque.max(), rel=3e-4)  # of 51 stations, none need lie at the peak
     assert time == pytest.approx(near.time[np.argmax(torque)], abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    "swimmer", [{"fins": Fin.pair(0.2, 2e-3, 2.5, angle=0.4)}, {"robot": Robot.named("eight_servos")}], ids=str
+)
+def test_the_greatest_torque_is_that_of_the_whole_swimmer(swimmer):
+    """With fins, and of a robot, as of ten times the samples."""
+    run = simulate(gait("straight"), 2.0, accuracy=1e-3, estimate=False, **swimmer)
+    fine = np.linalg.norm(run.finely_sampled().torque, axis=2).max()
+    size, _, _ = run.greatest_torque()
+    assert fine * (1.0 - 1e-9) <= size < fine * 1.002  # between samples and stations it may be a little more
 
 
 def test_a_run_of_one_sample_has_its_torque():

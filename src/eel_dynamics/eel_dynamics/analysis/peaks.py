@@ -3,11 +3,11 @@
 
 With 20 samples in a period the greatest sample of the torque lies below its peak by 2 % (median of all gaits; at most
 3 %). A spline of degree 5 misses it by 3e-4 (at most 4e-3: ramps and drag have kinks), with 100 samples by some 1e-5.
-So the greatest torque of all is that of a swim anew: from the state at a sample (in a flow, from the start), through
-the three sample periods around the peak of the spline. The peaks of a window, of single stations, of joints and of
-power are those of splines through ten times the samples (`Run.finely_sampled`): to 4e-5 or better, as exact as the
-run. A run of more than a thousand samples has fewer than ten times as many, and one that was recorded elsewhere its
-own: those of power may then be 2 % off at 20 samples in a period.
+So the greatest torque of all is that of a swim anew: from the state at a sample (where that does not tell how it goes
+on, from the start), through the three sample periods around the peak of the spline. The peaks of a window, of single
+stations, of joints and of power are those of splines through ten times the samples (`Run.finely_sampled`): to 4e-5 or
+better, as exact as the run. A run of more than a thousand samples has fewer than ten times as many, and one that was
+recorded elsewhere its own: those of power may then be 2 % off at 20 samples in a period.
 """
 
 import numpy as np
@@ -54,21 +54,26 @@ def peaks(x: np.ndarray, values: np.ndarray, size=np.abs, start=-np.inf, end=np.
 def greatest_torque_of(run) -> tuple[float, float, float]:
     """Greatest magnitude [N m] of the internal torque of `run`, with its X [m] and its time [s].
 
-    A run is not swum anew if it was recorded elsewhere, has a single sample, or is a later part of one in a flow or of
-    a robot.
+    A run is not swum anew if it was recorded elsewhere, has a single sample, or is a later part of one that
+    `depends_on_its_start`.
     """
     greatest = torque_size(run.torque).max(axis=0)
     near = np.flatnonzero(greatest >= NEAR * greatest.max())
     sizes, times = peaks(run.time, run.torque[:, near], torque_size)
     station, time = near[np.argmax(sizes)], times[np.argmax(sizes)]
-    from_start = run.flow is not None or run.robot is not None
-    if not run.steps or len(run.time) < 2 or (from_start and run.time[0] != 0.0):
+    if not run.steps or len(run.time) < 2 or (depends_on_its_start(run) and run.time[0] != 0.0):
         return peak_along(run.time, run.x, run.torque)
     times, x, torque = _swum_anew(run, time, int(station))
     size = torque_size(torque)
     instant, place = np.unravel_index(np.argmax(size), size.shape)
     near_time, near_x = _around(int(instant), len(times)), _around(int(place), len(x))
     return peak_along(times[near_time], x[near_x], torque[near_time, near_x])
+
+
+def depends_on_its_start(run) -> bool:
+    """Whether the head's motion at an instant does not tell how `run` goes on: a flow has its own time, robots and fins
+    have a state of their own."""
+    return run.flow is not None or run.robot is not None or bool(run.fins)
 
 
 def _around(place: int, count: int) -> slice:
@@ -90,20 +95,17 @@ def _swum_anew(run, time: float, station: int) -> tuple[np.ndarray, np.ndarray, 
     times = np.linspace(run.time[first], run.time[last], (last - first) * FINE + 1)
     near = run.x[max(0, station - AROUND) : station + AROUND + 1]
     x = np.linspace(near[0], near[-1], (len(near) - 1) * FINE + 1)
-    if run.flow is not None or run.robot is not None:  # a flow has its own time, a robot a state of its own
+    if depends_on_its_start(run):
         first = 0
     start = run.time[first]
     swimmer = Simulation(
-        body=run.body,
-        scene=run.scene,
         accuracy=run.accuracy.as_it_is(),
         stations=x,
         position=run.position[first],
         orientation=run.orientation[first] / np.linalg.norm(run.orientation[first]),
         twist=run.twist[first],
         most_evaluations=np.finfo(float).max,
-        flow=run.flow,
-        robot=run.robot,
+        **run.swimmer,
     )
     swimmer.adopt(run.law, origin=-start)
     out, _, _, stopped = swimmer.record(times - start, True, False)

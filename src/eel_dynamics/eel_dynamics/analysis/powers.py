@@ -37,15 +37,8 @@ def drag_powers(run) -> np.ndarray:
     the head's motion, at the nodes of a simulation with the run's settings; their sum is the ledger's `drag_power`.
     """
     run = run.in_axes(REP103)
-    simulation = Simulation(
-        body=run.body,
-        scene=run.scene,
-        accuracy=run.accuracy.as_it_is(),
-        stations=2,
-        law=run.law,
-        flow=run.flow,
-        robot=run.robot,
-    )
+    without_fins = run.swimmer | {"fins": ()}  # their drag is their own
+    simulation = Simulation(**without_fins, accuracy=run.accuracy.as_it_is(), stations=2, law=run.law)
     follower, now = LawFollower(simulation.discretisation.tabulation, law=run.law), 0.0
     instant, powers = eel_core.Instant(simulation.discretisation.swimmer), np.zeros((len(run.time), 4))
     time, relative = np.ascontiguousarray(run.time), run.twist.copy()

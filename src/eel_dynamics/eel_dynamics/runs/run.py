@@ -358,6 +358,11 @@ class Run:
         return effect_of_smoothing(self, _simulated_again(self, law, self.accuracy.as_it_is(), MOST_UNSMOOTHED))
 
     @property
+    def swimmer(self) -> dict[str, Any]:
+        """What `Simulation` and `simulate` take of the run: body, scene, flow, robot and fins."""
+        return {name: getattr(self, name) for name in ("body", "scene", "flow", "robot", "fins")}
+
+    @property
     def body_mass(self) -> float:
         """Mass of the body in this scene [kg]."""
         return self.body.mass_in(self.scene.density)
@@ -465,8 +470,6 @@ def _simulated_again(
     again = simulate(
         law,
         float(run.time[-1]),
-        body=run.body,
-        scene=run.scene,
         accuracy=accuracy,
         sample_period=float(run.time[1] - run.time[0]) / finer if len(run.time) > 1 else 1.0,
         stations=run.x,
@@ -477,9 +480,7 @@ def _simulated_again(
         estimate=False,
         most_evaluations=most_evaluations,
         progress=lambda reached, left: None,
-        flow=run.flow,
-        robot=run.robot,
-        fins=run.fins,
+        **run.swimmer,
     )
     return again.in_axes(axes)
 
