@@ -5,10 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 
+#include "bound_march.hpp"
 #include "eel_core/bending/bent_march.hpp"
-#include "from_python.hpp"
 
 namespace eel_core {
 namespace {
@@ -69,30 +68,21 @@ std::shared_ptr<const Modes> modes_from(const py::object& m)
     return modes;
 }
 
-template <class S>
-py::list list_of(const S& numbers)
-{
-    py::list result;
-    for (const double number : numbers) result.append(number);
-    return result;
-}
-
-// As `PyMarch`.
-class PyBentMarch {
+class PyBentMarch : public BoundMarch<BentMarch> {
   public:
     PyBentMarch(std::shared_ptr<const Swimmer> swimmer, const std::shared_ptr<const Modes>& modes, bool planar)
-        : march_(checked(std::move(swimmer), *modes), modes, planar)
+        : BoundMarch(false, checked(std::move(swimmer), *modes), modes, planar)
     {
     }
 
     std::unique_ptr<PyBentMarch> copy()
     {
-        const InUse in_use(*this);
+        const InUse in_use(in_use_);
         return std::unique_ptr<PyBentMarch>(new PyBentMarch(march_, has_law_));
     }
     void change(std::shared_ptr<const Swimmer> swimmer, const std::shared_ptr<const Modes>& modes, bool planar)
     {
-        const InUse in_use(*this);
+        const InUse in_use(in_use_);
         has_law_ = false;
         march_.change(checked(std::move(swimmer), *modes), modes, planar);
     }
@@ -100,7 +90,7 @@ class PyBentMarch {
                 std::shared_ptr<const LawOnGrid> drive, const py::object& push, std::vector<double> breakpoints,
                 const StepBounds& bounds, double torque_floor, bool ledger, const py::object& current, bool smoothly)
     {
-        const InUse in_use(*this);
+        const InUse in_use(in_use_);
         const Modes& modes = march_.modes();
         const std::size_t rows = law->tables->rows();
         if (rows < modes.modes || law->tables->node.blocks != march_.swimmer().grid.blocks)
@@ -128,28 +118,6 @@ class PyBentMarch {
         const Driven in_use(*this);
         return march_.start(vector_from(position, "position"), orientation_from(orientation),
                             twist_from(twist, "twist"), coordinates_from(x, "x"), coordinates_from(rate, "rate"));
-    }
-    double set_state(const py::object& position, const py::object& orientation, const py::object& twist)
-    {
-        const Driven in_use(*this);
-        return march_.set_state(vector_from(position, "position"), orientation_from(orientation),
-                                twist_from(twist, "twist"));
-    }
-    double set_twist(const py::object& twist)
-    {
-        const Driven in_use(*this);
-        return march_.set_twist(twist_from(twist, "twist"));
-    }
-    py::list twist()
-    {
-        const Driven in_use(*this);
-        return list_of(components_of(half_turn(march_.twist())));
-    }
-    int advance(double time)
-    {
-        const Driven in_use(*this);
-        const py::gil_scoped_release unlocked;
-        return static_cast<int>(march_.advance(time));
     }
     py::tuple record(const py::object& times, std::size_t first, const py::object& whole, const py::object& works,
                      const py::object& rows, bool wrench, bool load, double until)
@@ -189,11 +157,6 @@ class PyBentMarch {
         const py::gil_scoped_release unlocked;
         return march_.observe(profiles, into.data(), 0, row_into.data());
     }
-    void set_slice(std::int64_t nodes)
-    {
-        const InUse in_use(*this);
-        march_.set_slice(nodes);
-    }
     std::optional<std::size_t> singular_mode()
     {
         const Driven in_use(*this);
@@ -202,27 +165,7 @@ class PyBentMarch {
     const BentMarch& march() const { return march_; }
 
   private:
-    class InUse {
-      public:
-        explicit InUse(PyBentMarch& march) : march_(march)
-        {
-            if (march_.in_use_.exchange(true)) throw std::runtime_error("this march is under way in another thread");
-        }
-        ~InUse() { march_.in_use_ = false; }
-        InUse(const InUse&) = delete;
-        InUse& operator=(const InUse&) = delete;
-
-      private:
-        PyBentMarch& march_;
-    };
-    struct Driven : InUse {
-        explicit Driven(PyBentMarch& march) : InUse(march)
-        {
-            if (!march.has_law_) throw std::runtime_error("this march follows no law on its grid yet");
-        }
-    };
-
-    PyBentMarch(const BentMarch& march, bool has_law) : march_(march), has_law_(has_law) {}
+    PyBentMarch(const BentMarch& march, bool has_law) : BoundMarch(has_law, march) {}
 
     static std::shared_ptr<const Swimmer> checked(std::shared_ptr<const Swimmer> swimmer, const Modes& modes)
     {
@@ -237,10 +180,6 @@ class PyBentMarch {
         numbers.check_size(march_.modes().coordinates, name);
         return {numbers.data(), numbers.data() + numbers.size()};
     }
-
-    BentMarch march_;
-    bool has_law_ = false;  // on the present grid
-    std::atomic<bool> in_use_{false};
 };
 
 py::dict row_layout(const PyBentMarch& march)
@@ -268,12 +207,11 @@ void bind_bent_marches(py::module_& module)
         .def("__copy__", [](const py::object& self) { return self; })
         .def("__deepcopy__", [](const py::object& self, const py::dict&) { return self; }, py::arg("memo"));
 
-    py::class_<PyBentMarch>(module, "BentMarch")
+    auto marches = py::class_<PyBentMarch>(module, "BentMarch");
+    bind_what_marches_share(marches);
+    marches
         .def(py::init<std::shared_ptr<Swimmer>, std::shared_ptr<Modes>, bool>(), py::arg("swimmer"), py::arg("modes"),
              py::arg("planar"))
-        .def("__copy__", &PyBentMarch::copy)
-        .def(
-            "__deepcopy__", [](PyBentMarch& march, const py::dict&) { return march.copy(); }, py::arg("memo"))
         .def("change", &PyBentMarch::change, py::arg("swimmer"), py::arg("modes"), py::arg("planar"))
         .def(
             "follow",
@@ -287,37 +225,17 @@ void bind_bent_marches(py::module_& module)
             py::arg("bounds"), py::arg("torque_floor"), py::arg("ledger"), py::arg("current"), py::arg("smoothly"))
         .def("start", &PyBentMarch::start, py::arg("position"), py::arg("orientation"), py::arg("twist"), py::arg("x"),
              py::arg("rate"))
-        .def("set_state", &PyBentMarch::set_state, py::arg("position"), py::arg("orientation"), py::arg("twist"))
-        .def("set_twist", &PyBentMarch::set_twist, py::arg("twist"))
-        .def("twist", &PyBentMarch::twist)
-        .def("set_slice", &PyBentMarch::set_slice, py::arg("nodes"))
-        .def("advance", &PyBentMarch::advance, py::arg("time"))
         .def("record", &PyBentMarch::record, py::arg("times"), py::arg("first"), py::arg("whole"), py::arg("works"),
              py::arg("rows"), py::arg("wrench"), py::arg("load"), py::arg("until"))
         .def("observe", &PyBentMarch::observe, py::arg("whole"), py::arg("row"), py::arg("wrench"), py::arg("load"))
         .def("command", &PyBentMarch::command, py::arg("servo"), py::arg("kind"), py::arg("value"))
         .def("singular_mode", &PyBentMarch::singular_mode)
         .def_property_readonly("hardest", [](const PyBentMarch& march) { return march.march().hardest(); })
-        .def_property_readonly("memory", [](const PyBentMarch& march) { return march.march().memory(); })
-        .def_property_readonly("time", [](const PyBentMarch& march) { return march.march().time(); })
-        .def_property_readonly("state",
-                               [](const PyBentMarch& march) {
-                                   const State turned = half_turn(march.march().state());
-                                   return list_of(std::span(turned).first(state_size));
-                               })
         .def_property_readonly("coordinates",
                                [](const PyBentMarch& march) { return list_of(march.march().coordinates()); })
         .def_property_readonly("rates", [](const PyBentMarch& march) { return list_of(march.march().rates()); })
-        .def_property_readonly("works",
-                               [](const PyBentMarch& march) {
-                                   return list_of(std::span(march.march().works()).first(std::tuple_size_v<Works>));
-                               })
         .def_property_readonly("outside", [](const PyBentMarch&) { return py::none(); })
-        .def_property_readonly("row", &row_layout)
-        .def_property_readonly("counts", [](const PyBentMarch& march) {
-            const Counts counts = march.march().counts();
-            return py::make_tuple(counts.steps, counts.rejected, counts.evaluations);
-        });
+        .def_property_readonly("row", &row_layout);
 }
 
 }  // namespace eel_core

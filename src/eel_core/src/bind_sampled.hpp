@@ -2,11 +2,10 @@
 // The Python class of many swimmers, each driven by a controller's samples.
 #pragma once
 
-#include <atomic>
 #include <memory>
 
+#include "bound_march.hpp"
 #include "eel_core/march/sampled_march.hpp"
-#include "from_python.hpp"
 
 namespace eel_core {
 
@@ -32,7 +31,7 @@ class PySampledMarches {
                  const py::object& twist, const py::object& values, std::shared_ptr<Flow> flow)
     {
         const Numbers sample = sized(values, "values", sample_rows * marches_.points());
-        const InUse in_use(*this);
+        const InUse in_use(in_use_, these);
         marches_[index].set_flow(std::move(flow));
         return marches_[index].start(bounds, vector_from(position, "position"), orientation_from(orientation),
                                      twist_from(twist, "twist"), sample.data());
@@ -44,19 +43,19 @@ class PySampledMarches {
                       samples = sized(values, "values", n * sample_rows * marches_.points());
         const Array<std::int64_t> found(status, "status", true);
         found.check_size(n, "status");
-        const InUse in_use(*this);
+        const InUse in_use(in_use_, these);
         const py::gil_scoped_release unlocked;
         marches_.advance(instants.data(), samples.data(), found.data(), into.data());
     }
     bool put_head(std::size_t index, const py::object& heads)
     {
         const Numbers into = sized(heads, "heads", 13 * marches_.size(), true);
-        const InUse in_use(*this);
+        const InUse in_use(in_use_, these);
         return marches_.put_head(index, into.data());
     }
     bool observe(std::size_t index, const py::object& whole, bool wrench, bool load)
     {
-        const InUse in_use(*this);
+        const InUse in_use(in_use_, these);
         March& march = marches_[index].march();
         const Profiles profiles(1, march.swimmer().stations, wrench, load);
         const Numbers into = sized(whole, "whole", profiles.begin[Profiles::quantities], true);
@@ -65,7 +64,7 @@ class PySampledMarches {
     // Of one swimmer: time, works, and counts as of `March`.
     py::tuple present(std::size_t index)
     {
-        const InUse in_use(*this);
+        const InUse in_use(in_use_, these);
         const March& march = marches_[index].march();
         const Counts counts = march.counts();
         return py::make_tuple(march.time(), march.works(),
@@ -73,20 +72,7 @@ class PySampledMarches {
     }
 
   private:
-    class InUse {
-      public:
-        explicit InUse(PySampledMarches& marches) : marches_(marches)
-        {
-            if (marches_.in_use_.exchange(true))
-                throw std::runtime_error("these marches are under way in another thread");
-        }
-        ~InUse() { marches_.in_use_ = false; }
-        InUse(const InUse&) = delete;
-        InUse& operator=(const InUse&) = delete;
-
-      private:
-        PySampledMarches& marches_;
-    };
+    static constexpr const char* these = "these marches are";
 
     static Numbers sized(const py::object& object, const char* name, std::size_t size, bool writable = false)
     {

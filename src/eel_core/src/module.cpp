@@ -2,12 +2,11 @@
 // The Python module. EEL_CORE_MODULE is its name: one for each level of the processor.
 #include <pybind11/pybind11.h>
 
-#include <atomic>
-
 #include "bind_bent.hpp"
 #include "bind_fins.hpp"
 #include "bind_flow.hpp"
 #include "bind_sampled.hpp"
+#include "bound_march.hpp"
 #include "eel_core/build_info.hpp"
 #include "eel_core/march/instant.hpp"
 #include "from_python.hpp"
@@ -16,20 +15,6 @@ namespace py = pybind11;
 using namespace eel_core;
 
 namespace {
-
-template <class S>
-py::list list_of(const S& numbers)
-{
-    py::list result;
-    for (const double number : numbers) result.append(number);
-    return result;
-}
-
-py::list list_of_state(const State& state)
-{
-    const State turned = half_turn(state);
-    return list_of(std::span(turned).first(state_size));
-}
 
 py::dict build_info_as_dict()
 {
@@ -140,23 +125,22 @@ void check_fits(const LawOnGrid& law, const Swimmer& swimmer)
         throw py::value_error("law must be tabulated on the nodes and stations of the swimmer");
 }
 
-// A march that Python holds: one thread at a time, without Python's lock.
-class PyMarch {
+class PyMarch : public BoundMarch<March> {
   public:
     PyMarch(std::shared_ptr<const Swimmer> swimmer, const std::string& method, std::size_t order, bool planar)
-        : march_(std::move(swimmer), Method::of(method, order), planar)
+        : BoundMarch(false, std::move(swimmer), Method::of(method, order), planar)
     {
     }
 
     // A march of its own, in the same state.
     std::unique_ptr<PyMarch> copy()
     {
-        const InUse in_use(*this);
+        const InUse in_use(in_use_);
         return std::unique_ptr<PyMarch>(new PyMarch(march_, has_law_));
     }
     void change(std::shared_ptr<const Swimmer> swimmer, const std::string& method, std::size_t order, bool planar)
     {
-        const InUse in_use(*this);
+        const InUse in_use(in_use_);
         has_law_ = false;
         march_.change(std::move(swimmer), Method::of(method, order), planar);
     }
@@ -167,7 +151,7 @@ class PyMarch {
         check_fits(*law, march_.swimmer());
         LawOnGrid own = *law;
         own.fins = angles_from(fin_angles);
-        const InUse in_use(*this);
+        const InUse in_use(in_use_);
         smoothly &= has_law_;
         has_law_ = true;
         march_.follow({std::move(own), std::move(breakpoints), bounds, ledger, water_from(current, std::move(flow))},
@@ -178,28 +162,6 @@ class PyMarch {
         const Driven in_use(*this);
         return march_.start(vector_from(position, "position"), orientation_from(orientation),
                             twist_from(twist, "twist"));
-    }
-    double set_state(const py::object& position, const py::object& orientation, const py::object& twist)
-    {
-        const Driven in_use(*this);
-        return march_.set_state(vector_from(position, "position"), orientation_from(orientation),
-                                twist_from(twist, "twist"));
-    }
-    double set_twist(const py::object& twist)
-    {
-        const Driven in_use(*this);
-        return march_.set_twist(twist_from(twist, "twist"));
-    }
-    py::list twist()
-    {
-        const Driven in_use(*this);
-        return list_of(components_of(half_turn(march_.twist())));
-    }
-    int advance(double time)
-    {
-        const Driven in_use(*this);
-        const py::gil_scoped_release unlocked;
-        return static_cast<int>(march_.advance(time));
     }
     py::tuple record(const py::object& times, std::size_t first, const py::object& whole, const py::object& works,
                      bool wrench, bool load, double until)
@@ -226,19 +188,6 @@ class PyMarch {
         const py::gil_scoped_release unlocked;
         return march_.observe(Observer(march_.swimmer(), profiles, into.data()), 0);
     }
-    void set_slice(std::int64_t nodes)
-    {
-        const InUse in_use(*this);
-        march_.set_slice(nodes);
-    }
-    std::size_t memory()
-    {
-        const Driven in_use(*this);
-        return march_.memory();
-    }
-    double time() const { return march_.time(); }
-    py::list state() const { return list_of_state(march_.state()); }
-    py::list works() const { return list_of(march_.works()); }
     py::object outside() const
     {
         const auto found = march_.outside();
@@ -246,39 +195,9 @@ class PyMarch {
         const auto [time, x, y, z] = *found;
         return py::make_tuple(time, 0.0 - x, 0.0 - y, z);
     }
-    py::tuple counts() const
-    {
-        const Counts counts = march_.counts();
-        return py::make_tuple(counts.steps, counts.rejected, counts.evaluations);
-    }
 
   private:
-    class InUse {
-      public:
-        explicit InUse(PyMarch& march) : march_(march)
-        {
-            if (march_.in_use_.exchange(true)) throw std::runtime_error("this march is under way in another thread");
-        }
-        ~InUse() { march_.in_use_ = false; }
-        InUse(const InUse&) = delete;
-        InUse& operator=(const InUse&) = delete;
-
-      private:
-        PyMarch& march_;
-    };
-
-    struct Driven : InUse {
-        explicit Driven(PyMarch& march) : InUse(march)
-        {
-            if (!march.has_law_) throw std::runtime_error("this march follows no law on its grid yet");
-        }
-    };
-
-    PyMarch(const March& march, bool has_law) : march_(march), has_law_(has_law) {}
-
-    March march_;
-    bool has_law_ = false;  // on the present grid
-    std::atomic<bool> in_use_{false};
+    PyMarch(const March& march, bool has_law) : BoundMarch(has_law, march) {}
 };
 
 // Lets copies in Python share the object, which never changes.
@@ -414,30 +333,19 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
         .def_readonly("most_steps", &StepBounds::most_steps)
         .def_readonly("spare_steps", &StepBounds::spare_steps);
 
-    py::class_<PyMarch>(module, "March")
+    auto marches = py::class_<PyMarch>(module, "March");
+    bind_what_marches_share(marches);
+    marches
         .def(py::init<std::shared_ptr<Swimmer>, const std::string&, std::size_t, bool>(), py::arg("swimmer"),
              py::arg("method"), py::arg("order"), py::arg("planar"))
-        .def("__copy__", &PyMarch::copy)
-        .def(
-            "__deepcopy__", [](PyMarch& march, const py::dict&) { return march.copy(); }, py::arg("memo"))
         .def("change", &PyMarch::change, py::arg("swimmer"), py::arg("method"), py::arg("order"), py::arg("planar"))
         .def("follow", &PyMarch::follow, py::arg("law"), py::arg("breakpoints"), py::arg("bounds"), py::arg("ledger"),
              py::arg("current"), py::arg("flow"), py::arg("smoothly"), py::arg("fin_angles") = py::list())
         .def("start", &PyMarch::start, py::arg("position"), py::arg("orientation"), py::arg("twist"))
-        .def("set_state", &PyMarch::set_state, py::arg("position"), py::arg("orientation"), py::arg("twist"))
-        .def("set_twist", &PyMarch::set_twist, py::arg("twist"))
-        .def("twist", &PyMarch::twist)
-        .def("set_slice", &PyMarch::set_slice, py::arg("nodes"))
-        .def("advance", &PyMarch::advance, py::arg("time"))
         .def("record", &PyMarch::record, py::arg("times"), py::arg("first"), py::arg("whole"), py::arg("works"),
              py::arg("wrench"), py::arg("load"), py::arg("until"))
         .def("observe", &PyMarch::observe, py::arg("whole"), py::arg("wrench"), py::arg("load"))
-        .def_property_readonly("memory", &PyMarch::memory)
-        .def_property_readonly("time", &PyMarch::time)
-        .def_property_readonly("state", &PyMarch::state)
-        .def_property_readonly("works", &PyMarch::works)
-        .def_property_readonly("outside", &PyMarch::outside)
-        .def_property_readonly("counts", &PyMarch::counts);
+        .def_property_readonly("outside", &PyMarch::outside);
 
     bind_sampled_marches(module);
     bind_bent_marches(module);

@@ -64,7 +64,7 @@ struct Modes {
     std::vector<GivenTorque> torques;
 };
 
-// What a servo is told to do in place of following the law.
+// A command to a servo, which holds in place of the law.
 struct Command {
     enum Kind : std::uint8_t { law, angle, rate, torque };  // law: none
     Kind kind = law;
