@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Ready robots by name, on the body of section 7.2.1 of Boyer, Porez and Leroyer (2010), 1 m long.
 
-The servo is the ROBOTIS DYNAMIXEL XM430-W210 at 12 V. From its e-Manual (emanual.robotis.com/docs/en/dxl/x/xm430-w210):
-gear 212.6:1, stall torque 3.0 N m, no-load speed 77 rev/min. Its torque falls from the one to the other along a line.
-Its controller sets the voltage: 885 units are all of it, and the default position gain is 800/128 = 6.25 units for each
-of 4096 steps of a turn, which is 6.25/885 3.0 N m in 2 pi/4096 rad. The slope of the line, stall torque over no-load
-speed, damps the motor; the velocity feed-forward of the same controller takes that off the reference.
+The servo is the ROBOTIS DYNAMIXEL XM430-W210 at 12 V. From its e-Manual
+(emanual.robotis.com/docs/en/dxl/x/xm430-w210): gear 212.6:1, stall torque 3.0 N m, no-load speed 77 rev/min. Its
+torque falls from the one to the other along a line. Its controller sets the voltage: 885 units are all of it. The
+default position gain, 800/128 = 6.25 units for each of 4096 steps of a turn, is quoted from memory and was not looked
+up; it is 6.25/885 3.0 N m in 2 pi/4096 rad. The slope of the line, stall torque over no-load speed, damps the motor;
+the velocity feed-forward of the same controller takes that off the reference.
 
 The data sheet does not give the rotor's inertia. Haarnoja et al. (Science Robotics 9, 2024, eadi8022,
-doi:10.1126/scirobotics.adi8022) identified 0.045 kg m^2 behind the gear of an XM430-W350, which is the same motor with
-353.5:1: 3.6e-7 kg m^2 ahead of it.
+doi:10.1126/scirobotics.adi8022), as others quote them, identified 0.045 kg m^2 behind the gear of an XM430-W350. That
+this has the same motor behind 353.5:1 is an assumption: 3.6e-7 kg m^2 ahead of the gear.
 """
 
 import math

@@ -6,7 +6,7 @@ Sw = omega A l / nu, through more than a thousand measurements (Gazzola, Argenti
 (2014), doi:10.1038/nphys3078).
 
 eloy: the Strouhal number of least cost grows with drag, from 0.15 of whales to 0.8 of tadpoles (Eloy, J. Fluids Struct.
-30 (2012), arXiv:1102.0223). Drag is told as Li = D / (1/2 rho U^2 h^2), with the span h of the tail. Balance of
+30 (2012), arXiv:1102.0223). Drag is given as Li = D / (1/2 rho U^2 h^2), with the span h of the tail. Balance of
 thrust and drag in small motions says (pi^3 / 8) St^2 (1 - slip^2) = Li.
 
 lighthill: of the work, (1 + U/c) / 2 is not shed into the wake, with the wave's speed c (Lighthill, J. Fluid Mech. 9

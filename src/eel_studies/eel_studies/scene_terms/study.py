@@ -184,7 +184,7 @@ def _swum(swim: Swim, most_evaluations: float = MOST_EVALUATIONS) -> Run | Excep
     """The run, or why there is none."""
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # the error of each run is told
+            warnings.simplefilter("ignore")  # the table has the error of each run
             return swim.run(most_evaluations=most_evaluations, progress=lambda reached, left: None)
     except (SimulationStopped, ValueError) as error:
         return error
