@@ -4,7 +4,7 @@
 eel stability scene.yaml --over step=1e-3:0.1 --over density_ratio=1e-3:1e6
 eel stability                   # studies at the extremes; pictures into out
 eel stability --study drift     # one of them: maps, condition, drift, plane
-eel stability --page docs/appendix/stability.md --out docs/images
+eel stability --page docs/appendix/stability.txt --out docs/images
 """
 
 import argparse
