@@ -60,10 +60,10 @@ def test_no_such_level(configure):
 
 @pytest.mark.timeout(400)  # compiles a module
 def test_pip_installs_the_library_without_ros(tmp_path):
-    """`pip install ./src/eel_base ./src/eel_core ./src/eel_gaits ./src/eel_dynamics` gives `simulate`."""
+    """`pip install ./src/eel_{base,core,gaits,model,dynamics}` gives `simulate`."""
     environment = {name: os.environ[name] for name in ("PATH", "HOME", "LD_LIBRARY_PATH") if name in os.environ}
     environment["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] = "1"
-    sources = [tmp_path / name for name in ("eel_base", "eel_core", "eel_gaits", "eel_dynamics")]
+    sources = [tmp_path / name for name in ("eel_base", "eel_core", "eel_gaits", "eel_model", "eel_dynamics")]
     for source in sources:  # setuptools leaves its own files beside the sources
         shutil.copytree(ROOT / "src" / source.name, source, ignore=shutil.ignore_patterns("*.egg-info", "__pycache__"))
     install = [sys.executable, "-m", "pip", "install", "--no-build-isolation", "--no-deps", "--no-index"]

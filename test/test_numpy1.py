@@ -40,7 +40,7 @@ backbone = Backbone(x=numpy.linspace(0.0, 1.0, 51))
 law = deserialize_message(serialize_message(law_to_message(falling())), CurvatureLaw)
 json.dump({
     "numpy": numpy.__version__,
-    "built": [sys.modules[name].__file__ for name in ("eel_msgs", "eel_gaits", "eel_dynamics")],
+    "built": [sys.modules[name].__file__ for name in ("eel_msgs", "eel_gaits", "eel_model", "eel_dynamics")],
     "backbone": deserialize_message(serialize_message(backbone), Backbone) == backbone,
     "law": law_from_message(law) == falling(),
 }, sys.stdout)
@@ -88,7 +88,7 @@ def build(numpy1) -> dict[str, str]:
     done = subprocess.run(
         [python, Path(sys.prefix) / "bin/colcon", "--log-base", folder / "log", "build",
          "--build-base", folder / "build", "--install-base", folder / "install",
-         "--base-paths", *(ROOT / "src" / name for name in ("eel_msgs", "eel_ros", "eel_gaits", "eel_dynamics")),
+         "--base-paths", *(ROOT / "src" / f"eel_{name}" for name in ("msgs", "ros", "gaits", "model", "dynamics")),
          "--cmake-args", f"-DPython3_EXECUTABLE={python}"],
         env=environment, cwd=folder, capture_output=True, text=True, timeout=300,
     )  # fmt: skip

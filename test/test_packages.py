@@ -14,7 +14,7 @@ import pytest
 from eel_base.topics import GLOBAL, OWN
 
 ROOT = Path(__file__).resolve().parents[1]
-PYTHON_PACKAGES = ("eel_base", "eel_ros", "eel_gaits", "eel_dynamics", "eel_studies", "eel_gym", "eel_viz")
+PYTHON_PACKAGES = ("eel_base", "eel_ros", "eel_gaits", "eel_model", "eel_dynamics", "eel_studies", "eel_gym", "eel_viz")
 EXECUTABLES = {
     "eel_base": {"eel"},
     "eel_gaits": {"gait_generator", "heading_controller", "pilot"},
@@ -138,7 +138,9 @@ def test_every_message_field_is_commented_with_its_unit():
                 assert "[" in comment or declaration.startswith("std_msgs/Header"), f"{path.name}: {line}"
 
 
-@pytest.mark.parametrize("package", ("eel_base", "eel_gaits", "eel_dynamics", "eel_studies", "eel_gym", "eel_viz"))
+@pytest.mark.parametrize(
+    "package", ("eel_base", "eel_gaits", "eel_model", "eel_dynamics", "eel_studies", "eel_gym", "eel_viz")
+)
 def test_library_imports_without_ros(package):
     """Everything but the nodes and the message glue runs where there is no ROS at all."""
     folder = ROOT / "src" / package

@@ -20,7 +20,7 @@ stop() {
 trap stop INT TERM
 # a job in the background would ignore SIGINT, and so would pytest
 env --default-signal=INT "${pytest[@]}" --numprocesses=4 --dist=loadfile "${measuring[@]/#/--ignore=}" \
-    test src/eel_{viz,studies,gym,dynamics,gaits,ros,core,base}/test > out/test-others.log 2>&1 &
+    test src/eel_{viz,studies,gym,dynamics,model,gaits,ros,core,base}/test > out/test-others.log 2>&1 &
 beside[others]=$!
 tools/core_tests.sh tests > out/test-core.log 2>&1 &
 beside[core]=$!

@@ -19,7 +19,7 @@ std::vector<double> numbers_from(const py::handle& object, const char* name, std
     return {numbers.data(), numbers.data() + size};
 }
 
-// Its attributes are those of `ModesOnGrid` (eel_dynamics/robot/on_grid.py).
+// Its attributes are those of `ModesOnGrid` (eel_model/robot/on_grid.py).
 std::shared_ptr<const Modes> modes_from(const py::object& m)
 {
     auto modes = std::make_shared<Modes>();

@@ -11,17 +11,6 @@ import eel_command  # noqa: F401  first: Ctrl-C ends a command during the other 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.settling import Unsettled
 from eel_dynamics.analysis.trim import Ballast, Trim, ballast_for, trim_of
-from eel_dynamics.flow.flow import Flow, FlowSample
-from eel_dynamics.flow.functions import FlowField
-from eel_dynamics.flow.gridded import GriddedFlow
-from eel_dynamics.flow.sources import Gust, Shear, Uniform, Vortex, VortexStreet, Wave
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.fins import Fin, RollHold
-from eel_dynamics.model.scene import Scene
-from eel_dynamics.robot.actuators import Servo, Torque
-from eel_dynamics.robot.continuous import Muscle, PassiveTail
-from eel_dynamics.robot.joint import Joint
-from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.batch import Batch, simulate_batch
 from eel_dynamics.runs.run import Run, simulate
 from eel_dynamics.runs.scene_file import load_scene, save_scene
@@ -31,6 +20,28 @@ from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.prescribed import HydrodynamicWrench, hydrodynamic_wrench
 from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.stopping import SimulationStopped
+from eel_model import (
+    Body,
+    Fin,
+    Flow,
+    FlowField,
+    FlowSample,
+    GriddedFlow,
+    Gust,
+    Joint,
+    Muscle,
+    PassiveTail,
+    Robot,
+    RollHold,
+    Scene,
+    Servo,
+    Shear,
+    Torque,
+    Uniform,
+    Vortex,
+    VortexStreet,
+    Wave,
+)
 
 __all__ = [
     "Accuracy",

@@ -3,8 +3,8 @@
 
 import numpy as np
 import pytest
-from eel_dynamics.model.fins_text import fins_from_text, text_of_fins
 from eel_gaits.ros.messages import law_to_message
+from eel_model.fins.text import fins_from_text, text_of_fins
 from rclpy.duration import Duration
 from sensor_msgs.msg import JointState
 from swim_client import LIMIT, nanoseconds

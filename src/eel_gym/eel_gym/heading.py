@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from eel_base.quantity import quantity
-from eel_dynamics.model.scene import Scene
 from eel_gaits.pilot.head_motion import wrapped
+from eel_model.scene import Scene
 
 from eel_gym.swimmer_env import SwimmerEnv
 from eel_gym.task import FASTEST, GREATEST_START_SPEED, SPIN, Episode, Observed, Start

@@ -9,10 +9,10 @@ import gymnasium
 import numpy as np
 from eel_base.quantity import Quantities, checked_instance, described_fields, quantity
 from eel_base.wording import shown
-from eel_dynamics.model.body import Body, checked_body
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.sampled_swimmers import Array
 from eel_gaits.gaits.swimming import straight
+from eel_model.body.body import Body, checked_body
+from eel_model.scene import Scene
 
 from eel_gym.knot_action import KnotAction
 from eel_gym.law_action import LawAction

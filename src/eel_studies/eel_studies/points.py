@@ -23,17 +23,17 @@ from eel_base.wording import did_you_mean, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import measures_of
-from eel_dynamics.flow.flow import Flow
-from eel_dynamics.flow.plain import KINDS
-from eel_dynamics.flow.text import flow_from_text
-from eel_dynamics.model.body import NUMBERS, Body, checked_body
-from eel_dynamics.model.initial_state import InitialState
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import Batch, simulate_batch
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.swim import Swim
 from eel_gaits.gaits.registry import find
 from eel_gaits.laws.law import Law
+from eel_model.body.body import NUMBERS, Body, checked_body
+from eel_model.flow.flow import Flow
+from eel_model.flow.plain import KINDS
+from eel_model.flow.text import flow_from_text
+from eel_model.initial_state import InitialState
+from eel_model.scene import Scene
 
 Gait = str | Callable[..., Law]  # its name, or a function of numbers
 Numbers = dict[str, Any]  # by the names above

@@ -6,12 +6,12 @@ from pathlib import Path
 
 from eel_base.command.command_line import Parser
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.command_options import add_options, body_of, scene_of, set_numbers
 from eel_dynamics.runs.scene_file import SUFFIXES, load_scene
 from eel_dynamics.runs.swim import Swim
 from eel_gaits.gaits.settings import Settings
+from eel_model.body.body import Body
+from eel_model.scene import Scene
 
 ABOUT = "a .yaml file (docs/howto/scenes.md), or a gait by name"
 

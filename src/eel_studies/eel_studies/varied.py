@@ -25,9 +25,9 @@ import numpy as np
 from eel_base.quantity import number
 from eel_base.wording import shown
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.model.fins import Fin
-from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.swim import Swim
+from eel_model.fins.fins import Fin
+from eel_model.robot.robot import Robot
 
 from eel_studies.points import GROUPS, check_names, point_at
 

@@ -5,7 +5,7 @@
 //
 // k1 is a friction law: model/friction.hpp. Another law of cross flow (k2, k3) or of roll (k4) is a change of
 // `resistive_load` here, of its kinks (drag_kinks.hpp), and of `sections_of` in
-// eel_dynamics/model/section_data.py. Where a speed changes its sign within a panel, the load has a
+// eel_model/section_data.py. Where a speed changes its sign within a panel, the load has a
 // kink there; `drag_kinks` integrates it exactly.
 #pragma once
 

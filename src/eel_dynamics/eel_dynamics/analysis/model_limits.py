@@ -20,9 +20,9 @@ by t1 (1 + K2 z - K3 y) per length, which must stay positive out to the skin.
 """
 
 import numpy as np
+from eel_model.axes import REP103
 
 from eel_dynamics.analysis.analysis import Analysis
-from eel_dynamics.model.axes import REP103
 
 LEAST_SLENDERNESS = 5.0
 LEAST_REYNOLDS = 1e3

@@ -11,8 +11,8 @@ recorded elsewhere its own: those of power may then be 2 % off at 20 samples in 
 """
 
 import numpy as np
+from eel_model.axes import REP103
 
-from eel_dynamics.model.axes import REP103
 from eel_dynamics.simulation.simulation import Simulation
 
 DEGREE = 5

@@ -3,10 +3,10 @@
 
 import numpy as np
 from eel_base.attitude import world_from_body
+from eel_model.axes import REP103
 
 import eel_core
 from eel_dynamics.curvature.law_follower import LawFollower
-from eel_dynamics.model.axes import REP103
 from eel_dynamics.simulation.bending.shape_of_run import shapes_of_run
 from eel_dynamics.simulation.simulation import Simulation
 

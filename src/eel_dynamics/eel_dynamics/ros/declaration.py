@@ -6,6 +6,10 @@ from dataclasses import Field, fields, replace
 from typing import Any
 
 from eel_base.quantity import checked
+from eel_model.flow.plain import flow_of
+from eel_model.flow.text import flow_from_text, text_of_flow
+from eel_model.robot.robot import robot_of
+from eel_model.scene import Scene
 from eel_ros.frames import frame_in
 from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import AT_RESET, declare, take_overrides, warn_of_unknown
@@ -13,10 +17,6 @@ from rcl_interfaces.msg import SetParametersResult
 from rclpy.parameter import Parameter
 
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.flow.plain import flow_of
-from eel_dynamics.flow.text import flow_from_text, text_of_flow
-from eel_dynamics.model.scene import Scene
-from eel_dynamics.robot.robot import robot_of
 from eel_dynamics.ros.parameters import FRAMES, ROOT, DynamicsParameters
 from eel_dynamics.ros.simulation_from_parameters import body_of
 

@@ -18,6 +18,8 @@ from eel_base.topics import ENERGY_FIELDS
 from eel_base.wording import shown
 from eel_gaits.laws.law import MAXIMUM_TERMS
 from eel_gaits.ros.messages import ROWS
+from eel_model.axes import with_section_axes
+from eel_model.flow.lattice import lattice_around, velocities_at
 from eel_ros.loop.serialised_message import SerialisedMessage
 from eel_ros.serialised import Beginning
 from eel_ros.serving import read_message
@@ -30,8 +32,6 @@ from tf2_msgs.msg import TFMessage
 from eel_dynamics.accuracy.error_estimate import HeadErrors
 from eel_dynamics.analysis.actuators import Joints
 from eel_dynamics.curvature.curvature_samples import LateSample, check_points
-from eel_dynamics.flow.lattice import lattice_around, velocities_at
-from eel_dynamics.model.axes import with_section_axes
 from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
 from eel_dynamics.runs.exchange.messages_of_run import outline
 from eel_dynamics.simulation.observations import Snapshot

@@ -16,6 +16,7 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from eel_base.command.command_line import one_line_warnings
 from eel_base.wording import one_line
+from eel_model.scene import Scene
 from eel_ros.loop.diagnostics import Report
 from eel_ros.loop.followed_clock import ClockSubscription, FollowedClock
 from eel_ros.loop.other_nodes import Identity, OtherNodes
@@ -31,7 +32,6 @@ from rclpy.qos import QoSProfile
 from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.current_subscription import CurrentSubscription
 from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration

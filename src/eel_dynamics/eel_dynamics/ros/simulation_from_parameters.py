@@ -3,11 +3,12 @@
 
 from pathlib import Path
 
-from eel_dynamics.flow.text import flow_from_text
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.fins_text import fins_from_text
-from eel_dynamics.model.scene import Scene
-from eel_dynamics.robot.robot import robot_of
+from eel_model.body.body import Body
+from eel_model.fins.text import fins_from_text
+from eel_model.flow.text import flow_from_text
+from eel_model.robot.robot import robot_of
+from eel_model.scene import Scene
+
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.simulation.simulation import Simulation
 

@@ -21,6 +21,12 @@ from eel_base.cell import cell_of
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
+from eel_model.body.body import Body
+from eel_model.equality import same_fields
+from eel_model.flow.flow import Flow, check_covers
+from eel_model.flow.plain import flow_of
+from eel_model.robot.robot import Robot
+from eel_model.scene import Scene
 from numpy.typing import ArrayLike
 
 from eel_dynamics.accuracy.accuracy import Accuracy
@@ -28,12 +34,6 @@ from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import MEASURES, measures_of
 from eel_dynamics.analysis.settling import tell_unsettled
-from eel_dynamics.flow.flow import Flow, check_covers
-from eel_dynamics.flow.plain import flow_of
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.equality import same_fields
-from eel_dynamics.model.scene import Scene
-from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.broadcast import swimmers_of
 from eel_dynamics.runs.companion import with_error_estimate
 from eel_dynamics.runs.motions import check_duration

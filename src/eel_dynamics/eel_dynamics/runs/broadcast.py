@@ -8,14 +8,14 @@ from eel_base.quantity import checked_instance, checked_row, numbers, positive
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
+from eel_model.body.body import Body
+from eel_model.flow.flow import Flow
+from eel_model.initial_state import InitialState, check_planar, checked_quaternion
+from eel_model.robot.robot import Robot, checked_robot
+from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
-from eel_dynamics.flow.flow import Flow
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.initial_state import InitialState, check_planar, checked_quaternion
-from eel_dynamics.model.scene import Scene
-from eel_dynamics.robot.robot import Robot, checked_robot
 from eel_dynamics.runs.motions import LAWS
 from eel_dynamics.simulation.simulation_setup import (
     SimulationSetup,

@@ -15,12 +15,12 @@ import numpy as np
 from eel_base.command.command_line import Parser
 from eel_base.wording import did_you_mean, shown
 from eel_gaits.gaits.registry import GAITS, find
+from eel_model.body.body import NAMED, Body
+from eel_model.flow.text import NAMES
+from eel_model.robot.ready import READY
+from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import PRESETS
-from eel_dynamics.flow.text import NAMES
-from eel_dynamics.model.body import NAMED, Body
-from eel_dynamics.model.scene import Scene
-from eel_dynamics.robot.ready import READY
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, until_settled
 
 TRUTH = {"true": True, "on": True, "false": False, "off": False}

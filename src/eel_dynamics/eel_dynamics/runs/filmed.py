@@ -8,9 +8,9 @@ import numpy as np
 from eel_base.wording import shown
 from eel_gaits.film.beat import Beat, beat_of, jackknife
 from eel_gaits.film.film import Film, read_film
+from eel_model.body.body import Body
+from eel_model.scene import Scene
 
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import simulate_batch
 from eel_dynamics.runs.command_options import body_of
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED

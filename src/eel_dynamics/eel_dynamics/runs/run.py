@@ -14,6 +14,13 @@ from eel_base.cell import cell_of
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
+from eel_model.axes import CONVENTIONS, REP103, SIGNS, turn_vector, turned
+from eel_model.body.body import Body
+from eel_model.equality import same_fields
+from eel_model.fins.fins import Fin
+from eel_model.flow.flow import Flow, check_covers
+from eel_model.robot.robot import Robot
+from eel_model.scene import Scene
 from numpy.typing import ArrayLike
 
 from eel_dynamics.accuracy.accuracy import Accuracy
@@ -25,13 +32,6 @@ from eel_dynamics.analysis.model_limits import warnings_of
 from eel_dynamics.analysis.peaks import FINER, MOST_SAMPLES, greatest_torque_of
 from eel_dynamics.analysis.run_summary import describe
 from eel_dynamics.analysis.settling import Unsettled
-from eel_dynamics.flow.flow import Flow, check_covers
-from eel_dynamics.model.axes import CONVENTIONS, REP103, SIGNS, turn_vector, turned
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.equality import same_fields
-from eel_dynamics.model.fins import Fin
-from eel_dynamics.model.scene import Scene
-from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.companion import stable_step, with_error_estimate
 from eel_dynamics.runs.exchange.eel_viz_functions import recorder_of_runs
 from eel_dynamics.runs.exchange.messages_of_run import messages_of_run

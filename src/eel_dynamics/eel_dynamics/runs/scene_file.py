@@ -31,13 +31,13 @@ from eel_base.files.yaml_tree import read_yaml
 from eel_base.quantity import checked_instance, checked_row, positive
 from eel_base.wording import did_you_mean, shown
 from eel_gaits.gaits.settings import SEQUENCES, Settings
+from eel_model.body.body import Body
+from eel_model.fins.text import fins_from_text, text_of_fins
+from eel_model.flow.text import flow_from_text, text_of_flow
+from eel_model.robot.robot import Robot
+from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.flow.text import flow_from_text, text_of_flow
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.fins_text import fins_from_text, text_of_fins
-from eel_dynamics.model.scene import Scene
-from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.settled_duration import until_settled
 from eel_dynamics.runs.swim import AT_REST, Swim
 

@@ -9,8 +9,8 @@ from dataclasses import fields
 from typing import NamedTuple, TypeVar, get_type_hints
 
 import numpy as np
+from eel_model.axes import REP103
 
-from eel_dynamics.model.axes import REP103
 from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import OBSERVED, Variable

@@ -25,8 +25,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Annotated, Any
 
 import numpy as np
-
-from eel_dynamics.model.equality import same_fields
+from eel_model.equality import same_fields
 
 WORKS = (
     "actuator",

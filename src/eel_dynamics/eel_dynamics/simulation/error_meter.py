@@ -14,6 +14,7 @@ from dataclasses import replace
 import numpy as np
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
+from eel_model.flow.flow import Flow
 
 from eel_dynamics.accuracy.error_estimate import (
     LEAST_SAMPLES,
@@ -25,7 +26,6 @@ from eel_dynamics.accuracy.error_estimate import (
 )
 from eel_dynamics.accuracy.grid_settings import ShapeNeeds
 from eel_dynamics.curvature.curvature_samples import CurvatureSample
-from eel_dynamics.flow.flow import Flow
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation_setup import SimulationSetup

@@ -7,8 +7,7 @@ So a controller or a policy that works here drives the dynamics node too.
 import math
 
 from eel_gaits.pilot.head_motion import HeadMotion
-
-from eel_dynamics.model.initial_state import InitialState
+from eel_model.initial_state import InitialState
 
 
 def head_motion_of(head: InitialState) -> HeadMotion:

@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
+from eel_model.fins.fins import given_angles, knots_of, servo_time
+from eel_model.flow.flow import Flow
+from eel_model.initial_state import InitialState, time_scale
 
 import eel_core
 from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
 from eel_dynamics.accuracy.step_bounds import step_bounds_of
 from eel_dynamics.curvature.curvature_samples import CurvatureSample
 from eel_dynamics.curvature.law_follower import LawFollower
-from eel_dynamics.flow.flow import Flow
-from eel_dynamics.model.fins import given_angles, knots_of, servo_time
-from eel_dynamics.model.initial_state import InitialState, time_scale
 from eel_dynamics.simulation.discretisation import Discretisation, discretise
 from eel_dynamics.simulation.observations import Observations, Snapshot
 from eel_dynamics.simulation.sample_check import first_bad_sample

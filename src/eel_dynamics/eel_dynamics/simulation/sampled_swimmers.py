@@ -5,6 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 from eel_base.wording import shown
+from eel_model.body.body import Body
+from eel_model.flow.flow import Flow, core_flow, parts_of
+from eel_model.flow.functions import FlowField
+from eel_model.initial_state import InitialState, time_scale
+from eel_model.scene import Scene
 from numpy.typing import NDArray
 
 import eel_core
@@ -13,11 +18,6 @@ from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
 from eel_dynamics.accuracy.step_bounds import step_bounds_of
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
-from eel_dynamics.flow.flow import Flow, core_flow, parts_of
-from eel_dynamics.flow.functions import FlowField
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.initial_state import InitialState, time_scale
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.discretisation import discretise
 from eel_dynamics.simulation.march import MARCHED, SINGULAR, UNFINISHED
 from eel_dynamics.simulation.observations import Snapshot

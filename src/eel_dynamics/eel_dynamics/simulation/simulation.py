@@ -16,6 +16,15 @@ from eel_gaits.gaits.diving import falling
 from eel_gaits.gaits.swimming import straight
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
+from eel_model.body.body import Body
+from eel_model.body.grid import Grid
+from eel_model.fins.fins import Fin, checked_commands
+from eel_model.flow.flow import Flow
+from eel_model.flow.stream import CurrentStream
+from eel_model.initial_state import InitialState
+from eel_model.robot.actuators import Servo
+from eel_model.robot.robot import Robot
+from eel_model.scene import Scene
 from numpy.typing import ArrayLike
 
 import eel_core
@@ -25,15 +34,6 @@ from eel_dynamics.accuracy.error_estimate import ErrorEstimate, HeadErrors
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
-from eel_dynamics.flow.flow import Flow
-from eel_dynamics.flow.stream import CurrentStream
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.fins import Fin, checked_commands
-from eel_dynamics.model.grid import Grid
-from eel_dynamics.model.initial_state import InitialState
-from eel_dynamics.model.scene import Scene
-from eel_dynamics.robot.actuators import Servo
-from eel_dynamics.robot.robot import Robot
 from eel_dynamics.simulation.bending.bent_march import march_of
 from eel_dynamics.simulation.bending.joint_motion import JointMotion
 from eel_dynamics.simulation.discretisation import Discretisation

@@ -9,6 +9,13 @@ from eel_base.quantity import checked_instance, checked_row, positive
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
+from eel_model.body.body import Body, checked_body
+from eel_model.fins.fins import Fin, checked_fins, edges_of
+from eel_model.flow.flow import Flow, check_covers, checked_flow, core_flow
+from eel_model.initial_state import InitialState, check_planar, checked_quaternion, time_scale
+from eel_model.robot.compiled import ModeTable, mode_table
+from eel_model.robot.robot import Robot, checked_robot
+from eel_model.scene import Scene
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
@@ -18,13 +25,6 @@ from eel_dynamics.accuracy.law_waves import check_law, knots_of_law, waves_of_ro
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS, check_cost
 from eel_dynamics.curvature.curvature_samples import check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
-from eel_dynamics.flow.flow import Flow, check_covers, checked_flow, core_flow
-from eel_dynamics.model.body import Body, checked_body
-from eel_dynamics.model.fins import Fin, checked_fins, edges_of
-from eel_dynamics.model.initial_state import InitialState, check_planar, checked_quaternion, time_scale
-from eel_dynamics.model.scene import Scene
-from eel_dynamics.robot.compiled import ModeTable, mode_table
-from eel_dynamics.robot.robot import Robot, checked_robot
 
 FITTING = 1e-6  # part of the body's length by which the rows of a law may be shorter or longer
 

@@ -12,9 +12,9 @@ from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
 from eel_base.command.run_command import run_command
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.command_options import add_options
 from eel_dynamics.runs.run import Run, simulate
+from eel_model.scene import Scene
 
 from eel_gaits import straight
 from eel_studies.figures import corrections, further_drawings, kern_comparison, notes, orders, paper_drawings

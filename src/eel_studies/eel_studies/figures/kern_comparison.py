@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 from eel_base.files.markdown import table
 from eel_dynamics.analysis.analysis import Analysis
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.run import simulate
+from eel_model.body.body import Body
+from eel_model.scene import Scene
 
 from eel_gaits import kern_efficient, kern_fast
 from eel_studies.points import AccuracyLike

@@ -2,8 +2,8 @@
 """The numbers of the page beside the figures, docs/figures/README.md. Each is computed from the runs in the figures."""
 
 import numpy as np
-from eel_dynamics.model.section_data import CRITICAL_REYNOLDS
 from eel_dynamics.runs.run import Run
+from eel_model.section_data import CRITICAL_REYNOLDS
 
 from eel_studies.figures import corrections, kern_comparison
 from eel_studies.figures.corrections import Correction

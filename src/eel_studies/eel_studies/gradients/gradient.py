@@ -27,15 +27,15 @@ from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.measures import checked_measures
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.equality import same_fields
-from eel_dynamics.model.scene import Scene
-from eel_dynamics.model.section_data import CRITICAL_REYNOLDS
 from eel_dynamics.runs.batch import Batch
 from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.sampling import default_sample_period
 from eel_dynamics.runs.swim import Swim
+from eel_model.body.body import Body
+from eel_model.equality import same_fields
+from eel_model.scene import Scene
+from eel_model.section_data import CRITICAL_REYNOLDS
 
 from eel_studies.gradients.fixed_discretisation import fixed_steps, on_one_grid, step_of
 from eel_studies.points import (

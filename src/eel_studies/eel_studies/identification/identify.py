@@ -19,10 +19,10 @@ import numpy as np
 from eel_base.command.progress import progress_of
 from eel_base.quantity import number, positive
 from eel_base.wording import shown
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.equality import same_fields
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.run import Run
+from eel_model.body.body import Body
+from eel_model.equality import same_fields
+from eel_model.scene import Scene
 
 from eel_studies.gradients.fixed_discretisation import fixed_steps
 from eel_studies.identification.fit import Fit

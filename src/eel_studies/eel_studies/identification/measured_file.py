@@ -15,11 +15,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from eel_base.attitude import heading
 from eel_base.wording import shown
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.run import Run
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.tables import Table, read_table
+from eel_model.body.body import Body
+from eel_model.scene import Scene
 
 from eel_studies.identification.measurements import MeasuredPath, MeasuredSpeed
 from eel_studies.points import VELOCITIES

@@ -21,13 +21,13 @@ from typing import NamedTuple
 
 import numpy as np
 from eel_dynamics.analysis.analysis import Analysis
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import simulate_batch
 from eel_dynamics.runs.run import Run
 from eel_gaits.film.kinematics import kinematics
 from eel_gaits.gaits.registry import gait
 from eel_gaits.laws.law import Law
+from eel_model.body.body import Body
+from eel_model.scene import Scene
 
 from eel_studies.optimisation.optimise import optimise
 from eel_studies.table import Table

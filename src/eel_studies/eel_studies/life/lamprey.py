@@ -13,8 +13,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.filmed import speeds_of
 from eel_dynamics.runs.run import Run, simulate
 from eel_gaits.film.beat import Beat, jackknife
@@ -22,6 +20,8 @@ from eel_gaits.film.kinematics import Kinematics, kinematics
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.term import Term
 from eel_gaits.sources.tables import read_table
+from eel_model.body.body import Body
+from eel_model.scene import Scene
 
 HEIGHTS = 0.02, 0.03, 0.04  # L, half-height of the tail fin
 TRUNK = 1.2  # height of the trunk by its width

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import simulate_batch
 from eel_dynamics.runs.run import Run, simulate
 from eel_gaits.film.beat import Beat
+from eel_model.body.body import Body
+from eel_model.scene import Scene
 
 PLANAR = Scene(planar=True, friction="blended", internal_wrench=False, ledger=False)
 BEATS = 16  # of a swim that begins at the measured speed; the later half counts

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from eel_base.quantity import numbers, positive
 from eel_base.wording import shown
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.scene import Scene
-from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.run import simulate
+from eel_model.body.body import Body
+from eel_model.robot.robot import Robot
+from eel_model.scene import Scene
 from numpy.typing import ArrayLike
 
 STEP = 1e-2  # of a logarithm, for the differences

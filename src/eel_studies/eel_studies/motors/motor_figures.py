@@ -10,12 +10,12 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from eel_dynamics.robot.actuators import at_limit
-from eel_dynamics.robot.compiled import HINGE, mode_table
-from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.swim import Swim
 from eel_gaits.laws.law import Law
+from eel_model.robot.actuators import at_limit
+from eel_model.robot.compiled import HINGE, mode_table
+from eel_model.robot.robot import Robot
 
 from eel_studies.table import Table
 

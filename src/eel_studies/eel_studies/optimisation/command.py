@@ -14,7 +14,6 @@ from eel_base.command.run_command import checked_out, run_command
 from eel_base.files.output_file import written_as
 from eel_base.wording import shown
 from eel_dynamics.analysis.measures import MEASURES
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.command_options import (
     add_options,
     add_repeated,
@@ -25,6 +24,7 @@ from eel_dynamics.runs.command_options import (
     varied_values,
 )
 from eel_dynamics.runs.storage.tables import write_columns
+from eel_model.scene import Scene
 
 from eel_studies.optimisation.front import FORMATS
 from eel_studies.optimisation.optimise import optimise

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 from eel_base.wording import shown
 from eel_dynamics.analysis.measures import described
-from eel_dynamics.model.equality import same_fields
 from eel_dynamics.runs.run import Run
+from eel_model.equality import same_fields
 
 from eel_studies.pictures import BLUE, GREY, LOOKS, Axes, Figure, write_picture
 from eel_studies.table import Table

@@ -20,9 +20,9 @@ from eel_base.command.progress import progress_of
 from eel_base.quantity import checked_instance, checked_row, number
 from eel_base.wording import not_one_of, shown
 from eel_dynamics.analysis.measures import checked_measures, measures_of
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.run import Run
+from eel_model.body.body import Body
+from eel_model.scene import Scene
 
 from eel_studies.gradients.fixed_discretisation import fixed_steps
 from eel_studies.optimisation.front import Front

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from eel_dynamics.model.scene import Scene
 from eel_gaits.pilot.goals import Path, Station, course, path, station
 from eel_gaits.pilot.pilot import Pilot
 from eel_gaits.pilot.settings import PilotSettings
+from eel_model.scene import Scene
 
 from eel_studies.pilot.closed_loop import Voyage, swim_with
 

@@ -5,9 +5,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from eel_dynamics.flow.sources import Shear, VortexStreet, Wave
 from eel_gaits.pilot.goals import course, station
 from eel_gaits.pilot.settings import PilotSettings
+from eel_model.flow.sources import Shear, VortexStreet, Wave
 
 from eel_studies.pilot.closed_loop import swim_with
 from eel_studies.pilot.courses import LAST_PART, SPEED, STATION, STRAIGHT, motion_alone, pilot_for

@@ -9,10 +9,10 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from eel_dynamics.robot.joint import Joint
-from eel_dynamics.robot.robot import Robot
 from eel_dynamics.runs.swim import AT_REST, Swim
 from eel_gaits.laws.law import Law
+from eel_model.robot.joint import Joint
+from eel_model.robot.robot import Robot
 
 Off = Callable[[Swim], Swim]  # a swim -> the same without the term
 

@@ -8,12 +8,12 @@ Singular bodies are refused beforehand (`inertia.py`).
 
 import numpy as np
 from eel_base.files.markdown import table
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.inertia import condition_of, straight_inertia
-from eel_dynamics.model.scene import Scene
-from eel_dynamics.model.section_data import nose_of
 from eel_dynamics.runs.run import Run, simulate
 from eel_dynamics.simulation.simulation import Simulation, SimulationStopped
+from eel_model.body.body import Body
+from eel_model.inertia import condition_of, straight_inertia
+from eel_model.scene import Scene
+from eel_model.section_data import nose_of
 
 import eel_core
 from eel_gaits import falling, straight

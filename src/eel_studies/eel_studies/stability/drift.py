@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 from eel_base.files.markdown import table as table_of
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.observations import Observations
 from eel_dynamics.simulation.simulation import Simulation
 from eel_gaits.laws.law import Law
+from eel_model.scene import Scene
 
 from eel_gaits import helix, straight
 

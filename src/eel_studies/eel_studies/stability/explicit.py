@@ -9,12 +9,12 @@ grows in each step by the greatest eigenvalue of I_b^-1 I_f, however short the s
 from typing import NamedTuple
 
 import numpy as np
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.grid import Grid
-from eel_dynamics.model.inertia import straight_inertia
-from eel_dynamics.model.panels import panels_of
-from eel_dynamics.model.scene import Scene
-from eel_dynamics.model.section_data import sections_on
+from eel_model.body.body import Body
+from eel_model.body.grid import Grid
+from eel_model.body.panels import panels_of
+from eel_model.inertia import straight_inertia
+from eel_model.scene import Scene
+from eel_model.section_data import sections_on
 
 STEPS = 20
 WRENCH = np.array([1e-3, -1e-2, -1e-2, 1.0, 1.0, 1.0])  # N m, N

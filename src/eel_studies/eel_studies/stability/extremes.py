@@ -2,12 +2,12 @@
 """The maps of `eel stability` without a scene: far beyond the range of any swimmer."""
 
 from eel_dynamics.accuracy.accuracy import ORDERS, PRESETS, Accuracy
-from eel_dynamics.flow.sources import Gust, Shear, Vortex
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.fins import Fin, RollHold
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.scene_file import swim_of
 from eel_dynamics.runs.swim import Swim
+from eel_model.body.body import Body
+from eel_model.fins.fins import Fin, RollHold
+from eel_model.flow.sources import Gust, Shear, Vortex
+from eel_model.scene import Scene
 
 from eel_studies.stability.maps import TARGET, Axis, Map
 from eel_studies.varied import varied

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 from eel_base.files.markdown import table as table_of
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.scene import Scene
+from eel_model.body.body import Body
+from eel_model.scene import Scene
 
 from eel_gaits import straight
 from eel_studies.stability.drift import recorded

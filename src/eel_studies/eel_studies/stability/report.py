@@ -6,7 +6,7 @@ from functools import partial
 from typing import Any
 
 from eel_base.files.markdown import table
-from eel_dynamics.model.inertia import MOST
+from eel_model.inertia import MOST
 
 from eel_studies.outputs import Outputs
 from eel_studies.stability import condition, drift, plane

@@ -16,12 +16,12 @@ from typing import Any
 import numpy as np
 from eel_base.quantity import checked_instance, checked_row, number, positive
 from eel_base.wording import not_one_of, shown
-from eel_dynamics.model.body import Body, checked_body
-from eel_dynamics.model.scene import Scene
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.steered_law import BENDS
 from eel_gaits.laws.term import Term
+from eel_model.body.body import Body, checked_body
+from eel_model.scene import Scene
 
 from eel_studies.steering.period_map import Motion, PeriodMap, rotation, turned_by
 

@@ -13,11 +13,11 @@ import numpy as np
 from eel_base.wording import shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.averaging_window import common_period
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import simulate_batch
 from eel_dynamics.runs.run import simulate
 from eel_gaits.laws.law import Law
+from eel_model.body.body import Body
+from eel_model.scene import Scene
 
 SETTLING = 12  # periods from rest, after which the settled motion is searched from
 CLOSE = 1e-9  # rad, and relative to the twist: a motion that repeats so closely has settled

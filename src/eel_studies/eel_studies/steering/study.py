@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.scene import Scene
-from eel_dynamics.model.section_data import GRAVITY, sections_of
 from eel_dynamics.runs.run import simulate
 from eel_gaits.laws.law import Law
+from eel_model.body.body import Body
+from eel_model.scene import Scene
+from eel_model.section_data import GRAVITY, sections_of
 
 from eel_gaits import straight, turning
 from eel_studies.steering.linearisation import (

@@ -9,20 +9,21 @@ from typing import Any
 
 import numpy as np
 from eel_base.wording import shown
-from eel_dynamics.flow.plain import plain_of_flow
-from eel_dynamics.model.body import DRAGS, MASSES, Body
-from eel_dynamics.model.shapes import NamedHalfAxis
 from eel_dynamics.runs.storage.plain import plain_of
 from eel_dynamics.runs.storage.tables import needed
 from eel_dynamics.runs.swim import Swim
+from eel_model.body.body import DRAGS, MASSES, Body
+from eel_model.body.shapes import NamedHalfAxis
+from eel_model.flow.plain import plain_of_flow
 
 import eel_core
 import eel_dynamics
 import eel_gaits
+import eel_model
 import eel_studies
 from eel_studies.points import SwimSettings
 
-PACKAGES = (Path(eel_gaits.__file__).parent, Path(eel_dynamics.__file__).parent, Path(eel_studies.__file__).parent)
+PACKAGES = tuple(Path(str(each.__file__)).parent for each in (eel_gaits, eel_model, eel_dynamics, eel_studies))
 
 
 def key_of(points: list[Swim], how: SwimSettings) -> str:

@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from eel_dynamics.accuracy.accuracy import PRESETS, Accuracy
-from eel_dynamics.model.scene import Scene
+from eel_model.scene import Scene
 
 RESOLUTIONS = (6.0, 8.0, 11.0, 16.0, 24.0, 36.0, 60.0, 110.0)  # points per body length
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10)  # relative error per adaptive step

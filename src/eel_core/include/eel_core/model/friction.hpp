@@ -2,7 +2,7 @@
 // The laws of the axial friction c_f(Re), section 7.2.1: all that depends on the law stands here.
 //
 // A new law is an entry of `Friction` and `friction_names`, and a case of `axial_friction`; `Scene.friction` takes its
-// name. Its coefficients come from `sections_of` in eel_dynamics/model/section_data.py. One that is not analytic along
+// name. Its coefficients come from `sections_of` in eel_model/section_data.py. One that is not analytic along
 // the body, as `blended`, wants more points: `Accuracy.in_scene`, and eel_dynamics/runs/companion.py.
 //
 // `taylor`: flow across a cylinder keeps its boundary layer thin, so that the friction along it is

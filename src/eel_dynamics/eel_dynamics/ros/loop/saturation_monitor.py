@@ -4,10 +4,10 @@
 from typing import Any
 
 import numpy as np
+from eel_model.robot.actuators import at_limit
+from eel_model.robot.robot import Robot
 from eel_ros.loop.diagnostics import Report
 
-from eel_dynamics.robot.actuators import at_limit
-from eel_dynamics.robot.robot import Robot
 from eel_dynamics.simulation.observations import Snapshot
 
 

@@ -6,8 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 from eel_base.topics import ENERGY_FIELDS
-
-from eel_dynamics.flow.lattice import lattice_around, velocities_at
+from eel_model.flow.lattice import lattice_around, velocities_at
 
 SECOND = 1_000_000_000  # ns
 

@@ -19,14 +19,14 @@ from eel_base.wording import one_line, shown
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import SECTION_COLUMN, Term
+from eel_model.body.body import Body, checked_body
+from eel_model.body.grid import Grid
+from eel_model.body.moments import with_moments
+from eel_model.body.panels import panels_of
+from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.budget import Budget
-from eel_dynamics.model.body import Body, checked_body
-from eel_dynamics.model.grid import Grid
-from eel_dynamics.model.moments import with_moments
-from eel_dynamics.model.panels import panels_of
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.exchange.eel_viz_functions import messages_of_bag
 from eel_dynamics.simulation.energy import WORKS, EnergyLedger
 

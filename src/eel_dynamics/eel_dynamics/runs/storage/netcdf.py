@@ -16,8 +16,8 @@ import numpy as np
 from eel_base.files.input_file import InputFile, from_json, reading
 from eel_base.files.output_file import check_output, replacing
 from eel_base.wording import shown
+from eel_model.axes import CONVENTIONS, PAPER, REP103
 
-from eel_dynamics.model.axes import CONVENTIONS, PAPER, REP103
 from eel_dynamics.runs.storage.digest import add_digest, check_digest
 from eel_dynamics.runs.storage.run_contents import in_rep103_axes
 from eel_dynamics.runs.variables import LABELS, OF_SWIMMERS, VARIABLES, Contents

@@ -16,19 +16,19 @@ from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 from eel_gaits.sources.sampled_law import SampledLaw
-
-from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.accuracy.budget import Budget
-from eel_dynamics.model.body import MASSES, Body
-from eel_dynamics.model.shapes import (
+from eel_model.body.body import MASSES, Body
+from eel_model.body.shapes import (
     NamedHalfAxis,
     PolynomialAlong,
     PolynomialHalfAxis,
     coefficients_of,
     polynomials_through,
 )
-from eel_dynamics.robot.robot import Robot
-from eel_dynamics.robot.robot_file import RobotReader, plain_of_robot
+from eel_model.robot.robot import Robot
+from eel_model.robot.robot_file import RobotReader, plain_of_robot
+
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.budget import Budget
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 HALF_AXES = ("half_width", "half_height")

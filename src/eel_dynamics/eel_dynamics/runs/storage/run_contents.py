@@ -5,12 +5,12 @@ from dataclasses import asdict
 
 import numpy as np
 from eel_base.wording import shown
+from eel_model.axes import REP103, turn_vector, turned
+from eel_model.fins.fins import Fin, RollHold
+from eel_model.flow.plain import flow_of, plain_of_flow
+from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
-from eel_dynamics.flow.plain import flow_of, plain_of_flow
-from eel_dynamics.model.axes import REP103, turn_vector, turned
-from eel_dynamics.model.fins import Fin, RollHold
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.variables import COUNTS, ENERGY, LEDGER, OWN, Contents
 from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS

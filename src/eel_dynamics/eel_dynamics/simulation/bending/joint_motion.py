@@ -6,8 +6,8 @@
 """
 
 import numpy as np
+from eel_model.robot.compiled import HINGE
 
-from eel_dynamics.robot.compiled import HINGE
 from eel_dynamics.simulation.bending.modes_on_grid import ModesOnGrid
 from eel_dynamics.simulation.observations import Variable
 

@@ -8,12 +8,12 @@ mode, whose factor is its coordinate. The coordinates are those of the modes and
 from typing import NamedTuple
 
 import numpy as np
+from eel_model.body.grid import Grid
+from eel_model.robot.compiled import HINGE, ModeTable
 
 import eel_core
 from eel_dynamics.curvature.law_follower import LawFollower
 from eel_dynamics.curvature.tabulated_law import TabulatedLaw, Tabulation
-from eel_dynamics.model.grid import Grid
-from eel_dynamics.robot.compiled import HINGE, ModeTable
 
 
 class ModesOnGrid:

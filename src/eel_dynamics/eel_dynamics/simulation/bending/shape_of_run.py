@@ -5,11 +5,11 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+from eel_model.robot.compiled import HINGE, ModeTable
 
 import eel_core
 from eel_dynamics.curvature.law_follower import LawFollower
 from eel_dynamics.curvature.tabulated_law import SEGMENT_AXES
-from eel_dynamics.robot.compiled import HINGE, ModeTable
 from eel_dynamics.simulation.bending.modes_on_grid import RobotTables
 from eel_dynamics.simulation.discretisation import Discretisation
 

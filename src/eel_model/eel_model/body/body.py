@@ -1,0 +1,371 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The body: elliptic sections along a straight reference line (sections 3.3 and 7.2.1), homogeneous unless its mass is
+given.
+
+A section at X has the half-height a(X) along E3 (its major axis on the paper's robot) and the half-width b(X) along E2.
+X runs from 0 at the nose to the length at the tail. The nose is pointed, a(0) = b(0) = 0, so it sheds no wake.
+"""
+
+import os
+import warnings
+from collections.abc import Callable
+from functools import cache, cached_property, lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from eel_base.cell import cell_of
+from eel_base.files.input_file import reading
+from eel_base.quantity import checked_instance, checked_row, number, positive
+from eel_base.wording import not_one_of, shown
+from eel_gaits.sources.tables import read_table
+from numpy.typing import ArrayLike
+
+from eel_model.body.along import AlongBody
+from eel_model.body.body_picture import lines_of_body, picture_of_body
+from eel_model.body.grid import Grid
+from eel_model.body.half_axis import ArrayHalfAxis, FunctionHalfAxis
+from eel_model.body.moments import with_moments
+from eel_model.body.panels import panels_of
+from eel_model.body.shapes import KINKS, NamedHalfAxis
+from eel_model.equality import same
+
+PANEL_OF_NOSE = 0.05  # of the length, where a body names no kinks
+LONGEST = 100.0  # m, of a body from a file; one that is longer may be in mm
+DRAGS = ("roll_drag", "lateral_drag", "vertical_drag", "friction_factor", "lateral_added_mass")
+NUMBERS = ("density", "nose_added_mass", "nose_drag", *DRAGS)
+COLUMNS, WHAT = ("x", "half_width", "half_height"), "body file "  # of a body in a file; WHAT begins an error
+MASSES = "mass_per_length", "centre_of_mass_offset"  # columns that it may have besides
+WATER = 1000.0  # kg/m^3, density of a body that gives none
+THICK = 0.25  # of the greatest area: in thinner sections, which weigh little, the centre of mass may lie outside
+LARGEST = 1e6  # m, of a number in it
+SHARP = 1e-3  # of the body's greatest half-axis: a half-axis at the tail that counts as none
+
+
+class Body:
+    """Geometry and mass of a swimmer, and the coefficients of its drag. Immutable.
+
+    `ValueError` names the argument that does not fit, and its value.
+
+    Args:
+        half_width, half_height: functions of X [m] that return m, or arrays [m] at `x`. A monotone cubic between the
+            kinks interpolates the squares of arrays.
+        length: [m]; with arrays it is the last `x`.
+        x: [m], shape (M,), M >= 4, rising from 0 to the length; with arrays only.
+        kinks: X [m] inside (0, length) where a half-axis or one of its derivatives jumps.
+        nose: half-axes and length (a_o, b_o, c_o) [m] of the cap in m_o = rho_f pi k a_o b_o c_o and
+            k_o = pi c_p a_o b_o; by default the half-axes at the end of the first panel, and its length.
+        density: [kg/m^3], of a homogeneous body; by default that of water, 1000.
+        mass_per_length: m(X) [kg/m] in place of a density: a number, a function of X that is smooth between the kinks,
+            or an array at `x`. Each section's mass lies as that of a homogeneous one.
+        centre_of_mass_offset: h(X) [m], how far the centre of mass lies below the section's centre, along its axis 3;
+            likewise. Gravity acts on it in a `Scene(weight=True)`; what it means for the inertia holds always.
+        nose_added_mass: k.
+        nose_drag: c_p.
+        roll_drag, lateral_drag, vertical_drag: c_1, c_2, c_3.
+        friction_factor: times the friction of a smooth plate at rest: a body that beats has a thinner boundary layer
+            (Lighthill, Proc. R. Soc. B 179 (1971): up to 4), and joints and gaps are rough.
+        lateral_added_mass: times that of the ellipse, along axis 2: below 1 for gaps between links and round ends, 1.51
+            for a square section in place of the circle within it (Newman, Marine Hydrodynamics, 1977, table 4.3).
+        name: what messages call the body.
+    """
+
+    def __init__(
+        self,
+        *,
+        half_width: Any,
+        half_height: Any,
+        length: float | None = None,
+        x: ArrayLike | None = None,
+        kinks: ArrayLike = (),
+        nose: tuple[float, float, float] | None = None,
+        density: float | None = None,
+        mass_per_length: Any = None,
+        centre_of_mass_offset: Any = 0.0,
+        nose_added_mass: float = 0.32,
+        nose_drag: float = 0.036,
+        roll_drag: float = 1.0,
+        lateral_drag: float = 1.98,
+        vertical_drag: float = 1.0,
+        friction_factor: float = 1.0,
+        lateral_added_mass: float = 1.0,
+        name: str = "body",
+    ) -> None:
+        if x is not None:
+            x = checked_row("body x", x, None)
+            falls = np.flatnonzero(np.diff(x) <= 0.0)
+            if len(x) < 4 or len(falls) or x[0] != 0.0:
+                ends = f" from {x[0]:g} to {x[-1]:g}" if len(x) else ""
+                ends += f", {x[falls[0] + 1]:g} after {x[falls[0]]:g}" if len(falls) else ""
+                raise ValueError(f"body x must rise from 0 over 4 points or more, got {len(x)} points{ends}")
+            length = x[-1] if length is None else length
+            if abs(x[-1] - positive("body length", length, "m")) > 1e-9 * x[-1]:
+                raise ValueError(f"body x must end at the length {length} m, got {x[-1]}")
+        elif length is None:
+            raise ValueError("body length must be given, in m, where half_width and half_height are functions")
+        self.length = float(x[-1]) if x is not None else positive("body length", length, "m")
+        if density is not None and mass_per_length is not None:
+            raise ValueError(f"body density must not be given beside mass_per_length, got {shown(density)}")
+        self._density = positive("body density", WATER if density is None else density, "kg/m^3")
+        self.name = checked_instance("body name", name, str)
+        self.kinks = self._checked_kinks(kinks)
+        self.panel_ends = (*(self.kinks or (PANEL_OF_NOSE * self.length,)), self.length)
+        bounds = (0.0, *self.panel_ends)
+        kind = (
+            FunctionHalfAxis
+            if x is None
+            else (
+                lambda name, values, bounds: ArrayHalfAxis(name, x, checked_row(f"body {name}", values, None), bounds)
+            )
+        )
+        self._half_width = kind("half_width", half_width, bounds)
+        self._half_height = kind("half_height", half_height, bounds)
+        self._mass = (
+            None
+            if mass_per_length is None
+            else AlongBody("body mass_per_length", "kg/m", mass_per_length, x, bounds, 0.0)
+        )
+        self._offset = AlongBody("body centre_of_mass_offset", "m", centre_of_mass_offset, x, bounds)
+        self.offset = self._checked_offset()
+        self.nose = self._checked_nose(nose)
+        self.nose_added_mass = number("body nose_added_mass", nose_added_mass, minimum=0.0)
+        self.nose_drag = number("body nose_drag", nose_drag, minimum=0.0)
+        self.roll_drag = number("body roll_drag", roll_drag, minimum=0.0)
+        self.lateral_drag = number("body lateral_drag", lateral_drag, minimum=0.0)
+        self.vertical_drag = number("body vertical_drag", vertical_drag, minimum=0.0)
+        self.friction_factor = number("body friction_factor", friction_factor, minimum=0.0)
+        self.lateral_added_mass = number("body lateral_added_mass", lateral_added_mass, minimum=0.0)
+        numbers = tuple(getattr(self, name) for name in NUMBERS[1:])
+        self._hash = hash((self.name, self.length, self.kinks, self.nose, self._density, numbers))
+
+    def plot(self) -> Any:
+        """A matplotlib figure of the outlines, from above and from the side. `ImportError` without matplotlib."""
+        return picture_of_body(self)
+
+    def _repr_html_(self) -> str:
+        return cell_of(self.plot, lines_of_body(self))
+
+    def half_width(self, x: ArrayLike) -> np.ndarray:
+        """b(X) [m] along E2 at `x` [m]."""
+        return np.asarray(np.sqrt(self._half_width.square(np.asarray(x, dtype=float))))
+
+    def half_height(self, x: ArrayLike) -> np.ndarray:
+        """a(X) [m] along E3 at `x` [m]."""
+        return np.asarray(np.sqrt(self._half_height.square(np.asarray(x, dtype=float))))
+
+    def mass_per_length(self, x: ArrayLike, density: float | None = None) -> np.ndarray:
+        """m(X) [kg/m] at `x` [m]; `density` [kg/m^3]: of a scene, in place of a homogeneous body's own."""
+        if self._mass is None:
+            density = self._density if density is None else density
+            return np.asarray(density * (np.pi * self.half_height(x) * self.half_width(x)))
+        if density is not None:
+            raise ValueError(f"scene density must be none for a body with mass_per_length, got {density:g} kg/m^3")
+        return self._mass(x)
+
+    def centre_of_mass_offset(self, x: ArrayLike) -> np.ndarray:
+        """h(X) [m] at `x` [m]: how far the centre of mass lies below the section's centre."""
+        return self._offset(x)
+
+    @property
+    def half_axes(self) -> dict[str, Any]:
+        """The half-axes as they were given: functions of X, or arrays (2, M) of X and half-axis [m]."""
+        return {"half_width": self._half_width.given, "half_height": self._half_height.given}
+
+    @cached_property
+    def breaks(self) -> np.ndarray:
+        """X [m] inside the body where a derivative of a half-axis from data may jump: its data points."""
+        return self._half_width.breaks
+
+    def squares(self, x: ArrayLike) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """a^2, b^2 [m^2] and their derivatives by X [m] at `x` (M,) [m]. A kink has the derivative ahead of it."""
+        x = np.asarray(x, dtype=float)
+        return (
+            self._half_height.square(x),
+            self._half_width.square(x),
+            self._half_height.slope(x),
+            self._half_width.slope(x),
+        )
+
+    @cached_property
+    def pointed_tail(self) -> bool:
+        """Whether the tail ends in an edge or a point. A half-axis is zero there; the perimeter goes like its root."""
+        squares = np.array(self.squares(np.array([0.5 * self.length, self.length]))[:2])
+        return bool(np.min(squares[:, 1]) <= SHARP**2 * np.max(squares))
+
+    @cached_property
+    def volume(self) -> float:
+        """Integral of pi a b dX [m^3]."""
+        grid = Grid.of(panels_of(self, resolution=40))
+        if not len(self.breaks):
+            return float(np.sum(grid.weight * np.pi * self.half_width(grid.x) * self.half_height(grid.x)))
+        return self.integral(lambda x: np.pi * self.half_width(x)[None] * self.half_height(x))[0]
+
+    def integral(self, fields: Callable[[np.ndarray], np.ndarray]) -> list[float]:
+        """Integrals of `fields`, from X (n,) [m] to (m, n), over the body; smooth between its kinks and data points."""
+        grid = Grid.of(panels_of(self, resolution=40))
+        values = with_moments(fields, grid, self.breaks) if len(self.breaks) else fields(grid.x)
+        integrals: list[float] = (values @ grid.weight).tolist()
+        return integrals
+
+    @property
+    def mass(self) -> float:
+        """Mass [kg] at the body's own density."""
+        return self.mass_in(None)
+
+    def mass_in(self, density: float | None) -> float:
+        """Mass [kg] where a scene has this `density` [kg/m^3] of the body; None: its own."""
+        if self._mass is None:
+            return self.volume * (self._density if density is None else density)
+        return self.integral(lambda x: self.mass_per_length(x, density)[None])[0]
+
+    @property
+    def density(self) -> float:
+        """Density [kg/m^3]; the mean one of a body with its own mass per length."""
+        return self._density if self._mass is None else self.mass / self.volume
+
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """The arguments of an equal body."""
+        shape = self.half_axes
+        if isinstance(self._half_width, ArrayHalfAxis):
+            shape = {"x": shape["half_width"][0], **{name: values[1] for name, values in shape.items()}}
+        names = ("length", "kinks", "nose", *NUMBERS, "name")
+        given = None if self._mass is None else self._mass.given
+        masses = {"mass_per_length": given, "centre_of_mass_offset": self._offset.given}
+        own = {"density": self._density if given is None else None}
+        return shape | {name: own[name] if name in own else getattr(self, name) for name in names} | masses
+
+    def changed(self, **changes: Any) -> "Body":
+        """The same body with other `arguments`."""
+        unknown = [name for name in changes if name not in self.arguments]
+        if unknown:
+            raise ValueError(f"body has no {shown(unknown[0])}, it has: {', '.join(self.arguments)}")
+        own = self.arguments
+        if changes.get("mass_per_length") is not None:
+            own["density"] = None
+        return Body(**own | changes)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _body_of, (self.arguments,)
+
+    def __eq__(self, other: object) -> bool:
+        return self is other or (isinstance(other, Body) and same(self.arguments, other.arguments))
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    def __repr__(self) -> str:
+        return f"Body({self.name!r}, length={self.length} m, density={self.density} kg/m^3)"
+
+    @staticmethod
+    @cache
+    def boyer2010() -> "Body":
+        """The eel-like robot of section 7.2.1: 1 m long, 1.944 kg."""
+        return Body(**_named_shape("boyer2010", 1.0), nose=(0.025, 0.05, 0.05))
+
+    @staticmethod
+    def kern2006(length: float = 1.0) -> "Body":
+        """The anguilliform swimmer of Kern and Koumoutsakos, J. Exp. Biol. 209 (2006): volume 0.0059326 length^3."""
+        return Body._kern2006(positive("body length", length, "m"))
+
+    @staticmethod
+    @lru_cache(maxsize=64)
+    def _kern2006(length: float) -> "Body":
+        return Body(**_named_shape("kern2006", length))
+
+    @staticmethod
+    def spindle(length: float, slenderness: float) -> "Body":
+        """A body with a round nose and a blunt tail of half the height, twice as high as wide.
+
+        length: [m]. slenderness: length / (2 x greatest half-height).
+        """
+        length = positive("body length", length, "m")
+        half = length / (2.0 * positive("body slenderness", slenderness))
+
+        def half_height(x: np.ndarray) -> np.ndarray:
+            s = np.asarray(x, dtype=float) / length
+            return half * np.sqrt(np.clip(1.0 - np.clip(1.0 - s / 0.05, 0.0, None) ** 2, 0.0, None)) * (1.0 - 0.5 * s)
+
+        return Body(
+            length=length, half_width=lambda x: 0.5 * half_height(x), half_height=half_height, kinks=(0.05 * length,)
+        )
+
+    @staticmethod
+    def named(name: str) -> "Body":
+        """The body called `name`: boyer2010 or kern2006. `ValueError` for another name."""
+        if name not in NAMED:
+            raise ValueError(not_one_of("body", name, (*NAMED, "a file")))
+        made: Body = getattr(Body, name)()
+        return made
+
+    @staticmethod
+    def from_file(path: str | os.PathLike[str]) -> "Body":
+        """A body from columns x, half_width, half_height [m] of a .csv (with a header line) or .npz file.
+
+        It may have the columns mass_per_length [kg/m] and centre_of_mass_offset [m] too.
+        """
+        if not isinstance(path, (str, os.PathLike)):
+            raise ValueError(f"body file must be a path, got {shown(path)}")
+        path = Path(path)
+        with reading(f"{WHAT}{shown(str(path))}"):
+            table = read_table(path, WHAT)
+            if missing := [name for name in COLUMNS if name not in table.columns]:
+                raise table.error(f"a body must have columns {', '.join(COLUMNS)}; {', '.join(missing)} missing")
+            names = (*COLUMNS, *(name for name in MASSES if name in table.columns))
+            table.check_finite(names, LARGEST)
+            columns: dict[str, Any] = {name: table.columns[name] for name in names}
+            body = Body(**columns, name=path.stem)
+        if body.length > LONGEST:
+            warnings.warn(f"body file {path} is {body.length:g} m long: are its columns in m?", stacklevel=2)
+        return body
+
+    def _checked_kinks(self, kinks: ArrayLike) -> tuple[float, ...]:
+        values = checked_row("body kinks", kinks, None)
+        if np.any(np.diff(values) <= 0.0) or np.any(values <= 0.0) or np.any(values >= self.length):
+            raise ValueError(f"body kinks must rise inside (0, {self.length}) m, got {shown(values.tolist())}")
+        return tuple(values.tolist())
+
+    def _checked_offset(self) -> bool:
+        """Whether the centre of mass lies off the axis. `ValueError` where it lies outside the section."""
+        x = np.linspace(0.0, self.length, 257)
+        a, h = self.half_height(x), self._offset(x)
+        area = a * self.half_width(x)
+        outside = (np.abs(h) > a) & (area > THICK * area.max())
+        if outside.any():
+            first = np.flatnonzero(outside)[0]
+            raise ValueError(
+                f"body centre_of_mass_offset must lie within the section, {a[first]:.4g} m high at X = {x[first]:.4g} "
+                f"m, got {h[first]:.6g} m"
+            )
+        return bool(h.any())
+
+    def _checked_nose(self, nose: ArrayLike | None) -> tuple[float, float, float]:
+        if nose is None:
+            end = self.panel_ends[0]
+            return float(self.half_height(end)), float(self.half_width(end)), float(end)
+        values = checked_row("body nose", nose, None)
+        if values.shape != (3,) or np.any(values < 0.0):
+            raise ValueError(f"body nose must be three lengths (a_o, b_o, c_o) >= 0 m, got {shown(nose)}")
+        return tuple(values.tolist())
+
+
+def checked_body(body: Any) -> Body:
+    """`body`, if it is a `Body`; for None that of Boyer, Porez and Leroyer 2010. `ValueError` for anything else."""
+    if isinstance(body, (str, os.PathLike)):
+        raise ValueError(
+            f"body must be a Body, got {shown(body)}: Body.from_file(...) reads a file, and names are class methods "
+            "such as Body.kern2006()"
+        )
+    return Body.boyer2010() if body is None else checked_instance("body", body, Body)
+
+
+def _named_shape(name: str, length: float) -> dict[str, Any]:
+    half_axes = {axis: NamedHalfAxis(name, axis, length) for axis in ("half_width", "half_height")}
+    return {"name": name, "length": length, "kinks": tuple(kink * length for kink in KINKS[name]), **half_axes}
+
+
+def _body_of(arguments: dict[str, Any]) -> Body:
+    return Body(**arguments)
+
+
+NAMED = tuple(KINKS)

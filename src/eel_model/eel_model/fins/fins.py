@@ -1,0 +1,266 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Fins: stiff plates on the body that turn about their span, given angles, a servo, a hold of the roll.
+
+A fin has its root on the side of the body and its span across it. Its forces act at the centre of an elliptic plate, on
+the hinge line: attached lift after Whicker and Fehlner (David Taylor Model Basin, report 933, 1958) without sweep, the
+drag that goes with it, and beyond the stall a plate's across the stream; and its added mass along its normal
+(eel_core/fins.hpp). The body is a mirror: the effective aspect ratio is 2 span^2 / area.
+"""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from eel_base.quantity import checked_instance, checked_row, is_finite, number, positive
+from eel_base.wording import not_one_of, shown
+
+import eel_core
+from eel_model.body.body import Body
+from eel_model.scene import Scene
+
+COMMANDED = "commanded"  # angle of a fin that follows commands
+SIDES = {"right": 1.0, "left": -1.0}  # along axis 2 of the sections
+APART = 1e-9  # of the body's length: stations that are closer count as one place
+Table = tuple[tuple[float, ...], tuple[float, ...]]  # times [s], angles [rad]
+
+
+@dataclass(frozen=True)
+class RollHold:
+    """The angle of a fin that holds the roll level: -k_p roll - k_d Omega1 on the right side, the opposite on the left.
+
+    roll [rad] is that of the section at the fin's station, 0 upright; Omega1 [rad/s] its angular velocity about E1.
+    """
+
+    k_p: float = 2.0  #: rad of the fin by rad of roll
+    k_d: float = 0.15  #: s
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "k_p", number("roll hold k_p", self.k_p))
+        object.__setattr__(self, "k_d", number("roll hold k_d", self.k_d, "s"))
+
+
+@dataclass(frozen=True)
+class Fin:
+    """A fin. Immutable; `ValueError` names what does not fit.
+
+    station: X [m] of its hinge, inside the body. side: "left" or "right". area [m^2]. aspect_ratio: effective, twice
+    span^2 by area. dihedral [rad]: how much its tip rises. angle: [rad], or (times [s], angles [rad]), which a smooth
+    spline joins, a `RollHold`, or "commanded": what `Simulation.command_fins` asks for, 0 at first; above 0 the leading
+    edge rises. time_constant [s]: of the servo that follows the angle; None: none, the fin has the angle. limit [rad]:
+    of the servo. lift_slope: of sine times cosine of the incidence; None: Whicker's and Fehlner's. normal_drag,
+    friction_drag: coefficients of a plate across the stream and along it. efficiency: of its lift, in the induced drag.
+    """
+
+    station: float
+    side: str
+    area: float
+    aspect_ratio: float
+    dihedral: float = 0.0
+    angle: Any = 0.0
+    time_constant: float | None = None
+    limit: float = 0.6
+    lift_slope: float | None = None
+    normal_drag: float = 1.2
+    friction_drag: float = 0.01
+    efficiency: float = 0.9
+
+    def __post_init__(self) -> None:
+        if self.side not in SIDES:
+            raise ValueError(not_one_of("fin side", self.side, tuple(SIDES)))
+        values: dict[str, Any] = {"station": positive("fin station", self.station, "m")}
+        units = {"area": "m^2", "aspect_ratio": "", "limit": "rad", "efficiency": ""}
+        values |= {name: positive(f"fin {name}", getattr(self, name), unit) for name, unit in units.items()}
+        values["dihedral"] = number("fin dihedral", self.dihedral, "rad", minimum=-1.5, maximum=1.5)
+        values["angle"] = _checked_angle(self.angle)
+        if self.time_constant is not None:
+            values["time_constant"] = positive("fin time_constant", self.time_constant, "s")
+        elif isinstance(self.angle, RollHold) or self.angle == COMMANDED:
+            kind = "a RollHold" if self.angle != COMMANDED else "a commanded fin"
+            raise ValueError(f"fin time_constant must be given for {kind}, in s, got none")
+        if self.lift_slope is not None:
+            values["lift_slope"] = number("fin lift_slope", self.lift_slope, minimum=0.0)
+        for name in ("normal_drag", "friction_drag"):
+            values[name] = number(f"fin {name}", getattr(self, name), minimum=0.0)
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+
+    @staticmethod
+    def pair(station: float, area: float, aspect_ratio: float, **others: Any) -> tuple["Fin", "Fin"]:
+        """A fin on the left and one on the right, each of this area; the arguments are those of `Fin`."""
+        left = Fin(station, "left", area, aspect_ratio, **others)
+        return left, replace(left, side="right")
+
+    @property
+    def name(self) -> str:
+        """Side and station [mm], as topics name it."""
+        return f"{self.side}_{round(1e3 * self.station)}"
+
+    @property
+    def span(self) -> float:
+        """From root to tip [m]."""
+        return math.sqrt(0.5 * self.aspect_ratio * self.area)
+
+    @property
+    def chord(self) -> float:
+        """Mean chord [m]."""
+        return self.area / self.span
+
+    @property
+    def axis(self) -> np.ndarray:
+        """Unit vector (3,) from root to tip, section axes."""
+        return np.array([0.0, SIDES[self.side] * math.cos(self.dihedral), math.sin(self.dihedral)])
+
+    @property
+    def normal(self) -> np.ndarray:
+        """Unit normal (3,) at rest, upwards, section axes."""
+        return np.array([0.0, -SIDES[self.side] * math.sin(self.dihedral), math.cos(self.dihedral)])
+
+    def root(self, body: Body) -> np.ndarray:
+        """(3,) [m] from the section's centre to the root, section axes."""
+        return np.array([0.0, SIDES[self.side] * float(body.half_width(self.station)), 0.0])
+
+    @property
+    def slope(self) -> float:
+        """The lift slope in force."""
+        if self.lift_slope is not None:
+            return self.lift_slope
+        ratio = self.aspect_ratio
+        return 0.9 * 2.0 * math.pi * ratio / (math.sqrt(ratio**2 + 4.0) + 1.8)
+
+    @property
+    def servo(self) -> tuple:
+        """What turns it: fins that are equal in this have one servo."""
+        own: Any = self.name if self.angle == COMMANDED else None
+        return self.angle, self.time_constant, self.limit, self.station if isinstance(self.angle, RollHold) else own
+
+
+def _checked_angle(angle: Any) -> Any:
+    if isinstance(angle, RollHold) or (isinstance(angle, str) and angle == COMMANDED):
+        return angle
+    if is_finite(angle):
+        return number("fin angle", angle, "rad")
+    try:
+        if isinstance(angle, str):
+            raise TypeError
+        time, values = angle
+    except (TypeError, ValueError):
+        raise ValueError(
+            f"fin angle must be a number in rad, (times, angles), a RollHold or commanded, got {shown(angle)}"
+        ) from None
+    time, values = checked_row("fin angle times", time, None), checked_row("fin angle angles", values, None)
+    if len(time) < 2 or np.any(np.diff(time) <= 0.0) or len(values) != len(time):
+        raise ValueError(
+            f"fin angle must have rising times and as many angles, two or more, got {len(time)} times and "
+            f"{len(values)} angles"
+        )
+    return tuple(time.tolist()), tuple(values.tolist())
+
+
+def checked_fins(fins: Any, body: Body, scene: Scene) -> tuple[Fin, ...]:
+    """The fins of a run, pairs among them taken apart. `ValueError` names one that `body` or `scene` does not allow."""
+    if fins is None:
+        return ()
+    if isinstance(fins, Fin) or not isinstance(fins, Iterable):
+        raise ValueError(f"fins must be a list of Fin, got {shown(fins)}")
+    flat = [each for item in fins for each in (item if isinstance(item, (tuple, list)) else (item,))]
+    found = tuple(checked_instance("fin", each, Fin) for each in flat)
+    if found and scene.planar:
+        raise ValueError(f"fins need a scene in space, got planar and {len(found)} fins")
+    for place, fin in enumerate(found):
+        if not APART * body.length < fin.station < (1.0 - APART) * body.length:
+            raise ValueError(f"fin station must lie inside the body, 0 to {body.length:g} m, got {fin.station:g} m")
+        for other in found[:place]:
+            if other.side == fin.side and abs(other.station - fin.station) < APART * body.length:
+                raise ValueError(
+                    f"fins must be at different places, got two on the {fin.side} at X = {fin.station:g} m"
+                )
+    states = sum(1 for servo in servos_of(found) if servo[1] is not None)
+    if states > eel_core.MOST_SERVOS:
+        raise ValueError(f"fins must have {eel_core.MOST_SERVOS} servos with a time constant at most, got {states}")
+    return found
+
+
+def servos_of(fins: tuple[Fin, ...]) -> list[tuple]:
+    """The servos of the fins, each once."""
+    return list(dict.fromkeys(fin.servo for fin in fins))
+
+
+def edges_of(body: Body, fins: tuple[Fin, ...]) -> tuple[float, ...]:
+    """X [m] at which panels must end for the fins: no kink of the body is closer than `APART`."""
+    stations = {fin.station for fin in fins}
+    near = [x for x in stations if min(abs(x - kink) for kink in body.panel_ends) < APART * body.length]
+    return tuple(sorted(stations - set(near)))
+
+
+def core_fins(body: Body, scene: Scene, grid, x: np.ndarray, fins: tuple[Fin, ...]) -> tuple[list, list]:
+    """The fins and their servos for the compiled mechanics; stations at `x` (M,) [m]."""
+    if not fins:
+        return [], []
+    near, servos = 10.0 * APART * body.length, servos_of(fins)
+    node = {fin.station: int(np.searchsorted(grid.x, fin.station - near)) for fin in fins}
+    rows = []
+    for fin in fins:
+        centre = fin.root(body) + 4.0 * fin.span / (3.0 * math.pi) * fin.axis
+        reactive = scene.fluid_density if scene.reactive else 0.0
+        held = isinstance(fin.angle, RollHold) and fin.side == "left"
+        rows.append(
+            (
+                node[fin.station],
+                fin.normal.tolist(),
+                centre.tolist(),
+                0.5 * scene.fluid_density * fin.area,
+                fin.slope,
+                1.0 / (math.pi * fin.efficiency * fin.aspect_ratio),
+                fin.normal_drag,
+                fin.friction_drag,
+                reactive * 0.25 * math.pi * fin.chord**2 * fin.span,
+                servos.index(fin.servo),
+                -1.0 if held else 1.0,
+                int(np.searchsorted(x, fin.station - near)),
+            )
+        )
+    turns = []
+    for angle, time_constant, limit, station in servos:
+        gains = (angle.k_p, angle.k_d) if isinstance(angle, RollHold) else (0.0, 0.0)
+        turns.append((time_constant or 0.0, limit, *gains, node.get(station, 0)))
+    return rows, turns
+
+
+def given_angles(fins: tuple[Fin, ...], commands: dict[str, float]) -> list[tuple[np.ndarray, np.ndarray]]:
+    """What each servo is given: knots (n,) [s] and coefficients (n - 1, 4) of cubics [rad], from the constant on.
+
+    commands: [rad] by the names of commanded fins."""
+    return [
+        _cubics(commands.get(where, 0.0) if angle == COMMANDED else angle) for angle, _, _, where in servos_of(fins)
+    ]
+
+
+def checked_commands(fins: tuple[Fin, ...], commands: Any) -> dict[str, float]:
+    """Angles [rad] by the names of commanded `fins`. `ValueError` for another name, or an angle that is no number."""
+    known = [fin.name for fin in fins if fin.angle == COMMANDED]
+    for name in commands:
+        if name not in known:
+            raise ValueError(not_one_of("commanded fin", name, tuple(known)))
+    return {name: number(f"angle of fin {name}", angle, "rad") for name, angle in commands.items()}
+
+
+def _cubics(angle: Any) -> tuple[np.ndarray, np.ndarray]:
+    if not isinstance(angle, tuple):
+        constant = 0.0 if isinstance(angle, RollHold) else angle
+        return np.array([0.0, 1.0]), np.array([[constant, 0.0, 0.0, 0.0]])
+    from scipy.interpolate import CubicSpline
+
+    spline = CubicSpline(*angle, bc_type="clamped")
+    return np.array(spline.x), np.ascontiguousarray(spline.c[::-1].T)
+
+
+def knots_of(fins: tuple[Fin, ...]) -> list[float]:
+    """Times [s] at which a derivative of a given angle jumps."""
+    return sorted({time for fin in fins if isinstance(fin.angle, tuple) for time in fin.angle[0]})
+
+
+def servo_time(fins: tuple[Fin, ...]) -> float:
+    """The shortest time constant [s] of a servo; infinite without one."""
+    return min((fin.time_constant for fin in fins if fin.time_constant is not None), default=np.inf)

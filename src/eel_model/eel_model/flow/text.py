@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Flows as texts, for commands and nodes: a name with numbers, or a netCDF file; several are joined by " + ".
+
+shear velocity=0.1,0,0 width=0.5
+vortex_street core=0.3 + gust velocity=0,0.1,0 start=3
+tank.nc
+"""
+
+from typing import Any
+
+from eel_base.wording import not_one_of, shown
+
+from eel_model.flow.flow import Flow, parts_of
+from eel_model.flow.gridded import GriddedFlow
+from eel_model.flow.plain import KINDS, flow_of, plain_of_flow
+
+NAMES = {"".join(f"_{c.lower()}" if c.isupper() else c for c in kind).strip("_"): kind for kind in KINDS}
+GRIDS = ".nc"  # how the names of files end
+JOINED = " + "
+
+
+def flow_from_text(text: str) -> Flow | None:
+    """The flow of a `text`; None of an empty one. `ValueError` names what does not fit."""
+    flow: Flow | None = None
+    for part in text.split(JOINED) if text.strip() else []:
+        one = _part(part.strip())
+        flow = one if flow is None else flow + one
+    return flow
+
+
+def text_of_flow(flow: Flow) -> str:
+    """The text of a `flow`. `ValueError` for one of functions or a grid."""
+    plain = plain_of_flow(flow) or []
+    names = {kind: name for name, kind in NAMES.items()}
+    for part, each in zip(parts_of(flow), plain, strict=True):
+        if each["kind"] not in names:
+            raise ValueError(f"flow {part!r} has no text: give its file")
+    return JOINED.join(
+        " ".join(
+            [names[each.pop("kind")], *(f"{name}={_written(value)}" for name, value in each.items() if value != ())]
+        )
+        for each in ({name: value for name, value in each.items() if value is not None} for each in plain)
+    )
+
+
+def _part(text: str) -> Flow:
+    name, *given = text.split()
+    if name.endswith(GRIDS) and not given:
+        return GriddedFlow.of(name)
+    if name not in NAMES:
+        raise ValueError(not_one_of("flow", name, (*NAMES, f"a file that ends in {GRIDS}")))
+    fields: dict[str, Any] = {"kind": NAMES[name]}
+    for each in given:
+        field, _, value = each.partition("=")
+        if not field or not value or field in fields:
+            raise ValueError(f"flow {name} must have fields NAME=VALUE, each once, got {shown(each)}")
+        fields[field] = _read(value)
+    flow = flow_of([fields])
+    assert flow is not None
+    return flow
+
+
+def _read(text: str) -> Any:
+    """A number, a word, a row of numbers (commas), or rows of them (semicolons)."""
+    if ";" in text:
+        return tuple(_read(row) for row in text.split(";"))
+    if "," in text:
+        return tuple(_read(number) for number in text.split(","))
+    for number in (int, float):
+        try:
+            return number(text)
+        except ValueError:
+            continue
+    return text
+
+
+def _written(value: Any) -> str:
+    if not isinstance(value, (tuple, list)):
+        return str(value)
+    return (";" if value and isinstance(value[0], (tuple, list)) else ",").join(map(_written, value))

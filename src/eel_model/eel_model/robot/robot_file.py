@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Robots as files and as plain values. An error names file, line and key.
+
+    name: my_robot
+    body: fish.csv                    # a file beside this one, or a name; without: any body
+    joints:
+      - position: [0.10, 0.22, 0.34]  # m; joints that are alike in all else
+        servo: {kp: 13.8, kd: 0.37, torque_limit: 3.0, speed_limit: 8.06}
+      - {position: 0.5, stiffness: 2.0, damping: 0.01, limits: [-0.8, 0.8]}
+    tails:
+      - {start: 0.6, bending_stiffness: 0.6, damping: 0.01, modes: 4}
+    muscles:
+      - {start: 0.2, end: 0.5, bending_stiffness: 1.0, damping: 0.1,
+         moment: [{amplitude: [0.5], wavelength: 1.0, period: 1.0}]}
+
+The keys are the fields of `Joint`, `Servo`, `Torque`, `PassiveTail` and `Muscle`. `servo` may be a name (xm430_w210),
+`torque` holds `time` and `torque`, and `moment` terms of a law, whose amplitudes are N m. A stiffness or a damping that
+changes along the body is a table {x: [...], values: [...]}.
+"""
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, asdict, fields
+from functools import partial
+from pathlib import Path
+from typing import Any, NoReturn
+
+import numpy as np
+from eel_base.files.input_file import Misplaced
+from eel_base.files.yaml_tree import Entries, read_yaml
+from eel_base.wording import did_you_mean, shown
+from eel_gaits.laws.law import Law
+from eel_gaits.laws.ramp import Ramp
+from eel_gaits.laws.term import Term
+
+from eel_model.body.body import Body
+from eel_model.robot.actuators import Servo, Torque
+from eel_model.robot.continuous import Muscle, PassiveTail, ProfileTable
+from eel_model.robot.joint import Joint
+from eel_model.robot.ready import SERVOS
+
+LISTS: dict[str, type[Any]] = {"joints": Joint, "tails": PassiveTail, "muscles": Muscle}
+FILE = ("name", "body", *LISTS)
+POINTS = 201  # of a table that stands for a function
+
+
+def robot_in_yaml(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """The arguments of the `Robot` in a YAML file. `ValueError` names line and key."""
+    path = Path(path)
+    return {"name": path.stem} | RobotReader(path.parent).arguments(read_yaml(path))
+
+
+def plain_of_robot(robot: Any, length: float) -> dict[str, Any]:
+    """`robot` as plain values, such as a file holds, without its body.
+
+    A stiffness that is a function of X becomes a table over a body of `length` [m]; a torque that is a function is
+    refused (`ValueError`): no file holds code.
+    """
+    plain: dict[str, Any] = {"name": robot.name}
+    for key, kind in LISTS.items():
+        parts = [_plain_part(part, length) for part in robot.parts if isinstance(part, kind)]
+        if parts:
+            plain[key] = parts
+    return plain
+
+
+def _plain_part(part: Any, length: float) -> dict[str, Any]:
+    plain: dict[str, Any] = {}
+    for item in fields(part):
+        value = getattr(part, item.name)
+        if item.default is not MISSING and value is item.default:
+            continue
+        if isinstance(value, Servo):
+            plain["servo"] = {each.name: getattr(value, each.name) for each in fields(value)}
+        elif isinstance(value, Torque):
+            if value.time is None:
+                raise ValueError(f"joint {shown(part.name)} torque is a function, which no file holds: give its values")
+            plain["torque"] = {"time": list(value.time), "torque": list(value.torque)}  # type: ignore[arg-type]
+        elif isinstance(value, Law):
+            plain[item.name] = [asdict(term) for term in value.terms]
+        elif callable(value):
+            table = value if isinstance(value, ProfileTable) else _table(value, part, length)
+            plain[item.name] = {"x": list(table.x), "values": list(table.values)}
+        else:
+            plain[item.name] = list(value) if isinstance(value, tuple) else value
+    return plain
+
+
+def _table(function: Callable[..., Any], part: Any, length: float) -> ProfileTable:
+    x = np.linspace(part.start, part.end if part.end is not None else length, POINTS)
+    return ProfileTable(tuple(x.tolist()), tuple(float(function(each)) for each in x))
+
+
+class RobotReader:
+    """Makes the arguments of a `Robot` of plain values. folder: where files lie that the document names."""
+
+    def __init__(self, folder: Path | None = None) -> None:
+        self._folder = folder
+
+    def arguments(self, root: Any) -> dict[str, Any]:
+        """parts, and name and body where the document has them."""
+        if not isinstance(root, Mapping):
+            raise Misplaced("line 1", f"a robot must have keys such as joints, got {shown(root)}")
+        self._check_keys(root, FILE)
+        found: dict[str, Any] = {"parts": []}
+        for key, kind in LISTS.items():
+            for entries in self._list(root, key):
+                found["parts"] += self._parts(kind, entries, root, key)
+        if not found["parts"]:
+            self._fail(root, "joints", "must hold joints, or tails or muscles in their place, got none")
+        if "name" in root:
+            found["name"] = root["name"]
+        if "body" in root:
+            found["body"] = self._tried(root, "body", lambda: self._body(root["body"]))
+        return found
+
+    def _parts(self, kind: type[Any], entries: Any, root: Mapping[str, Any], key: str) -> list[Any]:
+        """The parts of one entry: several joints, where it has several positions."""
+        if not isinstance(entries, Mapping):
+            self._fail(root, key, f"must hold mappings of fields, got {shown(entries)}")
+        known = [item.name for item in fields(kind) if item.name != "actuator"]
+        self._check_keys(entries, (*known, *(("servo", "torque") if kind is Joint else ())))
+        given = {name: entries[name] for name in known if name in entries}
+        for item in fields(kind):
+            if item.default is MISSING and item.name not in given:
+                self._fail(entries, item.name, f"must be given for each of the {key}")
+        for name in ("bending_stiffness", "damping"):
+            if kind is not Joint and isinstance(given.get(name), Mapping):
+                given[name] = self._made(ProfileTable, entries, name)
+        if kind is Joint:
+            given["actuator"] = self._actuator(entries)
+        if kind is Muscle:
+            given["moment"] = self._moment(entries)
+        if kind is not Joint or not isinstance(given["position"], list):
+            return [self._built(kind, entries, given)]
+        if "name" in given:
+            self._fail(entries, "name", "goes with one position")
+        return [self._built(kind, entries, given | {"position": place}) for place in given["position"]]
+
+    def _built(self, kind: type[Any], entries: Mapping[str, Any], given: dict[str, Any]) -> Any:
+        """`kind` of the `given` fields; an error names the key that its text names."""
+        try:
+            return kind(**given)
+        except (ValueError, TypeError) as error:
+            words = str(error).split()
+            guilty = next((word for word in words if word in entries), "")
+            self._fail(entries, guilty, str(error))
+
+    def _made(self, kind: type[Any], above: Mapping[str, Any], key: str) -> Any:
+        """`kind` of the fields in the mapping at `key`."""
+        given = above[key]
+        if not isinstance(given, Mapping):
+            self._fail(above, key, f"must be a mapping of fields, got {shown(given)}")
+        self._check_keys(given, [item.name for item in fields(kind)])
+        for item in fields(kind):
+            if item.default is MISSING and item.name not in given:
+                self._fail(given, item.name, f"must be given for {key}")
+        return self._built(kind, given, dict(given))
+
+    def _actuator(self, entries: Mapping[str, Any]) -> Servo | Torque | None:
+        if "servo" in entries and "torque" in entries:
+            self._fail(entries, "torque", "does not go with servo")
+        if isinstance(entries.get("servo"), str):
+            name = entries["servo"]
+            if name not in SERVOS:
+                self._fail(entries, "servo", f"must be one of {', '.join(SERVOS)}, or a mapping, got {shown(name)}")
+            return SERVOS[name]
+        for key, kind in (("servo", Servo), ("torque", Torque)):
+            if key in entries:
+                made: Servo | Torque = self._made(kind, entries, key)
+                return made
+        return None
+
+    def _moment(self, entries: Mapping[str, Any]) -> Law:
+        axis, terms = entries.get("axis", "yaw"), []
+        for each in self._list(entries, "moment"):
+            if not isinstance(each, Mapping):
+                self._fail(
+                    entries, "moment", f"must hold terms, such as {{amplitude: [0.5], period: 1}}, got {shown(each)}"
+                )
+            self._check_keys(each, [item.name for item in fields(Term)])
+            given = {"axis": axis} | dict(each)
+            for name in ("amplitude", "knots"):
+                if isinstance(given.get(name), list):
+                    given[name] = tuple(given[name])
+            ramps = self._list(each, "envelope")
+            given["envelope"] = self._tried(each, "envelope", partial(_envelope, ramps))
+            terms.append(self._built(Term, each, given))
+        return Law(*terms)
+
+    def _body(self, given: Any) -> Body:
+        if not isinstance(given, str):
+            raise ValueError(f"must be a name or a file, got {shown(given)}")
+        if Path(given).suffix not in (".csv", ".npz"):
+            return Body.named(given)
+        return Body.from_file(given if self._folder is None else self._folder / given)
+
+    # -- places and errors
+
+    def _list(self, entries: Mapping[str, Any], key: str) -> list[Any]:
+        found = entries.get(key, [])
+        if not isinstance(found, (list, tuple)):
+            self._fail(entries, key, f"must be a list, got {shown(found)}")
+        return list(found)
+
+    def _check_keys(self, entries: Mapping[str, Any], known: Any) -> None:
+        for key in entries:
+            if key not in known:
+                self._fail(entries, key, f"is unknown, must be one of {', '.join(known)}{did_you_mean(key, known)}")
+
+    def _tried(self, entries: Mapping[str, Any], key: str, make: Callable[[], Any]) -> Any:
+        try:
+            return make()
+        except (ValueError, TypeError) as error:
+            if isinstance(error, Misplaced):
+                raise
+            self._fail(entries, key, str(error))
+
+    def _fail(self, entries: Mapping[str, Any], key: str, reason: str) -> NoReturn:
+        line = f"line {entries.lines.get(key, entries.line)}" if isinstance(entries, Entries) else "robot"
+        raise Misplaced(f"{line}, key {shown(key)}" if key else line, reason) from None
+
+
+def _envelope(ramps: list[Any]) -> tuple[Ramp, ...]:
+    return tuple(Ramp(**ramp) for ramp in ramps)
