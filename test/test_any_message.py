@@ -55,10 +55,11 @@ class Network:
         self.executor = SingleThreadedExecutor(context=self.context)
         self.executor.add_node(self.node)
 
-    def until(self, condition, what):
-        """Wait for `condition()`; returns its value."""
+    def until(self, condition, what, node=None):
+        """Wait for `condition()`, as long as the process `node` lives; returns its value."""
         deadline = time.monotonic() + LIMIT
         while not (value := condition()):
+            assert node is None or node.status is None, f"{node.name} has ended:\n{node.output()[-3000:]}"
             assert time.monotonic() < deadline, f"no {what} within {LIMIT} s"
             self.executor.spin_once(timeout_sec=0.02)
         return value
@@ -89,12 +90,12 @@ class Network:
         assert node.status is None, f"{topic} ended {node.name}:\n{node.output()[-3000:]}"
         self.node.destroy_publisher(publisher)
 
-    def call(self, kind, name, requests):
-        """Call a service with one of the `requests` after the other, each of which it answers."""
+    def call(self, kind, name, requests, node):
+        """Call a service of the process `node` with one of the `requests` after the other, each of which it answers."""
         service = self.node.create_client(kind, name)
         self.until(service.service_is_ready, f"service {name}")
         for request in requests:
-            self.until(answer_of(service, request), f"answer from {name} to {str(request)[:300]}")
+            self.until(answer_of(service, request), f"answer from {name} to {str(request)[:300]}", node)
         self.node.destroy_client(service)
 
 
@@ -120,7 +121,8 @@ def send_extremes(network, node, name, further=()) -> None:
     for service, (kind, *_) in network.node.get_service_names_and_types_by_node(name, "/"):
         if not service.rpartition("/")[2].startswith(("get_", "list_", "describe_")):
             requests = extremes(get_service(kind).Request)
-            network.call(get_service(kind), service, requests if name in CALLED else islice(requests, 5))
+            requests = requests if name in CALLED else islice(requests, 5)
+            network.call(get_service(kind), service, requests, node)
     assert node.status is None and "Traceback" not in node.output(), node.output()[-3000:]
 
 

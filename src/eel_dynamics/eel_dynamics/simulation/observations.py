@@ -112,8 +112,8 @@ class Observations:
     __hash__ = object.__hash__
 
     def arrays(self) -> dict[str, np.ndarray]:
-        """All quantities by name."""
-        return {name: getattr(self, name) for name in self.places}
+        """All quantities by name, without those that a `Snapshot` was not asked for."""
+        return {name: getattr(self, name) for name, (_, shape) in self.places.items() if shape is not None}
 
 
 OBSERVED = {name: each.variable for name, each in vars(Observations).items() if isinstance(each, Observed)}

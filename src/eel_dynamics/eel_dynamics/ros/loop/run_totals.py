@@ -18,7 +18,7 @@ class RunTotals:
 
     def add(self, snapshot: Snapshot) -> None:
         """Add a snapshot's figures; `SimulationStopped` if one of its values is not finite."""
-        if not math.isfinite(np.add.reduce(snapshot.whole)):
+        if not np.isfinite(snapshot.whole).all():
             for name, array in snapshot.arrays().items():
                 if not np.isfinite(array).all():
                     raise _not_finite(snapshot, name, array)

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The totals of a node's run: what they take, and what they stop it for."""
+
+import sys
+
+import numpy as np
+import pytest
+from eel_dynamics.ros.loop.run_totals import RunTotals
+
+from eel_dynamics import Simulation, SimulationStopped
+from eel_gaits import straight
+
+
+@pytest.mark.parametrize("whole", [True, False])
+def test_the_farthest_place_that_a_number_can_name_is_finite(whole):
+    simulation = Simulation()
+    simulation.adopt(straight())
+    simulation.set_state([sys.float_info.max, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0], np.zeros(6))
+    totals = RunTotals()
+    totals.add(simulation.observe(wrench=whole, load=whole))  # the sum of its numbers is infinite
+    assert ("closure_torque" in totals.values()) is whole
+
+
+@pytest.mark.parametrize("whole", [True, False])
+def test_a_number_that_is_not_finite_stops_the_run_by_its_name(whole):
+    simulation = Simulation()
+    simulation.adopt(straight())
+    snapshot = simulation.observe(wrench=whole, load=whole)
+    assert set(snapshot.arrays()) >= {"position", "backbone"} and ("torque" in snapshot.arrays()) is whole
+    snapshot.backbone[3, 1] = np.nan
+    with pytest.raises(SimulationStopped, match="backbone"):
+        RunTotals().add(snapshot)
