@@ -11,16 +11,16 @@ namespace eel_core {
 
 // Gives the swimmer its fins: (node, normal (3,), centre (3,), pressure, lift slope, induced drag, normal drag,
 // friction drag, added mass, servo, sign, first station there or behind); and the servos: (time constant, limit, roll
-// gain, rate gain, node).
+// gain, rate gain, node, initial angle).
 inline void add_fins(Swimmer& swimmer, const py::list& fins, const py::list& servos)
 {
     std::size_t slot = state_size;
     for (const py::handle each : servos) {
-        const auto [tau, limit, roll, rate, node] =
-            each.cast<std::tuple<double, double, double, double, std::size_t>>();
+        const auto [tau, limit, roll, rate, node, initial] =
+            each.cast<std::tuple<double, double, double, double, std::size_t, double>>();
         if (tau > 0.0 && slot == state_space)
             throw py::value_error("servos with a time constant must be " + std::to_string(most_servos) + " at most");
-        swimmer.servos.push_back({tau, limit, roll, rate, node, tau > 0.0 ? slot++ : 0});
+        swimmer.servos.push_back({tau, limit, roll, rate, node, tau > 0.0 ? slot++ : 0, initial});
     }
     for (const py::handle each : fins) {
         const auto t = each.cast<py::tuple>();

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from cases import random_law
 
-from eel_dynamics import Accuracy, Body, Scene, SimulationStopped, simulate, simulate_batch
+from eel_dynamics import Accuracy, Batch, Body, Fin, RollHold, Scene, SimulationStopped, simulate, simulate_batch
 from eel_gaits import Law, Term, falling, straight, turning
 
 MOTION = ["time", "position", "orientation", "twist", "head_acceleration", "center_of_mass"]
@@ -179,3 +179,21 @@ def test_progress_reaches_the_end():
 def test_bad_input_is_named(given, words):
     with pytest.raises(ValueError, match="(?s)" + "".join(f"(?=.*{word})" for word in words)):
         simulate_batch(**{"laws": falling(), "duration": 0.1, **given})
+
+
+def test_fins_of_each_swimmer(tmp_path):
+    """A list for all, or one for each: some with more fins than others, some with none."""
+    pair = Fin.pair(0.2, 1e-3, 2.5, angle=RollHold(2.0, 0.15), time_constant=0.05, initial_angle=0.1)
+    several = [[pair], None, [Fin(0.5, "left", 1e-3, 2.5, angle=0.2)]]
+    batch = simulate_batch(falling(), 0.3, fins=several, accuracy=1e-2, sample_period=0.1, stations=11)
+    for run, fins in zip(batch, several, strict=True):
+        alone = simulate(falling(), 0.3, fins=fins, accuracy=1e-2, sample_period=0.1, stations=11)
+        assert_same(run, alone)
+        assert run.fins == alone.fins and np.array_equal(run.fin_angle, alone.fin_angle)
+    assert batch[0].fin_angle[0].tolist() == [-0.1, 0.1]  # the servo's start
+    assert batch.fin_force.shape == (3, 4, 2, 3) and not batch.fin_force[1].any()
+    batch.save(tmp_path / "batch.nc")
+    assert Batch.load(tmp_path / "batch.nc") == batch
+    assert [len(each) for each in simulate_batch([falling()] * 2, 0.1, fins=[pair], accuracy=1e-2).fins] == [2, 2]
+    with pytest.raises(ValueError, match="swimmer 1: fins need a scene in space"):
+        simulate_batch(straight(), 0.1, scenes=[Scene(), Scene(planar=True)], fins=[pair])

@@ -6,8 +6,9 @@
 | `period`, ... | a number of the gait |
 | `scene.fluid_density`, ... | a field of `Scene` |
 | `body` | a `Body`, or the name of one |
-| `body.lateral_drag`, ... | a number of `Body` |
+| `body.lateral_drag`, `body.centre_of_mass_offset`, ... | a number of `Body` |
 | `flow`, `flow.spacing`, ... | a `Flow`, or its text as of `eel simulate --flow`; a field of it |
+| `fins`, `fins.area`, `fins.k_p`, ... | `Fin`s, or their text; a field of all, or a gain of their `RollHold` |
 | `accuracy` | as in `simulate` |
 | `initial.position_x`, `_y`, `_z` | head at the start [m], world |
 | `initial.omega_x`, ..., `initial.v_z` | twist of the head at the start [rad/s, m/s], its axes |
@@ -28,7 +29,9 @@ from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.swim import Swim
 from eel_gaits.gaits.registry import find
 from eel_gaits.laws.law import Law
-from eel_model.body.body import NUMBERS, Body, checked_body
+from eel_model.body.body import MASSES, NUMBERS, Body, checked_body
+from eel_model.fins.fins import Fin, RollHold, checked_fins
+from eel_model.fins.text import GAINS, fins_from_text
 from eel_model.flow.flow import Flow
 from eel_model.flow.plain import KINDS
 from eel_model.flow.text import flow_from_text
@@ -42,7 +45,7 @@ AccuracyLike = str | float | Accuracy
 Stations = int | np.ndarray
 Progress = Callable[[int, int], object] | bool | None  # as in `sweep`
 GROUPS = "scene.", "body.", "initial."  # what begins a name of theirs
-FLOW = "flow."
+FLOW, FINS = "flow.", "fins."
 POSITIONS = ("position_x", "position_y", "position_z")
 VELOCITIES = ("omega_x", "omega_y", "omega_z", "v_x", "v_y", "v_z")
 
@@ -81,6 +84,7 @@ def batch_of_points(
         orientations=np.array([point.start.orientation for point in points]),
         twists=np.array([point.start.twist for point in points]),
         flows=[point.flow for point in points],
+        fins=[list(point.fins) for point in points],
         estimate=how.estimate,
         threads=threads,
         progress=progress,
@@ -127,9 +131,9 @@ def _named(value: object) -> bool:
 
 
 def _point(values: Numbers, gait: Gait, base: Swim) -> Swim:
-    body, accuracy, flow = base.body, base.accuracy, base.flow
+    body, accuracy, flow, fins = base.body, base.accuracy, base.flow, base.fins
     own: dict[str, Any] = {}
-    groups: dict[str, dict[str, Any]] = {group.rstrip("."): {} for group in (*GROUPS, FLOW)}
+    groups: dict[str, dict[str, Any]] = {group.rstrip("."): {} for group in (*GROUPS, FLOW, FINS)}
     for name, value in values.items():
         group, _, field = name.partition(".")
         if field and group in groups:
@@ -138,17 +142,36 @@ def _point(values: Numbers, gait: Gait, base: Swim) -> Swim:
             body = Body.named(value) if isinstance(value, str) else value
         elif name == "flow":
             flow = flow_from_text(value) if isinstance(value, str) else value
+        elif name == "fins":
+            fins = fins_from_text(value) if isinstance(value, str) else value
         elif name == "accuracy":
             accuracy = Accuracy.of(value)
         else:
             own[name] = value
     check_names("scene", groups["scene"], [item.name for item in fields(Scene)])
-    check_names("body", groups["body"], NUMBERS)
+    check_names("body", groups["body"], (*NUMBERS, *MASSES))
     law = (find(gait) if isinstance(gait, str) else gait)(**own)
     body = body.changed(**groups["body"]) if groups["body"] else body
     scene, start = replace(base.scene, **groups["scene"]), _start(base.start, groups["initial"])
-    flow = _flow_with(flow, groups["flow"])
-    return base._replace(law=law, body=body, scene=scene, accuracy=accuracy, start=start, flow=flow)
+    flow, fins = _flow_with(flow, groups["flow"]), fins_with(checked_fins(fins, body, scene), groups["fins"])
+    return base._replace(law=law, body=body, scene=scene, accuracy=accuracy, start=start, flow=flow, fins=fins)
+
+
+def fins_with(fins: tuple[Fin, ...], changes: Numbers) -> tuple[Fin, ...]:
+    """The `fins` with other fields, or other gains of those that hold the roll."""
+    if changes and not fins:
+        raise ValueError(f"fins have no field {shown(next(iter(changes)))}: the scene has no fins")
+    check_names("fins", changes, (*(item.name for item in fields(Fin)), *GAINS))
+    gains = {name: value for name, value in changes.items() if name in GAINS}
+    own = {name: value for name, value in changes.items() if name not in GAINS}
+    if gains and not any(isinstance(fin.angle, RollHold) for fin in fins):
+        raise ValueError(f"fins have no gain {shown(next(iter(gains)))}: none of them holds the roll")
+
+    def changed(fin: Fin) -> Fin:
+        held = {"angle": replace(fin.angle, **gains)} if isinstance(fin.angle, RollHold) else {}
+        return replace(fin, **held | own)
+
+    return tuple(changed(fin) for fin in fins)
 
 
 def _flow_with(flow: Flow | None, changes: Numbers) -> Flow | None:

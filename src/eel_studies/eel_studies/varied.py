@@ -9,7 +9,7 @@
 | `spin` | turns/s of the head about all three of its axes alike |
 | `flow.core`, ... | a field of the flow |
 | `robot.stiffness`, ... | a field of all joints of the robot, or of their servos |
-| `fins.area`, ... | a field of all fins |
+| `fins.area`, `fins.k_p`, ... | a field of all fins, or of their hold of the roll |
 | `flow_speed` | m/s: size of the flow's velocity |
 | `step` | s: fixed steps of the classical method |
 | `tolerance`, `resolution`, `method` | settings given one by one |
@@ -26,13 +26,12 @@ from eel_base.quantity import number
 from eel_base.wording import shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.runs.swim import Swim
-from eel_model.fins.fins import Fin
 from eel_model.robot.robot import Robot
 
-from eel_studies.points import GROUPS, check_names, point_at
+from eel_studies.points import FINS, FLOW, GROUPS, check_names, fins_with, point_at
 
 RESOLUTION = 36.0  # points per body length where a setting in time is given: the error in space stays below 1e-3
-FLOW, ROBOT, FINS = "flow.", "robot.", "fins."
+ROBOT = "robot."
 
 
 def varied(swim: Swim, values: dict[str, Any]) -> Swim:
@@ -54,7 +53,7 @@ def varied(swim: Swim, values: dict[str, Any]) -> Swim:
         elif name.startswith(FLOW):
             swim = _with_flow(swim, {name.removeprefix(FLOW): value})
         elif name.startswith(FINS):
-            swim = _with_fins(swim, name.removeprefix(FINS), value)
+            swim = swim._replace(fins=fins_with(swim.fins, {name.removeprefix(FINS): value}))
         elif name.startswith(ROBOT):
             swim = swim._replace(robot=_robot_of(swim).changed(**{name.removeprefix(ROBOT): value}))
     if period and isinstance(swim.duration, float) and (now := _longest_period(swim)) != period:
@@ -64,13 +63,6 @@ def varied(swim: Swim, values: dict[str, Any]) -> Swim:
 
 def _longest_period(swim: Swim) -> float:
     return max((term.period for term in getattr(swim.law, "waves", ())), default=0.0)
-
-
-def _with_fins(swim: Swim, field: str, value: Any) -> Swim:
-    if not swim.fins:
-        raise ValueError(f"fins have no field {shown(field)}: the scene has no fins")
-    check_names("fins", {field: value}, [item.name for item in fields(Fin)])
-    return swim._replace(fins=tuple(replace(fin, **{field: value}) for fin in swim.fins))
 
 
 def _robot_of(swim: Swim) -> Robot:

@@ -20,7 +20,7 @@ from eel_studies.sweeps import command as sweep_command
 from eel_studies.sweeps.command import main
 from eel_studies.sweeps.sweep_key import key_of
 
-from eel_dynamics import Accuracy, Batch, Body, Run, Scene, simulate
+from eel_dynamics import Accuracy, Batch, Body, Fin, RollHold, Run, Scene, simulate
 from eel_gaits import Law, Term, sampled, straight
 from eel_studies import sweep
 
@@ -467,3 +467,35 @@ def test_a_file_of_a_sweep_says_what_opens_it(kind, tmp_path):
     with pytest.raises(ValueError, match=f"holds a sweep, not a {kind.__name__.lower()}: xarray.open_dataset opens it"):
         kind.load(path)
     assert xarray.open_dataset(path).sizes["period"] == 1
+
+
+def test_fins_and_mass_are_swept(tmp_path):
+    """Area and gain of fins, mass and offset of the body; each point is the swim of its own arguments."""
+    fins = "pair station=0.2 area=0.001 aspect_ratio=2.5 k_p=2 time_constant=0.05"
+    grid = {"fins.area": [5e-4, 2e-3], "fins.k_p": [1.0, 4.0], "fins.dihedral": [0.1], "body.density": [900.0]}
+    numbers = {"fins": fins, "body.centre_of_mass_offset": 0.005, "scene.weight": True, "initial.omega_x": 0.3}
+    data = sweep(grid, numbers=numbers, measure=lambda run: {"lean": run.orientation[-1, 0]}, **SHORT)
+    hold = RollHold(4.0, 0.15)
+    pair = Fin.pair(0.2, 2e-3, 2.5, dihedral=0.1, angle=hold, time_constant=0.05)
+    body = Body.boyer2010().changed(density=900.0, centre_of_mass_offset=0.005)
+    alone = simulate(straight(), fins=[pair], body=body, scene=Scene(weight=True), twist=(0.3, 0, 0, 0, 0, 0), **SHORT)
+    chosen = {"fins.area": 2e-3, "fins.k_p": 4.0, "fins.dihedral": 0.1, "body.density": 900.0}
+    assert float(data.lean.sel(chosen)) == alone.orientation[-1, 0]
+    assert len(np.unique(data.lean)) == 4
+    out = tmp_path / "fins.nc"
+    words = ["straight", "--fins", fins, "--vary", "fins.k_d=0.1,0.2", "--duration", "1", "--accuracy", "1e-2"]
+    assert main([*words, "--measures", "mean_speed", "--out", str(out)]) == 0
+    assert xarray.load_dataset(out, engine="scipy").sizes["fins.k_d"] == 2
+
+
+@pytest.mark.parametrize(
+    ("name", "numbers", "message"),
+    [
+        ("fins.area", {}, "fins have no field 'area': the scene has no fins"),
+        ("fins.k_p", {"fins": "left station=0.2 area=0.001 aspect_ratio=2"}, "fins have no gain 'k_p': none of them"),
+        ("fins.aera", {"fins": "left station=0.2 area=0.001 aspect_ratio=2"}, "fins has no field 'aera'.*area"),
+    ],
+)
+def test_a_field_that_fins_do_not_have_is_named(name, numbers, message):
+    with pytest.raises(ValueError, match=message):
+        sweep({name: [1.0]}, numbers=numbers, **SHORT)

@@ -23,6 +23,7 @@ from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.body.body import Body
 from eel_model.equality import same_fields
+from eel_model.fins.fins import Fin
 from eel_model.flow.flow import Flow, check_covers
 from eel_model.flow.plain import flow_of
 from eel_model.robot.robot import Robot
@@ -43,7 +44,7 @@ from eel_dynamics.runs.sampling import check_memory, checked_times, default_samp
 from eel_dynamics.runs.settled_duration import duration_of
 from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.storage.netcdf import loaded, write
-from eel_dynamics.runs.storage.run_contents import contents_of_batch, observed_of_batch, with_warnings
+from eel_dynamics.runs.storage.run_contents import contents_of_batch, fins_of, observed_of_batch, with_warnings
 from eel_dynamics.runs.storage.tables import dataset_of, frame_of_all, needed
 from eel_dynamics.runs.variables import COUNTS, Contents, documented_arrays
 from eel_dynamics.simulation.bending.joint_motion import JointMotion
@@ -92,6 +93,9 @@ class Batch:
     energy: EnergyLedger | None
     flows: tuple[Flow | None, ...] = ()
     robots: tuple[Robot | None, ...] = ()
+    fins: tuple[tuple[Fin, ...], ...] = ()  #: of each swimmer; fewer than F leave 0 in the arrays
+    fin_angle: np.ndarray | None = None
+    fin_force: np.ndarray | None = None
     _joints: tuple[JointMotion | None, ...] = ()
     _out: tuple[Any, ...] = ()  # observations, works, energy at the start, of all, for `__getitem__`
 
@@ -105,7 +109,7 @@ class Batch:
         return hash((self.laws, self.bodies, self.scenes))
 
     def __reduce__(self) -> tuple[Any, ...]:  # each array once
-        more = self.flows, self.robots, self._joints
+        more = self.flows, self.robots, self._joints, self.fins
         return _batch_from, (contents_of_batch(self, *self._out), self.laws, self.bodies, self.scenes, *more)
 
     def __repr__(self) -> str:
@@ -143,7 +147,10 @@ class Batch:
         out, works, start = self._out
         scene, done = self.scenes[index], int(self.samples[index])
         return run_of(
-            Swimmer(self.laws[index], self.bodies[index], scene, self.x[index], self.flows[index], self.robots[index]),
+            Swimmer(
+                *(self.laws[index], self.bodies[index], scene, self.x[index]),
+                *(self.flows[index], self.robots[index], self.fins[index]),
+            ),
             out[index],
             works=works[index, :done],
             start=start[index],
@@ -211,6 +218,7 @@ def simulate_batch(
     most_evaluations: float = MOST_EVALUATIONS,
     flows: Any = None,
     robots: Any = None,
+    fins: Any = None,
 ) -> Batch:
     """Simulate B swimmers for `duration` [s] each, with samples every `sample_period` [s] from t = 0 on.
 
@@ -233,11 +241,12 @@ def simulate_batch(
         most_evaluations: of each, as in `simulate`.
         flows, robots: one for all, or a sequence of B, each a flow, or a robot, or None. A `FlowField` runs one swimmer
             at a time.
+        fins: as in `simulate` for all; or a list of B lists, or None, one for each.
     """
     accuracy = accuracy.tolist() if isinstance(accuracy, np.ndarray) else accuracy
     along = [0.0] if stations is None else stations
     states = positions, orientations, twists
-    swimmers = swimmers_of(laws, bodies, scenes, accuracy, along, *states, most_evaluations, flows, robots)
+    swimmers = swimmers_of(laws, bodies, scenes, accuracy, along, *states, most_evaluations, flows, robots, fins)
     seconds = duration_of(duration, swimmers)
     if sample_period is None:
         sample_period = default_sample_period({law for law, _ in swimmers}, seconds)
@@ -248,7 +257,8 @@ def simulate_batch(
     wrench = [setup.scene.internal_wrench and stations is not None for _, setup in swimmers]
     count, load, points = len(swimmers), bool(load) and stations is not None, len(swimmers[0][1].x)
     check_memory(count, len(times), points, any(wrench), load)
-    out = Observations.empty(len(times), points, any(wrench), load, (count,))
+    most_fins = max(len(setup.fins) for _, setup in swimmers)
+    out = Observations.empty(len(times), points, any(wrench), load, (count,), most_fins)
     works, start = np.zeros((count, len(times), len(WORKS))), np.zeros(count)
     samples, *_ = counts = np.zeros((4, count), dtype=int)
     settings = [setup.accuracy for _, setup in swimmers]
@@ -260,16 +270,18 @@ def simulate_batch(
         request = SwimRequest(*swimmers[index], times, wrench[index], load)
         try:
             settings_to_try = Accuracy.to_refine(request.setup.accuracy) if estimate else None
-            space = out[index] if wrench[index] == any(wrench) else None
+            fits = wrench[index] == any(wrench) and len(request.setup.fins) == most_fins
+            space = out[index] if fits else None
             found = request.swim(request.simulation(settings_to_try), out=space)
             found = with_error_estimate(found, request) if estimate else found
         except (SimulationStopped, ValueError) as error:
             errors[index] = _stopped_at_start(error)
             return
         run = found.run
-        if found.out is not space:  # other profiles than others have, or a finer run
+        if found.out is not space:  # other profiles or fins than others have, or a finer run
             for name, array in found.out.arrays().items():
-                getattr(out, name)[index, : len(array)] = array
+                row = getattr(out, name)[index, : len(array)]
+                (row[:, : array.shape[1]] if name in FINS else row)[...] = array
         works[index], start[index], errors[index] = found.works, found.energy_at_start, found.stopped
         settings[index], estimates[index] = run.accuracy, run.error_estimate
         joints[index] = found.joints
@@ -279,14 +291,14 @@ def simulate_batch(
     for index in np.flatnonzero(samples < len(times)).tolist():
         for array in (*out[index].arrays().values(), works[index]):
             array[samples[index] :] = 0.0
-    swum = [Swimmer(law, setup.body, setup.scene, setup.x, setup.flow, setup.robot) for law, setup in swimmers]
+    swum = [Swimmer(law, *(getattr(setup, name) for name in Swimmer._fields[1:])) for law, setup in swimmers]
     found = settings, errors, estimates, counts, joints
     return _batch_of(swum, found, times, out, works, start, wrench, load, stations)
 
 
 class Swimmer(NamedTuple):
-    """A swimmer of a batch: its law, its body in a scene, its stations (M,) [m], the flow of its water, and
-    what bends by itself."""
+    """A swimmer of a batch: its law, its body in a scene, its stations (M,) [m], the flow of its water, what bends by
+    itself, and its fins."""
 
     law: Law | SampledLaw
     body: Body
@@ -294,7 +306,7 @@ class Swimmer(NamedTuple):
     x: np.ndarray
     flow: Flow | None
     robot: Robot | None
-    fins: tuple[()] = ()
+    fins: tuple[Fin, ...] = ()
 
 
 def _batch_of(
@@ -315,7 +327,9 @@ def _batch_of(
         for index, each in enumerate(joints):
             if each is not None:
                 robots[index, : samples[index]] = each.ledger()[: samples[index]]
-    absent = {"energies", "powers", "closure", *LOAD, *FINS} - ({"fluid_force"} if load else set())
+    finned = any(each.fins for each in swimmers)
+    absent = {"energies", "powers", "closure", *LOAD, *FINS}
+    absent -= {*(("fluid_force",) if load else ()), *(FINS if finned else ())}
     observed: dict[str, Any] = {name: array for name, array in out.arrays().items() if name not in absent}
     none = [*(ALONG if stations is None else ()), *(() if all(wrench) else ("torque", "force"))]
     ledger = all(each.scene.ledger for each in swimmers)
@@ -335,6 +349,7 @@ def _batch_of(
         energy=EnergyLedger.of(out.energies, out.powers, works, start[:, None], robots) if ledger else None,
         flows=tuple(each.flow for each in swimmers),
         robots=tuple(each.robot for each in swimmers),
+        fins=tuple(each.fins for each in swimmers),
         _joints=tuple(joints),
         _out=(out, works, start),
         **{"fluid_force": None} | observed | dict.fromkeys(none),
@@ -349,6 +364,7 @@ def _batch_from(
     flows: Any = None,
     robots: Any = None,
     joints: Any = None,
+    fins: Any = None,
 ) -> Batch:
     """The batch of these contents; the others too, where they are at hand."""
     values, arrays = contents.values, contents.arrays
@@ -366,7 +382,8 @@ def _batch_from(
     stations, start = values["stations"] or None, arrays["energy_at_start"]
     wrench = [scene.internal_wrench and stations is not None for scene in scenes]
     flows = flows or [flow_of(each) for each in values.get("flows", count * [None])]
-    swum = list(map(Swimmer, laws, bodies, scenes, arrays["x"], flows, robots or count * [None]))
+    fins = fins or [fins_of(each) for each in values.get("fins", count * [()])]
+    swum = list(map(Swimmer, laws, bodies, scenes, arrays["x"], flows, robots or count * [None], fins))
     found = settings, errors, estimates, counts, joints or count * [None]
     return _batch_of(swum, found, arrays["time"], out, works, start, wrench, "fluid_force" in arrays, stations)
 

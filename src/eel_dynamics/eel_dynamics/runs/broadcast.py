@@ -9,6 +9,7 @@ from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.body.body import Body
+from eel_model.fins.fins import checked_fins
 from eel_model.flow.flow import Flow
 from eel_model.initial_state import InitialState, check_planar, checked_quaternion
 from eel_model.robot.robot import Robot, checked_robot
@@ -38,20 +39,22 @@ def swimmers_of(
     most_evaluations=MOST_EVALUATIONS,
     flows=None,
     robots=None,
+    fins=None,
 ) -> list[tuple[Law | SampledLaw, SimulationSetup]]:
     """Laws and set-ups of B swimmers, with `stations` on each body, and `most_evaluations` per simulated second.
 
-    flows, robots: None for none. Each other argument is one for all, or a sequence of B (for the last three the rows of
-    an array (B, .)); a sequence of length 1 counts as one for all. `ValueError` names what does not fit, and the
-    swimmer's number.
+    flows, robots, fins: None for none. Each other argument is one for all, or a sequence of B (for the last three the
+    rows of an array (B, .)); a sequence of length 1 counts as one for all. `ValueError` names what does not fit, and
+    the swimmer's number.
     """
-    laws, bodies, scenes, settings, flows, robots, *states = _broadcast(
+    laws, bodies, scenes, settings, flows, robots, fins, *states = _broadcast(
         laws=_several("laws", laws, LAWS),
         bodies=_several("bodies", Body.boyer2010() if bodies is None else bodies, Body),
         scenes=_several("scenes", Scene() if scenes is None else scenes, Scene),
         accuracy=[Accuracy.of(each) for each in (accuracy if isinstance(accuracy, (list, tuple)) else [accuracy])],
         flows=[None] if flows is None else _several("flows", flows, (Flow, type(None))),
         robots=[None] if robots is None else _several("robots", robots, (Robot, type(None))),
+        fins=_lists(fins),
         positions=_rows("positions", positions, lambda name, row: checked_row(name, row, 3)),
         orientations=_rows("orientations", orientations, checked_quaternion),
         twists=_rows("twists", twists, lambda name, row: checked_row(name, row, 6)),
@@ -59,14 +62,14 @@ def swimmers_of(
     most = positive("most_evaluations", most_evaluations, "per simulated second")
     x = {length: checked_stations(stations, length) for length in dict.fromkeys(body.length for body in bodies)}
     swimmers = []
-    for index, (law, body, scene, accuracy, flow, robot, *state) in enumerate(
-        zip(laws, bodies, scenes, settings, flows, robots, *states, strict=True)
+    for index, (law, body, scene, accuracy, flow, robot, own, *state) in enumerate(
+        zip(laws, bodies, scenes, settings, flows, robots, fins, *states, strict=True)
     ):
         initial = InitialState(*state)
         _check_swimmer(index, law, scene, flow, initial)
-        robot = _checked_robot(index, robot, body, scene, flow)
+        robot, own = _checked_robot_and_fins(index, robot, own, body, scene, flow)
         setup = SimulationSetup(body, scene, accuracy, x[body.length], initial, most_evaluations=most, flow=flow)
-        setup = replace(setup, robot=robot)
+        setup = replace(setup, robot=robot, fins=own)
         swimmers.append((law, setup))
     return swimmers
 
@@ -92,6 +95,12 @@ def _several(name: str, values, kind: type | tuple[type, ...]) -> list:
     return [checked_instance(f"{name}[{index}]", value, kind) for index, value in enumerate(values)]
 
 
+def _lists(fins) -> list:
+    """The fins of each swimmer: where all items are lists, or None, each is one swimmer's; pairs are tuples."""
+    several = isinstance(fins, (list, tuple)) and fins and all(isinstance(each, (list, type(None))) for each in fins)
+    return list(fins) if several else [fins]
+
+
 def _rows(name: str, values, check) -> list[np.ndarray]:
     array = numbers(name, values)
     if array.ndim == 1:
@@ -99,14 +108,14 @@ def _rows(name: str, values, check) -> list[np.ndarray]:
     return [check(f"{name}[{index}]", row) for index, row in enumerate(np.atleast_1d(array))]
 
 
-def _checked_robot(index: int, robot: Robot | None, body: Body, scene: Scene, flow: Flow | None) -> Robot | None:
+def _checked_robot_and_fins(index: int, robot: Robot | None, fins, body: Body, scene: Scene, flow: Flow | None):
     try:
-        robot = checked_robot(robot)
+        robot, fins = checked_robot(robot), checked_fins(fins, body, scene)
         if robot is not None:
-            check_possible(robot, body, scene, flow, ())
+            check_possible(robot, body, scene, flow, fins)
     except ValueError as error:
         raise ValueError(f"swimmer {index}: {error}") from None
-    return robot
+    return robot, fins
 
 
 def _check_swimmer(index: int, law: Law | SampledLaw, scene: Scene, flow: Flow | None, initial: InitialState):

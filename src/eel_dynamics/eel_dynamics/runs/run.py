@@ -563,6 +563,8 @@ def run_of(
     observed: dict[str, Any] = {
         name: None if name in absent else array[: len(time)] for name, array in out.arrays().items()
     }
+    for name in FINS if setup.fins else ():  # of a batch there may be places for more
+        observed[name] = observed[name][:, : len(setup.fins)]
     robot = None
     if joints is not None:
         observed |= {name: array[: len(time)] for name, array in joints.arrays().items()}

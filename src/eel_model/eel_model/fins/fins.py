@@ -49,8 +49,9 @@ class Fin:
     span^2 by area. dihedral [rad]: how much its tip rises. angle: [rad], or (times [s], angles [rad]), which a smooth
     spline joins, a `RollHold`, or "commanded": what `Simulation.command_fins` asks for, 0 at first; above 0 the leading
     edge rises. time_constant [s]: of the servo that follows the angle; None: none, the fin has the angle. limit [rad]:
-    of the servo. lift_slope: of sine times cosine of the incidence; None: Whicker's and Fehlner's. normal_drag,
-    friction_drag: coefficients of a plate across the stream and along it. efficiency: of its lift, in the induced drag.
+    of the servo; initial_angle [rad]: that it starts with (of a `RollHold` on the right). lift_slope: of sine times
+    cosine of the incidence; None: Whicker's and Fehlner's. normal_drag, friction_drag: coefficients of a plate across
+    the stream and along it. efficiency: of its lift, in the induced drag.
     """
 
     station: float
@@ -61,6 +62,7 @@ class Fin:
     angle: Any = 0.0
     time_constant: float | None = None
     limit: float = 0.6
+    initial_angle: float = 0.0
     lift_slope: float | None = None
     normal_drag: float = 1.2
     friction_drag: float = 0.01
@@ -79,6 +81,9 @@ class Fin:
         elif isinstance(self.angle, RollHold) or self.angle == COMMANDED:
             kind = "a RollHold" if self.angle != COMMANDED else "a commanded fin"
             raise ValueError(f"fin time_constant must be given for {kind}, in s, got none")
+        values["initial_angle"] = number("fin initial_angle", self.initial_angle, "rad")
+        if values["initial_angle"] and self.time_constant is None:
+            raise ValueError(f"fin initial_angle needs a time_constant, in s, got {shown(self.initial_angle)} and none")
         if self.lift_slope is not None:
             values["lift_slope"] = number("fin lift_slope", self.lift_slope, minimum=0.0)
         for name in ("normal_drag", "friction_drag"):
@@ -133,7 +138,8 @@ class Fin:
     def servo(self) -> tuple:
         """What turns it: fins that are equal in this have one servo."""
         own: Any = self.name if self.angle == COMMANDED else None
-        return self.angle, self.time_constant, self.limit, self.station if isinstance(self.angle, RollHold) else own
+        where = self.station if isinstance(self.angle, RollHold) else own
+        return self.angle, self.time_constant, self.limit, where, self.initial_angle
 
 
 def _checked_angle(angle: Any) -> Any:
@@ -222,9 +228,9 @@ def core_fins(body: Body, scene: Scene, grid, x: np.ndarray, fins: tuple[Fin, ..
             )
         )
     turns = []
-    for angle, time_constant, limit, station in servos:
+    for angle, time_constant, limit, station, initial in servos:
         gains = (angle.k_p, angle.k_d) if isinstance(angle, RollHold) else (0.0, 0.0)
-        turns.append((time_constant or 0.0, limit, *gains, node.get(station, 0)))
+        turns.append((time_constant or 0.0, limit, *gains, node.get(station, 0), initial))
     return rows, turns
 
 
@@ -233,7 +239,7 @@ def given_angles(fins: tuple[Fin, ...], commands: dict[str, float]) -> list[tupl
 
     commands: [rad] by the names of commanded fins."""
     return [
-        _cubics(commands.get(where, 0.0) if angle == COMMANDED else angle) for angle, _, _, where in servos_of(fins)
+        _cubics(commands.get(where, 0.0) if angle == COMMANDED else angle) for angle, _, _, where, _ in servos_of(fins)
     ]
 
 

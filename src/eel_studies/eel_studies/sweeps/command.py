@@ -40,7 +40,7 @@ def main(arguments: list[str] | None = None) -> int:
 def _sweep(options: argparse.Namespace) -> int:
     start = time.perf_counter()
     numbers: dict[str, Any] = set_numbers(options.set)
-    numbers |= {"flow": options.flow} if options.flow else {}
+    numbers |= {name: text for name in ("flow", "fins") if (text := getattr(options, name))}
     vary = named_texts("--vary", options.vary)
     check_names([*numbers, *(name for name, _ in vary)])
     grid = {name: varied_values(text, partial(check_points, name)) for name, text in vary}
@@ -81,13 +81,14 @@ def _parser() -> Parser:
         description="Simulate every combination of parameters, and keep the measures of each run in a NetCDF file. "
         "After an interruption the same command resumes.",
     )
-    about = "a number of the gait, scene.FIELD, flow.FIELD, body or accuracy; values a,b,c or start:end:count"
+    about = "a number of the gait, a FIELD of scene., body., flow. or fins., body, accuracy; a,b,c or start:end:count"
     add_options(parser, "gait", gait="straight")
     add_repeated(parser, "--vary", "NAME=VALUES", about, required=True)
     add_options(
         parser,
         "--set",
         "--flow",
+        "--fins",
         "--duration",
         "--accuracy",
         "--body",

@@ -92,9 +92,10 @@ def sweep(
 
     Args:
         grid: values by name, with the names of `studies.points`: numbers of the gait ("period"), of scene, body or
-            initial state ("scene.friction", "body.lateral_drag", "initial.v_x"), "body" and "accuracy".
+            initial state ("scene.friction", "body.lateral_drag", "initial.v_x"), of flow and fins ("fins.area",
+            "fins.k_p"), "body" and "accuracy".
         gait: its name, or a function of `numbers` and the grid's that returns a law.
-        numbers: of the gait, the same for all points.
+        numbers: by the same names, for all points, such as those of the gait, or "fins".
         duration: [s], or "settled": each point swims until its gait has settled, as in `simulate`.
         body, scene, accuracy: as in `simulate`, for all points.
         sample_period: [s], as in `simulate`.

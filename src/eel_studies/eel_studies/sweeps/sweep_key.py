@@ -43,7 +43,7 @@ def key_of(points: list[Swim], how: SwimSettings) -> str:
             bodies[id(point.body)] = _content_of_body(point.body)
         content.update(bodies[id(point.body)])
         content.update(repr((plain_of(point.law), point.scene, point.accuracy)).encode())
-        content.update(repr(plain_of_flow(point.flow)).encode())
+        content.update(repr((plain_of_flow(point.flow), point.fins)).encode())
         content.update(np.concatenate(point.start).tobytes())
     return content.hexdigest()[:32]
 

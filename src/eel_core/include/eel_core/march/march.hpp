@@ -65,6 +65,8 @@ class March {
                  const Twist<Space, double>& twist)
     {
         time_ = 0.0, works_ = {}, state_ = {};
+        for (const FinServo& servo : swimmer_->servos)
+            if (servo.time_constant > 0.0) state_[servo.slot] = servo.initial;
         const double energy = set_state(position, orientation, twist);
         std::visit([&](auto& stepper) { stepper.forget(state_, settings_.bounds.spare_steps); }, stepper_);
         begin();

@@ -33,6 +33,7 @@ struct FinServo {
     double limit = 1.0;                       // [rad]
     double roll_gain = 0.0, rate_gain = 0.0;  // [1], [s]: - k_p roll - k_d Omega1 at its node are added to the command
     std::size_t node = 0, slot = 0;           // slot: of the state
+    double initial = 0.0;                     // [rad], its angle at the start
 };
 
 struct Fin {

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Takes a run, or a batch, apart into `Contents`, and puts their fields together again."""
 
+from collections.abc import Sequence
 from dataclasses import asdict
 
 import numpy as np
@@ -52,7 +53,7 @@ def fields_of_run(contents: Contents) -> dict:
         "error_estimate": values["error_estimate"] and ErrorEstimate(**values["error_estimate"]),
         "energy": energy,
         "flow": flow_of(values.get("flow")),
-        "fins": tuple(Fin(**each) for each in map(_with_hold, values.get("fins", ()))),
+        "fins": fins_of(values.get("fins", ())),
         "robot": plain.robot_of(values.get("robot"), plain.body_of(values["body"])),
         "axes": contents.axes,
         **{name: arrays.get(name) for name in OWN},
@@ -60,9 +61,12 @@ def fields_of_run(contents: Contents) -> dict:
     }
 
 
-def _with_hold(fin: dict) -> dict:
-    angle = fin["angle"]
-    return fin | {"angle": RollHold(**angle) if isinstance(angle, dict) else angle}
+def fins_of(plain: Sequence[dict]) -> tuple[Fin, ...]:
+    """The fins that have become plain values."""
+    with_hold = (
+        each | {"angle": RollHold(**each["angle"])} if isinstance(each["angle"], dict) else each for each in plain
+    )
+    return tuple(Fin(**each) for each in with_hold)
 
 
 def in_rep103_axes(contents: Contents) -> Contents:
@@ -82,6 +86,7 @@ def contents_of_batch(batch, out: Observations, works: np.ndarray, energy_at_sta
         "error_estimates": [plain.plain_of(each) for each in batch.error_estimates],
         "errors": [plain.plain_of(each) for each in batch.error],
         "flows": [plain_of_flow(each) for each in batch.flows],
+        "fins": [[asdict(fin) for fin in each] for each in batch.fins],
         "stations": batch.backbone is not None,
     }
     arrays = {"time": batch.time, "x": batch.x, "samples": batch.samples, "energy_at_start": energy_at_start}
@@ -102,7 +107,8 @@ def observed_of_batch(contents: Contents) -> tuple[Observations, np.ndarray]:
     """The observations of a batch, and its works (B, T, 6) [J]."""
     arrays = contents.arrays
     count, samples, stations = arrays["backbone"].shape[:3]
-    out = Observations.empty(samples, stations, "torque" in arrays, "fluid_force" in arrays, (count,))
+    fins = arrays["fin_angle"].shape[-1] if "fin_angle" in arrays else 0
+    out = Observations.empty(samples, stations, "torque" in arrays, "fluid_force" in arrays, (count,), fins)
     for name in OBSERVED.keys() & arrays.keys():
         getattr(out, name)[...] = arrays[name]
     if out.closure.size:
