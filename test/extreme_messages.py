@@ -136,7 +136,7 @@ def huge(kind: type):
     for length in HUGE if sequences else ():
         message = kind()
         for name, element in sequences:
-            one = get_message(element)() if "/" in element else values_of(element)[1]
+            one = "name" if element == "string" else get_message(element)() if "/" in element else values_of(element)[1]
             setattr(message, name, array.array("d", [one]) * length if element == "double" else [one] * length)
         yield message
 

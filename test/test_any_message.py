@@ -168,10 +168,22 @@ def test_bytes_that_are_no_message_are_a_line_a_second(executable, topics, start
     "laws, samples and /clock with any extreme in any field, cut short, or with text that is no UTF-8",
     "the dynamics node refuses what it cannot take, publishes finite numbers and takes the next law",
 )
-def test_the_dynamics_node_stands_any_message(start, network, fresh_domain):
+@pytest.mark.parametrize(
+    "swimmer",
+    [
+        (),
+        pytest.param(("-p", "robot:=eight_servos"), marks=pytest.mark.soak),
+        pytest.param(
+            ("-p", "fins:=left station=0.5 area=0.001 aspect_ratio=2.5 angle=commanded time_constant=0.1"),
+            marks=pytest.mark.soak,
+        ),
+    ],
+    ids=["imposed", "robot", "fins"],
+)
+def test_the_dynamics_node_stands_any_message(start, network, fresh_domain, swimmer):
     swim = SwimClient(domain=fresh_domain, topics=("head_pose", "curvature"))
     swim.laws.publish(law_to_message(falling()))
-    node = start("dynamics", "--ros-args", "-p", "use_sim_time:=true", "-p", "clock:=false")
+    node = start("dynamics", "--ros-args", "-p", "use_sim_time:=true", "-p", "clock:=false", *swimmer)
     swim.until_time(0.2)
     send_extremes(network, node, "dynamics")
     assert swim.pause(False).success and swim.reset().success
