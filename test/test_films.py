@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from eel_dynamics.runs.command import main as simulate_command
-from eel_dynamics.runs.filmed import speeds_of
+from eel_dynamics.commands.filmed import speeds_of
+from eel_dynamics.commands.simulate import main as simulate_command
 from eel_gaits.film.beat import beat_of
 from eel_gaits.film.film import Film
 from eel_studies.life.command import main as life

@@ -8,7 +8,7 @@ import sys
 import pytest
 from eel_base.command import suite
 from eel_base.command.command_line import COMPLETING
-from eel_dynamics.runs import command
+from eel_dynamics.commands import simulate as command
 from test_packages import EXECUTABLES
 
 NOT_COMMANDS = {"gait_generator", "heading_controller", "pilot", "dynamics", "visualiser", "markers", "eel"}

@@ -11,9 +11,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from eel_dynamics.commands.simulate import main
 from eel_dynamics.ros.messages import SampleMessages, body_message, diagnostic_array
 from eel_dynamics.ros.parameters import DynamicsParameters
-from eel_dynamics.runs.command import main
 from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
 from eel_dynamics.runs.storage.plain import law_of
 from eel_viz.recording.dispatcher import READERS

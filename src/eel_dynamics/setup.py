@@ -23,11 +23,11 @@ setup(
     entry_points={
         "console_scripts": [
             "dynamics = eel_command:main_of.eel_dynamics.ros.node",
-            "simulate = eel_command:main_of.eel_dynamics.runs.command",
+            "simulate = eel_command:main_of.eel_dynamics.commands.simulate",
         ],
         "eel.commands.swim": [
-            "simulate = eel_dynamics.runs.command",
-            "ballast = eel_dynamics.runs.ballast_command",
+            "simulate = eel_dynamics.commands.simulate",
+            "ballast = eel_dynamics.commands.ballast",
         ],
     },
 )

@@ -11,9 +11,11 @@ import eel_command  # noqa: F401  first: Ctrl-C ends a command during the other 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.settling import Unsettled
 from eel_dynamics.analysis.trim import Ballast, Trim, ballast_for, trim_of
-from eel_dynamics.runs.batch import Batch, simulate_batch
-from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.batches.batch import Batch
+from eel_dynamics.batches.simulate_batch import simulate_batch
+from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.scene_file import load_scene, save_scene
+from eel_dynamics.runs.simulate import simulate
 from eel_dynamics.runs.swim import Swim
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import Snapshot

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from eel_dynamics.runs import command
+from eel_dynamics.commands import simulate as command
 
 
 def said_of(words, capsys) -> str:
@@ -28,7 +28,7 @@ def said_of(words, capsys) -> str:
     ],
 )
 def test_bad_input_is_refused_before_the_swim(words, named, monkeypatch, capsys):
-    monkeypatch.setattr("eel_dynamics.runs.run.SwimRequest.swim", lambda *_: pytest.fail("it swims"))
+    monkeypatch.setattr("eel_dynamics.runs.swim_request.SwimRequest.swim", lambda *_: pytest.fail("it swims"))
     assert named in said_of(words, capsys)
 
 

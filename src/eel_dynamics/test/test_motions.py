@@ -6,7 +6,7 @@ import pickle
 
 import numpy as np
 import pytest
-from eel_dynamics.runs.command import main
+from eel_dynamics.commands.simulate import main
 from eel_gaits.sources.lateral import LateralMidline
 from midline_files import ARC, kern_midline, write_midlines
 

@@ -2,7 +2,7 @@
 """Runs of robots have a summary; the command simulate takes a robot."""
 
 import pytest
-from eel_dynamics.runs.command import main
+from eel_dynamics.commands.simulate import main
 
 from eel_dynamics import Joint, PassiveTail, Robot, Scene, Torque, simulate
 from eel_gaits import straight

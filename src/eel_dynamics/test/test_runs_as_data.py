@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from eel_dynamics.analysis.measures import measures_of
-from eel_dynamics.runs import command
+from eel_dynamics.commands import simulate as command
 from eel_dynamics.runs.storage import netcdf
 
 from eel_dynamics import Accuracy, Batch, Body, Run, Scene, SimulationStopped, simulate, simulate_batch

@@ -7,7 +7,7 @@ import warnings
 import numpy as np
 import pytest
 from eel_dynamics.analysis.settling import SETTLED, change_of
-from eel_dynamics.runs import command
+from eel_dynamics.commands import simulate as command
 from eel_dynamics.runs.settled_duration import MOST_PERIODS
 from eel_studies.sweeps import command as sweep_command
 

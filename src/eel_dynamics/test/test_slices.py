@@ -7,7 +7,7 @@ import re
 
 import numpy as np
 import pytest
-from eel_dynamics.runs.command import main
+from eel_dynamics.commands.simulate import main
 
 import eel_core
 from eel_dynamics import Scene, Simulation, SimulationStopped, simulate, simulate_batch
@@ -166,7 +166,7 @@ def test_a_swim_is_interrupted_from_the_keyboard(monkeypatch):
     wanted = simulate(falling(), 1.0, accuracy=1e-5)
     with monkeypatch.context() as patch:
         step_by_step(patch)
-        patch.setattr("eel_dynamics.runs.run.ProgressMonitor.update", press)
+        patch.setattr("eel_dynamics.runs.simulate.ProgressMonitor.update", press)
         with pytest.raises(KeyboardInterrupt):
             simulate(falling(period=0.9), 1.0, accuracy=1e-5)
     np.testing.assert_array_equal(simulate(falling(), 1.0, accuracy=1e-5).position, wanted.position)

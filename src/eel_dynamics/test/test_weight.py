@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from cases import falling_law, random_law, random_twist
 from draws import few, numbers, quaternions, scenes, swimmers, twists
-from eel_dynamics.runs.ballast_command import main as command
+from eel_dynamics.commands.ballast import main as command
 from eel_model.axes import turn_vector
 from eel_model.inertia import straight_inertia
 from eel_model.robot.robot import Robot

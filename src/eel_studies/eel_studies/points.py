@@ -24,7 +24,8 @@ from eel_base.wording import did_you_mean, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import measures_of
-from eel_dynamics.runs.batch import Batch, simulate_batch
+from eel_dynamics.batches.batch import Batch
+from eel_dynamics.batches.simulate_batch import simulate_batch
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.swim import Swim
 from eel_gaits.gaits.registry import find

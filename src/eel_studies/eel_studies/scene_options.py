@@ -6,7 +6,7 @@ from pathlib import Path
 
 from eel_base.command.command_line import Parser
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.runs.command_options import add_options, body_of, scene_of, set_numbers
+from eel_dynamics.commands.options import add_options, body_of, scene_of, set_numbers
 from eel_dynamics.runs.scene_file import SUFFIXES, load_scene
 from eel_dynamics.runs.swim import Swim
 from eel_gaits.gaits.settings import Settings

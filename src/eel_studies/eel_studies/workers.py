@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from typing import Any, NamedTuple, TypeVar
 
 from eel_base.wording import shown
-from eel_dynamics.runs.batch import available_cores
+from eel_dynamics.batches.simulate_batch import available_cores
 from eel_dynamics.runs.storage.tables import needed
 
 PROCESSES = "processes"  # as a scheduler: of this machine

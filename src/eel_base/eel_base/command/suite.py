@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command `eel`: lists the commands of all packages that are installed, and runs one.
 
-A package declares its commands as entry points of one of the groups below, `simulate = eel_dynamics.runs.command`. The
-module has `main(arguments)`, which returns the exit status. The first line of its docstring says what the command
-does, after a colon. The list reads that line without importing the module.
+A package declares its commands as entry points of one of the groups below:
+`simulate = eel_dynamics.commands.simulate`. The module has `main(arguments)`, which returns the exit status. The first
+line of its docstring says what the command does, after a colon. The list reads that line without importing the module.
 """
 
 import importlib

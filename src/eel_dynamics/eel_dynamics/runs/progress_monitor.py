@@ -36,7 +36,7 @@ class ProgressMonitor:
             warnings.warn(
                 f"this swim of {self._duration:g} s is going to take {_minutes(took + left)}: it has come to "
                 f"{reached:.3g} s in {took:.0f} s; a coarser accuracy, a slower law or a shorter duration takes less",
-                stacklevel=6,  # the caller of `simulate`, behind `swim` and two `record`
+                stacklevel=7,  # the caller of `simulate`, behind `swim_to_end`, `swim` and two `record`
             )
 
 

@@ -13,7 +13,8 @@ from eel_model.initial_state import InitialState
 from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
 
-from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.simulate import simulate
 from eel_dynamics.simulation.simulation import Simulation
 
 AT_REST = InitialState(np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), np.zeros(6))

@@ -17,9 +17,10 @@ from eel_base.command.progress import Progress
 from eel_base.command.run_command import checked_out, run_command
 from eel_base.files.output_file import written_as
 from eel_dynamics.analysis.measures import MEASURES, measures_of
-from eel_dynamics.runs.command_options import add_options, body_of, scene_of, set_numbers
-from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.commands.options import add_options, body_of, scene_of, set_numbers
+from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.settled_duration import until_settled
+from eel_dynamics.runs.simulate import simulate
 from eel_gaits.gaits.registry import gait
 from eel_model.body.body import Body
 from eel_model.scene import Scene

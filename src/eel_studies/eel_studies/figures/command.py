@@ -12,8 +12,9 @@ from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
 from eel_base.command.run_command import run_command
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.runs.command_options import add_options
-from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.commands.options import add_options
+from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.simulate import simulate
 from eel_model.scene import Scene
 
 from eel_gaits import straight

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 from eel_base.files.markdown import table
-from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.simulate import simulate
 from eel_model.scene import Scene
 
 from eel_gaits import falling

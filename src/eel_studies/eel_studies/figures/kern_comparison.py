@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from eel_base.files.markdown import table
 from eel_dynamics.analysis.analysis import Analysis
-from eel_dynamics.runs.run import simulate
+from eel_dynamics.runs.simulate import simulate
 from eel_model.body.body import Body
 from eel_model.scene import Scene
 

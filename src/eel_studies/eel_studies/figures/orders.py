@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.runs.run import simulate
+from eel_dynamics.runs.simulate import simulate
 from eel_dynamics.simulation.simulation import Simulation
 from eel_model.body.body import Body
 from eel_model.scene import Scene

@@ -27,7 +27,7 @@ from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.measures import checked_measures
-from eel_dynamics.runs.batch import Batch
+from eel_dynamics.batches.batch import Batch
 from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.sampling import default_sample_period

@@ -10,7 +10,7 @@ import argparse
 from eel_base.command.command_line import Parser
 from eel_base.command.run_command import checked_out, run_command
 from eel_base.files.output_file import written_as
-from eel_dynamics.runs.command_options import add_options
+from eel_dynamics.commands.options import add_options
 from eel_model.scene import FRICTION
 
 from eel_studies.laws.laws import LAWS, Result

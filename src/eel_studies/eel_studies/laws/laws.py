@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 from eel_dynamics.analysis.analysis import Analysis
-from eel_dynamics.runs.batch import simulate_batch
+from eel_dynamics.batches.simulate_batch import simulate_batch
 from eel_dynamics.runs.run import Run
 from eel_gaits.film.kinematics import kinematics
 from eel_gaits.gaits.registry import gait

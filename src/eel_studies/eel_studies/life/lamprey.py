@@ -13,8 +13,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from eel_dynamics.runs.filmed import speeds_of
-from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.commands.filmed import speeds_of
+from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.simulate import simulate
 from eel_gaits.film.beat import Beat, jackknife
 from eel_gaits.film.kinematics import Kinematics, kinematics
 from eel_gaits.laws.law import Law

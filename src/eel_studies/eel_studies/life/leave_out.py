@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from eel_dynamics.runs.batch import simulate_batch
-from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.batches.simulate_batch import simulate_batch
+from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.simulate import simulate
 from eel_gaits.film.beat import Beat
 from eel_model.body.body import Body
 from eel_model.scene import Scene

@@ -14,7 +14,7 @@ from eel_base.command.command_line import Parser
 from eel_base.command.run_command import checked_out, run_command
 from eel_base.files.output_file import written_as
 from eel_base.wording import shown
-from eel_dynamics.runs.command_options import named_texts
+from eel_dynamics.commands.options import named_texts
 from eel_model.robot.actuators import Servo
 from eel_model.robot.robot import Robot
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from eel_base.quantity import numbers, positive
 from eel_base.wording import shown
-from eel_dynamics.runs.run import simulate
+from eel_dynamics.runs.simulate import simulate
 from eel_model.body.body import Body
 from eel_model.robot.robot import Robot
 from eel_model.scene import Scene

@@ -14,7 +14,7 @@ from eel_base.command.run_command import checked_out, run_command
 from eel_base.files.output_file import written_as
 from eel_base.wording import shown
 from eel_dynamics.analysis.measures import MEASURES
-from eel_dynamics.runs.command_options import (
+from eel_dynamics.commands.options import (
     add_options,
     add_repeated,
     body_of,

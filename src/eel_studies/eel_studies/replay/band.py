@@ -12,7 +12,7 @@ import numpy as np
 from eel_base.quantity import positive
 from eel_base.wording import shown
 from eel_dynamics.analysis.analysis import Analysis
-from eel_dynamics.runs.batch import simulate_batch
+from eel_dynamics.batches.simulate_batch import simulate_batch
 from eel_dynamics.runs.run import Run
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.body.body import Body

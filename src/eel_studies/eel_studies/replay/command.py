@@ -15,7 +15,7 @@ from eel_base.command.run_command import checked_out, run_command
 from eel_base.files.output_file import written_as
 from eel_base.quantity import positive
 from eel_base.wording import shown
-from eel_dynamics.runs.command_options import add_options, add_repeated, body_of, named_texts, scene_of
+from eel_dynamics.commands.options import add_options, add_repeated, body_of, named_texts, scene_of
 from eel_dynamics.runs.exchange.eel_viz_functions import joints_of_bag
 from eel_dynamics.runs.storage.tables import write_columns
 from eel_gaits.sources.joint_log import JointLog, joint_log, law_of_links, read_joint_log

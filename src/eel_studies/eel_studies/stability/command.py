@@ -14,7 +14,7 @@ from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
 from eel_base.command.run_command import run_command
 from eel_base.wording import shown
-from eel_dynamics.runs.command_options import add_repeated, named_texts
+from eel_dynamics.commands.options import add_repeated, named_texts
 
 from eel_studies.outputs import Outputs, add_output_options
 from eel_studies.scene_options import add_scene_options, swim_from

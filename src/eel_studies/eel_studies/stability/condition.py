@@ -8,7 +8,8 @@ Singular bodies are refused beforehand (`inertia.py`).
 
 import numpy as np
 from eel_base.files.markdown import table
-from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.simulate import simulate
 from eel_dynamics.simulation.simulation import Simulation, SimulationStopped
 from eel_model.body.body import Body
 from eel_model.inertia import condition_of, straight_inertia

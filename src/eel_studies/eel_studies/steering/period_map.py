@@ -13,8 +13,8 @@ import numpy as np
 from eel_base.wording import shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.averaging_window import common_period
-from eel_dynamics.runs.batch import simulate_batch
-from eel_dynamics.runs.run import simulate
+from eel_dynamics.batches.simulate_batch import simulate_batch
+from eel_dynamics.runs.simulate import simulate
 from eel_gaits.laws.law import Law
 from eel_model.body.body import Body
 from eel_model.scene import Scene

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from eel_dynamics.runs.run import simulate
+from eel_dynamics.runs.simulate import simulate
 from eel_gaits.laws.law import Law
 from eel_model.body.body import Body
 from eel_model.scene import Scene

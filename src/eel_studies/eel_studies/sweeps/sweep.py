@@ -26,7 +26,7 @@ from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import checked_measures, checked_point, described
 from eel_dynamics.analysis.settling import tell_unsettled
-from eel_dynamics.runs.batch import available_cores
+from eel_dynamics.batches.simulate_batch import available_cores
 from eel_dynamics.runs.sampling import checked_times, default_sample_period
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, period_of, until_settled
 from eel_dynamics.runs.storage.tables import needed

@@ -20,7 +20,7 @@ from eel_model.axes import CONVENTIONS, PAPER, REP103
 
 from eel_dynamics.runs.storage.digest import add_digest, check_digest
 from eel_dynamics.runs.storage.run_contents import in_rep103_axes
-from eel_dynamics.runs.variables import LABELS, OF_SWIMMERS, VARIABLES, Contents
+from eel_dynamics.runs.storage.variables import LABELS, OF_SWIMMERS, VARIABLES, Contents
 
 FORMAT = 2  # of the files; format 1 does not name its axes, the paper's; a later one cannot be read
 MOST_BYTES = 2**31 - 4  # of an array in a file

@@ -13,7 +13,7 @@ from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.runs.storage import plain
-from eel_dynamics.runs.variables import COUNTS, ENERGY, LEDGER, OWN, Contents
+from eel_dynamics.runs.storage.variables import COUNTS, ENERGY, LEDGER, OWN, Contents
 from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS
 from eel_dynamics.simulation.energy import WORKS, EnergyLedger
 from eel_dynamics.simulation.observations import OBSERVED, Observations

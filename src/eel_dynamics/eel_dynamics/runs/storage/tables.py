@@ -14,7 +14,7 @@ import numpy as np
 from eel_base.files.output_file import replacing
 
 from eel_dynamics.runs.storage.netcdf import attributes_of
-from eel_dynamics.runs.variables import LABELS, LEDGER, Contents
+from eel_dynamics.runs.storage.variables import LABELS, LEDGER, Contents
 
 COLUMNS = {"position": "xyz", "orientation": "xyzw", "center_of_mass": "xyz"}
 

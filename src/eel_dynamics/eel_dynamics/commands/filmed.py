@@ -11,8 +11,8 @@ from eel_gaits.film.film import Film, read_film
 from eel_model.body.body import Body
 from eel_model.scene import Scene
 
-from eel_dynamics.runs.batch import simulate_batch
-from eel_dynamics.runs.command_options import body_of
+from eel_dynamics.batches.simulate_batch import simulate_batch
+from eel_dynamics.commands.options import body_of
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED
 
 FITTING = 0.05  # part of the length by which body and film may differ

@@ -12,7 +12,7 @@ from eel_base.files.output_file import written_as
 from eel_model.body.body import COLUMNS, MASSES, Body
 
 from eel_dynamics.analysis.trim import ballast_for, trim_of
-from eel_dynamics.runs.command_options import add_options, body_of, scene_of
+from eel_dynamics.commands.options import add_options, body_of, scene_of
 from eel_dynamics.runs.storage.tables import write_columns
 
 NAME = "eel ballast"

@@ -36,8 +36,8 @@ from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.actuators import MOST_JOINTS
-from eel_dynamics.runs.command_options import add_options, body_of, scene_of, set_numbers
-from eel_dynamics.runs.filmed import EEL, add_film_options, beat_from, body_for, effect_of_fit
+from eel_dynamics.commands.filmed import EEL, add_film_options, beat_from, body_for, effect_of_fit
+from eel_dynamics.commands.options import add_options, body_of, scene_of, set_numbers
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.scene_file import SUFFIXES as SCENES
 from eel_dynamics.runs.scene_file import load_scene

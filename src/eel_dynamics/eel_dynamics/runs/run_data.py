@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a run holds, and what follows from it alone. `Run` adds what is asked of a run."""
+
+from dataclasses import dataclass, fields, replace
+from typing import Any, Self
+
+import numpy as np
+from eel_base.attitude import world_from_section
+from eel_base.wording import shown
+from eel_gaits.laws.law import Law
+from eel_gaits.sources.sampled_law import SampledLaw
+from eel_model.axes import CONVENTIONS, REP103, SIGNS, turn_vector, turned
+from eel_model.body.body import Body
+from eel_model.equality import same_fields
+from eel_model.fins.fins import Fin
+from eel_model.flow.flow import Flow
+from eel_model.robot.robot import Robot
+from eel_model.scene import Scene
+
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.error_estimate import ErrorEstimate
+from eel_dynamics.simulation.bending.joint_motion import JointMotion
+from eel_dynamics.simulation.energy import EnergyLedger
+from eel_dynamics.simulation.observations import FINS, LOAD, WRENCH, Observations
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RunData:
+    """What a run holds; `Run` documents it."""
+
+    law: Law | SampledLaw
+    body: Body
+    scene: Scene
+    accuracy: Accuracy
+    time: np.ndarray
+    position: np.ndarray
+    orientation: np.ndarray
+    twist: np.ndarray
+    head_acceleration: np.ndarray
+    center_of_mass: np.ndarray
+    x: np.ndarray
+    backbone: np.ndarray
+    section_orientation: np.ndarray
+    curvature: np.ndarray
+    curvature_rate: np.ndarray
+    torque: np.ndarray | None
+    force: np.ndarray | None
+    fluid_force: np.ndarray | None
+    resistive_force: np.ndarray | None
+    tail_force: np.ndarray | None
+    nose_force: np.ndarray | None
+    wake_momentum_rate: np.ndarray | None
+    energy: EnergyLedger | None
+    closure_torque: np.ndarray | None
+    closure_force: np.ndarray | None
+    steps: int
+    evaluations: int
+    nodes: int
+    error_estimate: ErrorEstimate | None = None  #: None where none was wanted, or for fewer than two samples
+    flow: Flow | None = None  #: of the water; its own numbers are in REP-103 axes always
+    fins: tuple[Fin, ...] = ()
+    fin_angle: np.ndarray | None = None
+    fin_force: np.ndarray | None = None
+    robot: Robot | None = None  #: what bends by itself; the joints' arrays are None without one
+    joint_angle: np.ndarray | None = None
+    joint_rate: np.ndarray | None = None
+    joint_torque: np.ndarray | None = None
+    motor_angle: np.ndarray | None = None
+    motor_torque: np.ndarray | None = None
+    motor_power: np.ndarray | None = None
+    mode_amplitude: np.ndarray | None = None
+    mode_rate: np.ndarray | None = None
+    axes: str = REP103  #: of world and head: "rep103" (x forward, y left, z up), or "paper"
+
+    @classmethod
+    def of(
+        cls,
+        setup: Any,
+        out: Observations,
+        *,
+        works: np.ndarray,
+        start: float,
+        time: np.ndarray,
+        wrench: bool,
+        load: bool,
+        joints: JointMotion | None = None,
+        **others: Any,
+    ) -> Self:
+        """The run of the samples in `out` that were reached.
+
+        Args:
+            setup: has the body, the scene, the flow and the stations x.
+            works: (T, 6) [J], of those samples.
+            start: [J], the energy at the start.
+            time: (T,) [s].
+            wrench: whether the internal wrench was observed.
+            load: whether the water's load was.
+            joints: the motion of a robot's joints at all samples.
+            others: the other fields of the run.
+        """
+        absent = {*(() if wrench else WRENCH), *(() if load else LOAD), *(() if setup.fins else FINS)}
+        observed: dict[str, Any] = {
+            name: None if name in absent else array[: len(time)] for name, array in out.arrays().items()
+        }
+        for name in FINS if setup.fins else ():  # of a batch there may be places for more
+            observed[name] = observed[name][:, : len(setup.fins)]
+        robot = None
+        if joints is not None:
+            observed |= {name: array[: len(time)] for name, array in joints.arrays().items()}
+            robot = joints.ledger()[: len(time)]
+        energies, powers, closure = (observed.pop(name) for name in ("energies", "powers", "closure"))
+        return cls(
+            body=setup.body,
+            scene=setup.scene,
+            flow=setup.flow,
+            x=setup.x,
+            time=time,
+            robot=setup.robot,
+            fins=setup.fins,
+            energy=EnergyLedger.of(energies, powers, works, start, robot) if setup.scene.ledger else None,
+            closure_torque=None if closure is None else closure[:, 0],
+            closure_force=None if closure is None else closure[:, 1],
+            **observed,
+            **others,
+        )
+
+    def __eq__(self, other: object) -> bool:
+        return self is other or same_fields(self, other)
+
+    def __hash__(self) -> int:
+        return hash((self.law, self.body, self.scene, self.steps, self.evaluations, self.nodes))
+
+    def __getstate__(self) -> dict[str, Any]:  # without what can be computed again
+        return {item.name: getattr(self, item.name) for item in fields(self)}
+
+    def __repr__(self) -> str:
+        end = f"{self.time[-1]:g} s" if len(self.time) else "no time"
+        return (
+            f"{type(self).__name__}({self.law.name!r}, {self.body.name!r}, {end}, {len(self.time)} samples, "
+            f"{len(self.x)} stations, accuracy {self.accuracy.name!r})"
+        )
+
+    def __post_init__(self) -> None:
+        if not (self.time[1:] > self.time[:-1]).all():
+            falls = np.flatnonzero(np.diff(self.time) <= 0.0)
+            before, after = self.time[falls[0]], self.time[falls[0] + 1]
+            raise ValueError(
+                f"run time must rise, got {after:g} s after {before:g} s: a reset? Make a run of the samples after it"
+            )
+
+    @property
+    def twist_rate(self) -> np.ndarray:
+        """(T, 6) (Omegadot, Vdot): rate of the components of the twist, rad/s^2, m/s^2, head's axes."""
+        rate = self.head_acceleration.copy()
+        rate[:, 3:] -= np.cross(self.twist[:, :3], self.twist[:, 3:])
+        return rate
+
+    @property
+    def torque_world(self) -> np.ndarray:
+        """(T, M, 3) N m: the internal torque in the axes of the world. `ValueError` where there is none."""
+        return self._in_world("torque")
+
+    @property
+    def force_world(self) -> np.ndarray:
+        """(T, M, 3) N: the internal force in the axes of the world. `ValueError` where there is none."""
+        return self._in_world("force")
+
+    def in_axes(self, axes: str) -> Self:
+        """This run with world and head in these `axes`: "rep103" (x forward, y left, z up), or "paper".
+
+        In the paper's axes the eel swims towards -x. What has section axes is the same in both. `ValueError` for other
+        axes.
+        """
+        if axes not in CONVENTIONS:
+            raise ValueError(f"axes must be {' or '.join(CONVENTIONS)}, got {shown(axes)}")
+        if axes == self.axes:
+            return self
+        scene = replace(self.scene, current=tuple(turn_vector(self.scene.current).tolist()))
+        changes: dict[str, Any] = turned({name: getattr(self, name) for name in SIGNS})
+        return replace(self, axes=axes, scene=scene, **changes)
+
+    def _in_world(self, name: str) -> np.ndarray:
+        if getattr(self, name) is None:
+            raise ValueError(f"{name}_world needs a run with scene internal_wrench on")
+        own = self.in_axes(REP103)
+        found = world_from_section(own.section_orientation, getattr(own, name))
+        return found if self.axes == REP103 else turn_vector(found)
+
+    @property
+    def path_length(self) -> float:
+        """Length [m] of the head's path through the samples."""
+        return float(np.sum(np.linalg.norm(np.diff(self.position, axis=0), axis=1)))
+
+    @property
+    def swimmer(self) -> dict[str, Any]:
+        """What `Simulation` and `simulate` take of the run: body, scene, flow, robot and fins."""
+        return {name: getattr(self, name) for name in ("body", "scene", "flow", "robot", "fins")}
+
+    @property
+    def body_mass(self) -> float:
+        """Mass of the body in this scene [kg]."""
+        return self.body.mass_in(self.scene.density)

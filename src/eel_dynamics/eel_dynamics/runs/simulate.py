@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Simulates one run of a law: `simulate`."""
+
+import warnings
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from eel_model.body.body import Body
+from eel_model.flow.flow import Flow
+from eel_model.robot.robot import Robot
+from eel_model.scene import Scene
+from numpy.typing import ArrayLike
+
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
+from eel_dynamics.runs.companion import with_error_estimate
+from eel_dynamics.runs.motions import Motion, law_from
+from eel_dynamics.runs.progress_monitor import ProgressMonitor
+from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.settled_duration import settling_time, until_settled
+from eel_dynamics.runs.swim_request import SwimRequest
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
+
+
+def simulate(
+    law: Motion,
+    duration: float | str = 10.0,
+    *,
+    body: Body | None = None,
+    scene: Scene | None = None,
+    accuracy: "str | float | Accuracy" = "standard",
+    sample_period: float | None = None,
+    stations: int | ArrayLike = 51,
+    position: ArrayLike = (0.0, 0.0, 0.0),
+    orientation: ArrayLike = (0.0, 0.0, 0.0, 1.0),
+    twist: ArrayLike = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    load: bool = False,
+    estimate: bool = True,
+    most_evaluations: float = MOST_EVALUATIONS,
+    progress: Callable[[float, float], None] | None = None,
+    flow: Flow | None = None,
+    robot: Robot | None = None,
+    fins: Iterable[Any] | None = None,
+) -> Run:
+    """Simulate `law` for `duration` [s], with samples every `sample_period` [s] from t = 0 on.
+
+    The steps in time do not depend on the sampling. `ValueError` names what does not fit. `SimulationStopped` carries
+    the samples so far as `run`.
+
+    Args:
+        law: a `Law`, a `SampledLaw`, a function K(t, X) (`eel_gaits.sampled`), or a file (`eel_gaits.read_motion`).
+        duration: [s], or "settled": a whole number of periods until the gait has settled (`runs.settled_duration`), at
+            most 100.
+        body, scene, accuracy: as in `Simulation`.
+        sample_period: [s]; None for 0.05 s, or a 20th of the law's shortest period where that is less. The last sample
+            is at the last whole multiple of it: at 0.9 s for a duration of 1 s and a sample period of 0.3 s.
+        stations: number of equidistant stations, or their X (M,) [m].
+        position: (3,) [m], of the head at the start.
+        orientation: (4,) x y z w, at the start.
+        twist: (6,) (Omega, V) [rad/s, m/s], in the head's axes, at the start.
+        load: whether to compute the water's load along the body too.
+        estimate: whether to measure the error (`Run.error_estimate`). Where it exceeds the target, a finer run is
+            returned, or a warning given if none is fine enough.
+        most_evaluations: of the head's dynamics per simulated second. A law that needs more is refused, or stopped.
+        progress: progress(time, left) is called once a second with the simulation time reached [s] and the remaining
+            wall time [s]. Without it, a run longer than a minute gives a warning.
+        flow: how the water moves by itself, beside the scene's current (`Gust`, `Wave` ...); None: not at all.
+        robot: joints, tails or muscles that bend by themselves. The law then is what its servos are asked to follow,
+            and `Run.joint_angle` and the like are what they do; None: the law is imposed.
+        fins: a list of `Fin`, and of pairs of them (`Fin.pair`); None: none.
+    """
+    setup = SimulationSetup.of(
+        body=body,
+        scene=scene,
+        accuracy=accuracy,
+        stations=stations,
+        initial_state=(position, orientation, twist),
+        most_evaluations=most_evaluations,
+        flow=flow,
+        robot=robot,
+        fins=fins,
+    )
+    duration = settling_time(law, setup) if until_settled(duration) else duration
+    seconds: Any = duration  # a text is refused below
+    law = law_from(law, seconds, setup.body.length)
+    request = SwimRequest.of(Run, law, setup, seconds, sample_period, load, runs=2 if estimate else 1)
+    if estimate:
+        request = request.changed(accuracy=Accuracy.to_refine(setup.accuracy))
+    swim = request.swim_to_end(ProgressMonitor(float(seconds), progress).update)
+    run: Run = (with_error_estimate(swim, request) if estimate else swim).run
+    if run.error_estimate is not None and (missed := run.error_estimate.over_target(run.accuracy.target, seconds)):
+        warnings.warn(missed, stacklevel=2)
+    return run
