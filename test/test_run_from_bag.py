@@ -7,15 +7,19 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from builtin_interfaces.msg import Time
-from eel_base.topics import GLOBAL, OWN
+from eel_base.topics import ENERGY_FIELDS, GLOBAL, OWN
+from eel_base.topics import LATER_ENERGY_FIELDS as LATER
 from eel_dynamics.ros.messages import SampleMessages, body_message, diagnostic_array
 from eel_dynamics.ros.parameters import DynamicsParameters
+from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
+from eel_dynamics.runs.exchange.recorded_run import fields_of_messages
+from eel_dynamics.simulation.energy import EnergyLedger
 from eel_gaits.ros.messages import law_to_message
 from eel_viz.bags.definitions import definition, type_hash
 from rclpy.serialization import serialize_message
 from rosbags.rosbag2 import StoragePlugin, Writer
 
-from eel_dynamics import Run, Scene, simulate
+from eel_dynamics import Body, Fin, RollHold, Run, Scene, Shear, simulate
 from eel_gaits import falling, straight
 
 PROFILES = ("backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force")
@@ -49,13 +53,14 @@ def write_bag(folder, run, *, left_out=(), space="", runs=1, laws=1, origin=0, f
         told = diagnostic_array(0.0, "/dynamics", 0, "swimming", {"law": run.law.name, "accuracy": run.accuracy.name})
         add("/diagnostics", GLOBAL["/diagnostics"], serialize_message(told))
         water = {"water_at": lambda place: run.scene.current, "flow": None}
-        swimmer = SimpleNamespace(x=run.x, scene=run.scene, head_errors=None, robot=None, fins=(), **water)
+        swimmer = SimpleNamespace(x=run.x, scene=run.scene, head_errors=None, robot=None, fins=run.fins, **water)
         sample = SampleMessages(swimmer, DynamicsParameters())
+        shown = (*PROFILES, "fin_angle", "fin_force") if run.fins else PROFILES
         whole = [*[(0, 7)] * waiting, *((k, k) for k in range(first, len(run.time)))]
         for stamp, k in whole * runs:
             sample.set_time(round(run.time[stamp] * 1e9))
             energy = SimpleNamespace(**{name: run.energy[name][k] for name in run.energy.keys()})  # noqa: SIM118
-            snapshot = SimpleNamespace(energy=energy, **{name: getattr(run, name)[k] for name in PROFILES})
+            snapshot = SimpleNamespace(energy=energy, **{name: getattr(run, name)[k] for name in shown})
             for topic in sample.kinds:
                 if topic in OWN and topic != "swim_state":
                     add(f"{space}/{topic}", OWN[topic], sample.fill(topic, snapshot))
@@ -81,6 +86,33 @@ def test_it_is_the_run_that_was_published(run, tmp_path):
     assert Run.load(tmp_path / "run.nc") == again
     known = replace(again, body=run.body)
     assert known.refined.position == pytest.approx(run.position, abs=1e-3)
+
+
+def test_what_flow_fins_and_weight_add_is_on_the_topics(tmp_path):
+    """Every array of the library that such a scene adds comes back from a bag, to the last bit."""
+    pair = Fin.pair(0.2, 1e-3, 2.5, angle=RollHold(2.0, 0.15), time_constant=0.05)
+    body = Body.boyer2010().changed(density=1010.0, centre_of_mass_offset=0.005)
+    scene = Scene(weight=True)
+    run = simulate(falling(), 0.6, body=body, scene=scene, flow=Shear(), fins=[pair], load=True, accuracy=1e-3)
+    again = Run.from_bag(write_bag(tmp_path / "bag", run), scene=scene)
+    assert set(EnergyLedger.keys()) == set(ENERGY_FIELDS)
+    for name in ENERGY_FIELDS:
+        assert np.array_equal(again.energy[name], run.energy[name]), name
+    assert run.energy.flow_work.any() and run.energy.fins_work.any() and run.energy.potential.any()
+    for name in ("fin_angle", "fin_force"):
+        assert np.array_equal(getattr(again, name), getattr(run, name)) and getattr(run, name).any()
+
+
+def test_a_bag_without_the_powers_of_flow_and_fins_is_read(run):
+    older = [
+        (topic, SimpleNamespace(**{name: each for name, each in vars(message).items() if name not in LATER}))
+        for topic, message in messages_of_run(run)
+    ]
+    law = next(message for topic, message in older if topic == "curvature_law")
+    law.header, law.terms, law.transition = SimpleNamespace(stamp=SimpleNamespace(sec=0, nanosec=0)), [], 0.0
+    energy = Run(**fields_of_messages(older, None, run.scene)).energy
+    assert np.array_equal(energy.drag_power, run.energy.drag_power) and not energy.fins_power.any()
+    assert energy.drag_work == pytest.approx(run.energy.drag_work, abs=1e-4 * np.abs(run.energy.drag_work).max())
 
 
 def test_a_sample_0_that_was_repeated_before_the_run_counts_once(run, tmp_path, recwarn):

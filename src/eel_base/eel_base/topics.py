@@ -41,8 +41,13 @@ INPUTS = (
 SAMPLED = tuple(name for name in OWN if name not in (*LATCHED, *INPUTS))  # once a sample
 WHERE_ASKED_FOR = ("joint_states", "fin_states", "flow_vectors")  # of `SAMPLED`: with joints, fins, a flow
 SWIMMER = "head_pose"  # without publishers of this topic the swimmer has gone
+LATER_ENERGY_FIELDS = (  # that an older bag has not
+    *("flow_power", "fins_power", "damping_power", "elastic"),
+    *(f"{part}_work" for part in ("actuator", "wake", "nose", "drag", "flow", "fins", "damping")),
+)
 ENERGY_FIELDS = (  # of an EnergyLedger, in its order
     *("kinetic_body", "kinetic_fluid", "potential"),
     *("actuator_power", "wake_power", "nose_power", "drag_power"),
     "residual",
+    *LATER_ENERGY_FIELDS,
 )

@@ -11,7 +11,21 @@ from eel_dynamics.simulation.simulation import swim_time
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.term import Term
 
-from eel_dynamics import Accuracy, Body, Scene, Simulation, SimulationStopped, simulate, simulate_batch
+from eel_dynamics import (
+    Accuracy,
+    Body,
+    Fin,
+    FlowField,
+    GriddedFlow,
+    Robot,
+    RollHold,
+    Scene,
+    Shear,
+    Simulation,
+    SimulationStopped,
+    simulate,
+    simulate_batch,
+)
 from eel_gaits import falling, gait, straight
 
 REFERENCE = Accuracy(name="reference", resolution=150.0, tolerance=1e-12)
@@ -53,7 +67,7 @@ def test_a_budget_buys_the_finest_target_that_keeps_within_it(monkeypatch):
     """The timings are given here, so that no machine decides: 1 ms at 1e-2, ten times that for each hundredth."""
     monkeypatch.setattr(
         "eel_dynamics.simulation.simulation.swim_time",
-        lambda body, scene, stations, target: 1e-3 * (1e-2 / target) ** 0.5,
+        lambda *swimmer: 1e-3 * (1e-2 / swimmer[-1]) ** 0.5,
     )
     bought = Simulation(accuracy="fastest within 5 ms per second").accuracy
     affordable = [target for target in BUDGET_TARGETS if 1e-3 * (1e-2 / target) ** 0.5 <= 5e-3]
@@ -66,9 +80,9 @@ def test_a_budget_is_measured_for_the_body_scene_and_stations_at_hand(monkeypatc
     """A body of many panels takes longer, so the same time affords less. The timings are given here."""
     asked = []
 
-    def swim_time(body, scene, stations, target):
+    def swim_time(body, scene, stations, *others):
         asked.append((body, scene, stations))
-        return 1e-3 * (len(body.panel_ends) / 3.0) ** 4 * (1e-2 / target) ** 0.5
+        return 1e-3 * (len(body.panel_ends) / 3.0) ** 4 * (1e-2 / others[-1]) ** 0.5
 
     monkeypatch.setattr("eel_dynamics.simulation.simulation.swim_time", swim_time)
     body, scene, x = Body.kern2006(0.3), Scene(density=700.0), np.array([0.0, 0.1])
@@ -78,8 +92,40 @@ def test_a_budget_is_measured_for_the_body_scene_and_stations_at_hand(monkeypatc
     assert few.tolerance < many.tolerance and few.target is many.target is None
 
 
+AT_REST = ((0.0,) * 3, (0.0, 0.0, 0.0, 1.0), (0.0,) * 6)
+
+
 def test_the_time_of_a_swim_is_of_that_body():
-    assert swim_time(Body.kern2006(0.3), Scene(planar=True), np.zeros(1).tobytes(), 1e-1) > 0.0
+    still = None, None, (), AT_REST
+    assert swim_time(Body.kern2006(0.3), Scene(planar=True), np.zeros(1).tobytes(), *still, 1e-1) > 0.0
+
+
+def test_a_budget_is_measured_in_the_water_and_with_the_fins_and_the_robot_at_hand(monkeypatch):
+    asked, places = [], []
+
+    def water(x, t):
+        places.append(len(x))
+        return 0.0 * x
+
+    fast = "fastest within 900 s per second"
+    swim_time(Body.boyer2010(), Scene(planar=True), np.zeros(1).tobytes(), FlowField(water), None, (), AT_REST, 1e-1)
+    assert len(places) > 4 * 40  # four swims of two seconds
+    monkeypatch.setattr(
+        "eel_dynamics.simulation.simulation.swim_time", lambda *swimmer: asked.append(swimmer[3:]) or 1e-3
+    )
+    fins, robot = Fin.pair(0.2, 1e-3, 2.5, angle=RollHold(2.0, 0.15), time_constant=0.05), Robot.named("eight_servos")
+    Simulation(accuracy=fast, fins=[fins], flow=Shear(), position=(1.0, 0.0, 0.0))
+    Simulation(accuracy=fast, robot=robot)
+    assert {each[:-1] for each in asked} == {
+        (Shear(), None, fins, ((1.0, 0.0, 0.0), *AT_REST[1:])),
+        (None, robot, (), AT_REST),
+    }
+
+
+def test_a_budget_is_refused_where_the_swim_that_is_timed_stops():
+    still = GriddedFlow(np.zeros((4, 4, 3)), x=np.linspace(-1.2, 0.3, 4), y=np.linspace(-0.6, 0.6, 4))
+    with pytest.raises(ValueError, match=r"accuracy cannot be a budget of time here: 2 s of the gait falling.*grid"):
+        Simulation(accuracy="fastest within 5 ms per second", flow=still, twist=(0, 0, 0, 1.0, 0, 0))
 
 
 def test_a_budget_is_measured_on_this_machine():

@@ -69,7 +69,9 @@ ANGULAR = "/plots/angular_velocity"  # of the head, in base_link [rad/s]
 SPEED = "/plots/speed"
 DEPTH = "/plots/depth"
 POWER = "/plots/power"  # actuator, wake, nose, drag [W]
+POWER_BESIDES = "/plots/power_besides"  # flow, fins, dampers [W]: from the first that is not 0 on
 KINETIC = "/plots/kinetic"  # body, fluid [J]
+STORED = "/plots/stored"  # of weight, of springs [J]: likewise
 RESIDUAL = "/plots/residual"  # [J]
 
 # --- the profiles of the messages, in double precision -------------------------------------------------------------

@@ -5,13 +5,13 @@ Each `read_*` takes one message (any object with its fields) and returns arrays,
 field. Frames and units are those of the message.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from math import isfinite
 from typing import Any
 
 import numpy as np
-from eel_base.topics import ENERGY_FIELDS
+from eel_base.topics import ENERGY_FIELDS, LATER_ENERGY_FIELDS
 from eel_base.wording import shown
 
 UNIT_TOLERANCE = 1e-6  # of a quaternion's norm
@@ -79,12 +79,14 @@ class Load:
     """The fluid's load: `profiles` [N/m], and the forces at `tail` and `nose`, (3,) [N], all in section axes.
 
     `wake` (3,) [N]: momentum that the tail gives to the wake per time, in the tail's axes; None in an older bag.
+    `fins` (3 F,) [N]: the forces on F fins, in the axes of their sections.
     """
 
     profiles: Profiles
     tail: np.ndarray
     nose: np.ndarray
     wake: np.ndarray | None = None
+    fins: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -182,6 +184,7 @@ def read_load(message: Any) -> Load:
         tail=_vector("tail_force", message.tail_force),
         nose=_vector("nose_force", message.nose_force),
         wake=None if wake is None else _vector("wake_momentum_rate", wake),
+        fins=_finite("fin_force", np.asarray(getattr(message, "fin_force", ()), dtype=float)),
     )
 
 
@@ -197,8 +200,9 @@ def read_flow(message: Any) -> tuple[np.ndarray, np.ndarray]:
 
 
 def read_energy(message: Any) -> dict[str, float]:
-    """From eel_msgs/EnergyLedger: one number per field [J], [W]."""
-    values = {name: getattr(message, name) for name in ENERGY_FIELDS}
+    """From eel_msgs/EnergyLedger: one number per field [J], [W]; 0 for those that an older bag has not."""
+    older = () if hasattr(message, "drag_work") else LATER_ENERGY_FIELDS
+    values = {name: 0.0 if name in older else getattr(message, name) for name in ENERGY_FIELDS}
     for name, value in values.items():
         if not np.isfinite(value):
             raise BadMessage(name, f"is {shown(value)}")

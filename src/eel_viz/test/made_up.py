@@ -119,6 +119,7 @@ class Swimmer:
             "tail_force": np.array([-0.4 * ramp, 0.3 * ramp * np.sin(2 * np.pi * t), 0.0]),
             "wake_momentum_rate": np.array([0.4 * ramp, 2.0 * ramp * np.cos(2 * np.pi * t), 0.1 * ramp]),
             "nose_force": np.array([0.1, 0.0, 0.0]) * ramp,
+            "fin_force": np.array([0.1, 0.2, 0.3, 0.1, -0.2, 0.3]) * ramp,
         }
 
     def water(self, t: float) -> np.ndarray:
@@ -137,6 +138,14 @@ class Swimmer:
             "nose_power": -0.03 * ramp,
             "drag_power": -0.35 * actuator,
             "residual": 1e-5 * np.sin(3 * t) * t,
+            "flow_power": 0.05 * np.cos(t),
+            "fins_power": -0.04 * ramp,
+            "damping_power": -0.02 * ramp,
+            "elastic": 0.03 * (1 + ramp),
+            **{
+                f"{part}_work": 0.1 * k * t
+                for k, part in enumerate(("actuator", "wake", "nose", "drag", "flow", "fins", "damping"), 1)
+            },
         }
 
 

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The made-up swimmer through the loggers into a file, without ROS."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import made_up
+import numpy as np
 from eel_viz.recording.loggers import Loggers
 from eel_viz.recording.rates import Rates
 from eel_viz.recording.recording_file import FileDestination
@@ -31,6 +33,7 @@ def sample(swimmer: made_up.Swimmer, stamp: int) -> dict:
                 tail=load["tail_force"],
                 nose=load["nose_force"],
                 wake=load["wake_momentum_rate"],
+                fins=load["fin_force"],
             ),
         ),
         "flow_vectors": (swimmer.backbone(t)["position"], swimmer.water(t)),
@@ -46,8 +49,10 @@ def body() -> messages.Body:
     return messages.Body(**made_up.body())
 
 
-def record(path: Path, seconds: float, rate: float, *, stations: int = 51, **settings) -> dict[int, dict]:
-    """Log everything; returns what was logged, by stamp [ns]."""
+def record(
+    path: Path, seconds: float, rate: float, *, stations: int = 51, plain: bool = False, **settings
+) -> dict[int, dict]:
+    """Log everything; returns what was logged, by stamp [ns]. plain: of a swim without fins, flow, weight, springs."""
     chosen = Settings(recording=str(path), **settings)
     said: list[str] = []
     destination = FileDestination(chosen, said.append, said.append)
@@ -62,6 +67,11 @@ def record(path: Path, seconds: float, rate: float, *, stations: int = 51, **set
     for k in range(round(seconds * rate) + 1):
         stamp = round(k * 1e9 / rate)
         logged[stamp] = sample(swimmer, stamp)
+        if plain:
+            ((energy,), (load,)) = (logged[stamp].pop(name) for name in ("energy", "hydrodynamic_load"))
+            logged[stamp].pop("flow_vectors")
+            nothing = dict.fromkeys(("flow_power", "fins_power", "damping_power", "potential", "elastic"), 0.0)
+            logged[stamp] |= {"energy": (energy | nothing,), "hydrodynamic_load": (replace(load, fins=np.zeros(0)),)}
         for method, arguments in logged[stamp].items():
             for compared in sides:
                 loggers.log(method, stamp, *arguments, compared=compared)

@@ -39,7 +39,9 @@ TIME_SERIES = (
     entities.ANGULAR,
     entities.SPEED,
     entities.POWER,
+    entities.POWER_BESIDES,
     entities.KINETIC,
+    entities.STORED,
     entities.RESIDUAL,
 )
 NUMBERS = (
@@ -115,6 +117,7 @@ def test_way_points_that_come_before_the_body_get_its_size(given, reach, tmp_pat
 def test_scalars_are_exact_and_complete(made):
     path, samples = made
     powers = ("actuator_power", "wake_power", "nose_power", "drag_power")
+    besides = ("flow_power", "fins_power", "damping_power")
     expected = {
         entities.POSITION: given(samples, "head_pose", lambda pose: pose.position),
         entities.ORIENTATION: given(samples, "head_pose", lambda pose: pose.orientation),
@@ -124,6 +127,8 @@ def test_scalars_are_exact_and_complete(made):
         entities.ANGULAR: given(samples, "head_twist", lambda twist: twist.angular),
         entities.SPEED: given(samples, "head_twist", lambda twist: [np.linalg.norm(twist.linear)]),
         entities.POWER: given(samples, "energy", lambda energy: [energy[name] for name in powers]),
+        entities.POWER_BESIDES: given(samples, "energy", lambda energy: [energy[name] for name in besides]),
+        entities.STORED: given(samples, "energy", lambda energy: [energy["potential"], energy["elastic"]]),
         entities.KINETIC: given(samples, "energy", lambda energy: [energy["kinetic_body"], energy["kinetic_fluid"]]),
         entities.RESIDUAL: given(samples, "energy", lambda energy: [energy["residual"]]),
     }
@@ -145,9 +150,9 @@ def test_profiles_are_exact_and_complete(made):
             assert_exact(path, entity, name, samples, values)
         stations = read(path, entity)
         np.testing.assert_array_equal(stations["x"], [first.x])  # once, since it stays
-    for name in ("tail", "nose"):
+    for name, component in (("tail", "tail_force"), ("nose", "nose_force"), ("fins", "fin_force")):
         values = given(samples, "hydrodynamic_load", lambda load, name=name: getattr(load, name))
-        assert_exact(path, entities.LOAD_NUMBERS, f"{name}_force", samples, values)
+        assert_exact(path, entities.LOAD_NUMBERS, component, samples, values)
 
 
 def test_odometry_is_exact(made):
@@ -543,5 +548,5 @@ def test_a_recording_gets_another_blueprint_for_its_end_unless_it_is_short(tmp_p
 
 
 def test_a_recording_takes_less_than_a_megabyte_a_second_at_50_hz(record_made_up):
-    path, _ = record_made_up(3.0, 50.0)
+    path, _ = record_made_up(3.0, 50.0, plain=True)
     assert path.stat().st_size < 3.0 * 1e6

@@ -2,11 +2,13 @@
 """Messages to arrays: what fits comes through unchanged, what does not is refused with the field's name."""
 
 import math
+from types import SimpleNamespace
 
 import made_up
 import numpy as np
 import pytest
 from builtin_interfaces.msg import Time
+from eel_base.topics import ENERGY_FIELDS, LATER_ENERGY_FIELDS
 from eel_viz.messages import BadMessage
 from fake_swimmer import body_message, messages
 from geometry_msgs.msg import PoseStamped
@@ -64,7 +66,11 @@ def test_arrays_come_through_unchanged(sent):
     load = reading.read_load(sent["hydrodynamic_load"])
     np.testing.assert_array_equal(load.tail, swimmer.load(STAMP * 1e-9)["tail_force"])
     np.testing.assert_array_equal(load.wake, swimmer.load(STAMP * 1e-9)["wake_momentum_rate"])
-    assert reading.read_energy(sent["energy"]) == swimmer.energy(STAMP * 1e-9)
+    np.testing.assert_array_equal(load.fins, swimmer.load(STAMP * 1e-9)["fin_force"])
+    energy = swimmer.energy(STAMP * 1e-9)
+    assert reading.read_energy(sent["energy"]) == energy
+    older = SimpleNamespace(**{name: energy[name] for name in ENERGY_FIELDS if name not in LATER_ENERGY_FIELDS})
+    assert reading.read_energy(older) == energy | dict.fromkeys(LATER_ENERGY_FIELDS, 0.0)
     head = swimmer.head(STAMP * 1e-9)
     pose, twist = READERS["odom"](sent["odom"])
     np.testing.assert_array_equal(pose.position, head["position"])
@@ -111,7 +117,9 @@ BAD = [
     ("flow_vectors", "velocity[4]", math.nan, "velocity"),
     ("flow_vectors", "velocity", [0.0] * 3, "velocity"),
     ("flow_vectors", "position", [0.0] * 4, "position"),
+    ("hydrodynamic_load", "fin_force[1]", math.nan, "fin_force"),
     ("energy", "residual", math.nan, "residual"),
+    ("energy", "flow_work", math.inf, "flow_work"),
     ("body", "half_width[3]", -0.01, "half_width"),
     ("body", "half_height[3]", math.nan, "half_height"),
     ("body", "half_height", [0.1], "half_height"),

@@ -76,7 +76,7 @@ class SampleMessages:
                 del topics[name]
         for message, frame, _ in topics.values():
             message.header.frame_id = frame
-            _lengthen(message, np.asarray(x, dtype=float))
+            _lengthen(message, np.asarray(x, dtype=float), len(simulation.fins))
         if (flow := simulation.flow) is not None:
             zero = array.array("d", bytes(8 * lattice_around(np.zeros(3), simulation.body.length, flow).size))
             vectors = msg.FlowVectors(position=zero, velocity=zero)
@@ -187,6 +187,8 @@ class SampleMessages:
             numbers[RESISTANCES[axis]][:] = snapshot.resistive_force[:, axis]
         for name in ("tail_force", "nose_force", "wake_momentum_rate"):
             numbers[name][:] = getattr(snapshot, name) + 0.0
+        if self._simulation.fins:
+            numbers["fin_force"][:] = snapshot.fin_force.ravel()
 
     def _fill_energy(self, numbers: Numbers, snapshot: Snapshot) -> None:
         numbers[""][:] = [getattr(snapshot.energy, name) for name in ENERGY_FIELDS]
@@ -225,11 +227,11 @@ class SampleMessages:
             numbers[field][:] = joints[name]
 
 
-def _lengthen(message: Any, x: np.ndarray) -> None:
-    """Set the lengths of the sequences in a `message` for the stations `x` (M,) [m], and `x` itself."""
+def _lengthen(message: Any, x: np.ndarray, fins: int) -> None:
+    """Set the lengths of the sequences in a `message` for so many `fins` and the stations `x` (M,) [m], and `x`."""
     for field, kind in message.get_fields_and_field_types().items():
         if kind == "sequence<double>":
-            count = {"position": 3, "orientation": 4}.get(field, 1) * len(x)
+            count = 3 * fins if field == "fin_force" else {"position": 3, "orientation": 4}.get(field, 1) * len(x)
             setattr(message, field, array.array("d", x.tolist() if field == "x" else bytes(8 * count)))
 
 

@@ -17,15 +17,18 @@ from eel_viz.recording.dispatcher import READERS
 class SwimmerMessages:
     """The messages of one swimmer in `bag`, as pairs of topic (without namespace) and message.
 
-    namespace: the swimmer's; None: that of the only swimmer. `ValueError` if there is no swimmer, or several.
+    namespace: the swimmer's; None: that of the only swimmer. further: topics besides those that are shown.
+    `ValueError` if there is no swimmer, or several.
     """
 
-    def __init__(self, bag: Bag, namespace: str | None, log_warning: LogFunction) -> None:
+    def __init__(
+        self, bag: Bag, namespace: str | None, log_warning: LogFunction, further: tuple[str, ...] = ()
+    ) -> None:
         self._bag, self._log_warning = bag, log_warning
         self._reported: set[str] = set()  # topics with messages that cannot be read
         self.namespace = self._found(namespace)
         self._topics: dict[str, str] = {}
-        for name in READERS:
+        for name in (*READERS, *further):
             topic = DIAGNOSTICS if name == "diagnostics" else f"{self.namespace}/{name}"
             there, kind = bag.topics.get(topic), OWN.get(name) or GLOBAL[topic]
             if there is not None and there.type == kind:
@@ -96,4 +99,4 @@ def swimmer_messages(path: str | os.PathLike[str], namespace: str | None = None)
     with Bag(path) as bag:
         if bag.damage:
             log_warning(f"{path} is unfinished or damaged ({bag.damage}): read as far as it goes")
-        yield from SwimmerMessages(bag, namespace, log_warning)
+        yield from SwimmerMessages(bag, namespace, log_warning, ("fin_states",))

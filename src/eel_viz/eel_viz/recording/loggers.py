@@ -35,6 +35,10 @@ HEAT_MAP_PERIOD = 200_000_000
 SUMMARY_PERIOD = 200_000_000
 SHORT = reprlib.Repr()
 SHORT.maxstring = 220  # characters of a law's name, which is not checked before
+BESIDES = {
+    entities.POWER_BESIDES: ("flow_power", "fins_power", "damping_power"),
+    entities.STORED: ("potential", "elastic"),
+}
 LEVELS = ("INFO", "WARN", "ERROR", "WARN")  # of a DiagnosticStatus: OK, WARN, ERROR, STALE
 
 
@@ -52,6 +56,7 @@ class Loggers:
         self._due = Slots().due
         self._stations: dict[str, np.ndarray] = {}
         self._statuses: dict[str, tuple[int, str]] = {}  # level and message, by name
+        self._besides: set[str] = set()  # paths of `BESIDES` that have lines
         self.summary = Summary()
         self._attitude = Attitude()
         self._scene = SwimmerScene(
@@ -192,6 +197,8 @@ class Loggers:
             values = {**load.profiles.values, "tail_force": load.tail, "nose_force": load.nose}
             if load.wake is not None:
                 values["wake_momentum_rate"] = load.wake
+            if len(load.fins):
+                values["fin_force"] = load.fins
             self._numbers(stamp, entities.LOAD_NUMBERS, "HydrodynamicLoad", values, load.profiles.x)
         if self._due("arrows", stamp, self._drawing_period):
             self._scene.load(stamp, load)
@@ -208,6 +215,11 @@ class Loggers:
             self._stream.add_scalars(stamp, entities.POWER, powers)
             self._stream.add_scalars(stamp, entities.KINETIC, [energy["kinetic_body"], energy["kinetic_fluid"]])
             self._stream.add_scalars(stamp, entities.RESIDUAL, [energy["residual"]])
+            for path, names in BESIDES.items():
+                values = [energy[name] for name in names]
+                if any(values) or path in self._besides:  # a swim without fins has no line for them
+                    self._besides.add(path)
+                    self._stream.add_scalars(stamp, path, values)
 
     # --- the run -------------------------------------------------------------------------------------------------
     def curvature_law(self, stamp: int, name: str) -> None:

@@ -27,7 +27,7 @@ from eel_viz.views.views import (
 
 SETTLED = 0.4  # of a run: from here on it is repeated, for the swim is settled by then
 POWER_SHOWN = 4.0  # s: duration of the last power that is shown, so that its scale fits the swim and not its start
-POWER = "Power [W]: actuators red, drag yellow, wake violet, nose magenta"
+POWER = "Power [W]: actuators red, drag yellow, wake violet, nose magenta, flow blue, fins mint"
 XYZ = "x orange, y green, z blue"
 
 
@@ -38,7 +38,7 @@ def overview(look: Look) -> rrb.Container:
         rrb.Vertical(
             heat_map_view(),
             profile_view(entities.TORQUE, "Internal torque C(X)"),
-            series_view(look, POWER, entities.POWER, last=POWER_SHOWN),
+            series_view(look, POWER, entities.POWER, entities.POWER_BESIDES, last=POWER_SHOWN),
             rrb.Horizontal(
                 series_view(look, "Speed of the head [m/s]", entities.SPEED),
                 series_view(look, "Depth of the head [m]", entities.DEPTH),
@@ -70,7 +70,9 @@ def motion(look: Look) -> rrb.Container:
             path_view(look),
             rrb.Horizontal(
                 series_view(look, "Speed of the head [m/s]", entities.SPEED),
-                series_view(look, "Kinetic energy [J]: body grey, water yellow", entities.KINETIC),
+                series_view(
+                    look, "Energy [J]: body grey, water yellow, weight blue", entities.KINETIC, entities.STORED
+                ),
             ),
             row_shares=[2.1, 1.0],
         ),

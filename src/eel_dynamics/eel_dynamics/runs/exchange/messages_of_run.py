@@ -76,9 +76,12 @@ def _sample(run, k: int) -> dict[str, dict]:
             **_by_axis(force=run.fluid_force[k], resistive=run.resistive_force[k]),
             "tail_force": _named("xyz", run.tail_force[k]),
             "nose_force": _named("xyz", run.nose_force[k]),
+            "fin_force": np.zeros(0) if run.fin_force is None else run.fin_force[k].ravel(),
         }
         if run.wake_momentum_rate is not None:  # a file of an older version has none
             found["hydrodynamic_load"]["wake_momentum_rate"] = _named("xyz", run.wake_momentum_rate[k])
+    if run.fin_angle is not None:
+        found["fin_states"] = {"name": [fin.name for fin in run.fins], "position": run.fin_angle[k]}
     if run.flow is not None:
         points = lattice_around(run.backbone[k].mean(axis=0), run.body.length, run.flow)
         velocity = velocities_at(run.flow, points, run.time[k]) + run.scene.current

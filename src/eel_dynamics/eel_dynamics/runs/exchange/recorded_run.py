@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes the fields of a run from the messages of a node: the reverse of `messages_of_run`.
 
-What messages do not carry is computed from them: the head's acceleration and the works by splines in time, the centre
-of mass by splines along the body.
+What messages do not carry is computed from them: the head's acceleration by splines in time, the centre of mass by
+splines along the body.
 """
 
 import os
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from eel_base.files.input_file import reading
 from eel_base.quantity import checked_instance, is_finite
-from eel_base.topics import ENERGY_FIELDS
+from eel_base.topics import ENERGY_FIELDS, LATER_ENERGY_FIELDS
 from eel_base.wording import one_line, shown
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
@@ -31,7 +31,7 @@ from eel_dynamics.runs.exchange.eel_viz_functions import messages_of_bag
 from eel_dynamics.simulation.energy import WORKS, EnergyLedger
 
 NEEDED = ("head_pose", "head_twist", "backbone", "curvature")
-FURTHER = ("internal_wrench", "hydrodynamic_load", "energy")
+FURTHER = ("internal_wrench", "hydrodynamic_load", "energy", "fin_states")
 ENDS = ("tail_force", "nose_force", "wake_momentum_rate")
 FEWEST = 4  # samples, for splines through them
 AXIS_OF_NUMBER = {column + 1: name for name, column in SECTION_COLUMN.items()}  # as in CurvatureTerm
@@ -76,6 +76,8 @@ def fields_of_messages(messages: Iterable[tuple[str, object]], body: Body | None
     found["body"] = _body(once, scene) if body is None else body
     found["center_of_mass"] = _center_of_mass(found["body"], found["x"], found["backbone"])
     found |= dict.fromkeys(("closure_torque", "closure_force")) | dict.fromkeys(("steps", "evaluations", "nodes"), 0)
+    if "fin_states" in rows:
+        found["fin_angle"] = np.array([each.position for each in rows["fin_states"]])
     return found | _wrench(rows) | _load(rows) | {"energy": _energy(rows, found["time"])}
 
 
@@ -140,22 +142,27 @@ def _load(rows: dict) -> dict:
     ends = dict.fromkeys(ENDS) | {  # an older bag has no wake_momentum_rate
         name: _numbers((getattr(each, name) for each in load), "xyz") for name in ENDS if hasattr(load[0], name)
     }
-    return {"fluid_force": _by_axes(load, "force"), "resistive_force": _by_axes(load, "resistive"), **ends}
+    found = {"fluid_force": _by_axes(load, "force"), "resistive_force": _by_axes(load, "resistive"), **ends}
+    if "fin_states" in rows and hasattr(load[0], "fin_force"):
+        found["fin_force"] = _along(load, "fin_force", len(rows["fin_states"][0].position), 3)
+    return found
 
 
 def _energy(rows: dict, time: np.ndarray) -> EnergyLedger | None:
-    """The ledger, with works since the first sample. The node's water does not move by itself: no power of a flow."""
+    """The ledger. An older bag has no powers of flow and fins, and no works: they are those since its first sample."""
     if "energy" not in rows:
         return None
-    ledger = dict.fromkeys(
-        ("flow_power", "fins_power", "elastic", "damping_power", "damping_work"), np.zeros_like(time)
-    )
-    ledger |= {name: np.array([getattr(each, name) for each in rows["energy"]]) for name in ENERGY_FIELDS}
-    works = {}
-    for part in WORKS:
-        total = _spline(time, ledger[f"{part}_power"]).antiderivative()
-        works[f"{part}_work"] = total(time) - total(time[0])
-    return EnergyLedger(**ledger, **works)
+    older = not hasattr(rows["energy"][0], "drag_work")
+    ledger = dict.fromkeys(LATER_ENERGY_FIELDS, np.zeros_like(time)) | {
+        name: np.array([getattr(each, name) for each in rows["energy"]])
+        for name in ENERGY_FIELDS
+        if not (older and name in LATER_ENERGY_FIELDS)
+    }
+    if older:
+        for part in WORKS:
+            total = _spline(time, ledger[f"{part}_power"]).antiderivative()
+            ledger[f"{part}_work"] = total(time) - total(time[0])
+    return EnergyLedger(**ledger)
 
 
 def _law(once: dict) -> Law:
