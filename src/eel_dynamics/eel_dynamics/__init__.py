@@ -91,6 +91,7 @@ STUDIES = (
     "Front",
     "Gradient",
     "Identified",
+    "MeasuredAngles",
     "MeasuredPath",
     "MeasuredSpeed",
     "PeriodicLinearisation",

@@ -76,7 +76,10 @@ def servo(**fields):
         (lambda: Robot([Joint(0.3)]).joint("joint_2"), "joint must be one of joint_1, got 'joint_2'"),
         (lambda: Robot([Joint(0.3)]).changed(torque_limit=1.0), "no part of the robot has 'torque_limit'"),
         (lambda: Robot([Joint(0.3)]).changed("joint_1", kp=1.0), "'joint_1' has no 'kp'"),
-        (lambda: Robot([Joint(0.3)]).changed("neck", width=0.1), "part must be one of joint_1, got 'neck'"),
+        (
+            lambda: Robot([Joint(0.3)]).changed("neck", width=0.1),
+            "part must be one of joint_1, joints, servos, tails, muscles, got 'neck'",
+        ),
         (lambda: Robot.named("ten_servos"), "robot must be one of eight_servos, series_elastic, passive_tail, a file"),
     ],
 )

@@ -8,6 +8,7 @@ from eel_studies.gradients.gradient import Gradient as Gradient
 from eel_studies.gradients.gradient import gradient as gradient
 from eel_studies.identification.identify import Identified as Identified
 from eel_studies.identification.identify import identify as identify
+from eel_studies.identification.measurements import MeasuredAngles as MeasuredAngles
 from eel_studies.identification.measurements import MeasuredPath as MeasuredPath
 from eel_studies.identification.measurements import MeasuredSpeed as MeasuredSpeed
 from eel_studies.optimisation.front import Front as Front

@@ -9,12 +9,15 @@
 | `body.lateral_drag`, `body.centre_of_mass_offset`, ... | a number of `Body` |
 | `flow`, `flow.spacing`, ... | a `Flow`, or its text as of `eel simulate --flow`; a field of it |
 | `fins`, `fins.area`, `fins.k_p`, ... | `Fin`s, or their text; a field of all, or a gain of their `RollHold` |
+| `robot` | a `Robot`, its name or its file |
+| `robot.kp`, `robot.tails.damping`, `robot.joint_3.kp` ... | a field of all parts that have it, of a kind, or of one |
 | `accuracy` | as in `simulate` |
 | `initial.position_x`, `_y`, `_z` | head at the start [m], world |
 | `initial.omega_x`, ..., `initial.v_z` | twist of the head at the start [rad/s, m/s], its axes |
 """
 
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import fields, replace
 from typing import Any, NamedTuple
 
@@ -37,6 +40,7 @@ from eel_model.flow.flow import Flow
 from eel_model.flow.plain import KINDS
 from eel_model.flow.text import flow_from_text
 from eel_model.initial_state import InitialState
+from eel_model.robot.robot import Robot, checked_robot, robot_of
 from eel_model.scene import Scene
 
 Gait = str | Callable[..., Law]  # its name, or a function of numbers
@@ -46,7 +50,7 @@ AccuracyLike = str | float | Accuracy
 Stations = int | np.ndarray
 Progress = Callable[[int, int], object] | bool | None  # as in `sweep`
 GROUPS = "scene.", "body.", "initial."  # what begins a name of theirs
-FLOW, FINS = "flow.", "fins."
+FLOW, FINS, ROBOT = "flow.", "fins.", "robot."
 POSITIONS = ("position_x", "position_y", "position_z")
 VELOCITIES = ("omega_x", "omega_y", "omega_z", "v_x", "v_y", "v_z")
 
@@ -86,6 +90,7 @@ def batch_of_points(
         twists=np.array([point.start.twist for point in points]),
         flows=[point.flow for point in points],
         fins=[list(point.fins) for point in points],
+        robots=[point.robot for point in points],
         estimate=how.estimate,
         threads=threads,
         progress=progress,
@@ -93,10 +98,22 @@ def batch_of_points(
     )
 
 
-def base_point(body: Body | None, scene: Scene | None, accuracy: Accuracy, friction: str = "printed") -> Swim:
-    """What the points of a study share. friction: of the default scene. `ValueError` names what does not fit."""
+def base_point(
+    body: Body | None,
+    scene: Scene | None,
+    accuracy: Accuracy,
+    friction: str = "printed",
+    robot: Robot | str | None = None,
+) -> Swim:
+    """What the points of a study share: without a `body`, that of the robot. friction: of the default scene.
+
+    `ValueError` names what does not fit.
+    """
     scene = Scene(friction=friction) if scene is None else checked_instance("scene", scene, Scene)
-    return Swim(None, checked_body(body), scene, accuracy)
+    found = checked_robot(robot_of(robot) if isinstance(robot, str) else robot)
+    if body is None and found is not None:
+        body = found.body
+    return Swim(None, checked_body(body), scene, accuracy, robot=found)
 
 
 def point_at(values: Numbers, gait: Gait, numbers: Numbers, base: Swim) -> Swim:
@@ -128,13 +145,13 @@ def label_of(value: Any) -> Any:
 
 
 def _named(value: object) -> bool:
-    return isinstance(value, (Body, Accuracy))
+    return isinstance(value, (Body, Accuracy, Robot))
 
 
 def _point(values: Numbers, gait: Gait, base: Swim) -> Swim:
-    body, accuracy, flow, fins = base.body, base.accuracy, base.flow, base.fins
+    body, accuracy, flow, fins, robot = base.body, base.accuracy, base.flow, base.fins, base.robot
     own: dict[str, Any] = {}
-    groups: dict[str, dict[str, Any]] = {group.rstrip("."): {} for group in (*GROUPS, FLOW, FINS)}
+    groups: dict[str, dict[str, Any]] = {group.rstrip("."): {} for group in (*GROUPS, FLOW, FINS, ROBOT)}
     for name, value in values.items():
         group, _, field = name.partition(".")
         if field and group in groups:
@@ -145,17 +162,41 @@ def _point(values: Numbers, gait: Gait, base: Swim) -> Swim:
             flow = flow_from_text(value) if isinstance(value, str) else value
         elif name == "fins":
             fins = fins_from_text(value) if isinstance(value, str) else value
+        elif name == "robot":
+            robot = checked_robot(robot_of(value) if isinstance(value, str) else value)
+            body = (robot and robot.body) or body
         elif name == "accuracy":
             accuracy = Accuracy.of(value)
         else:
             own[name] = value
     check_names("scene", groups["scene"], [item.name for item in fields(Scene)])
     check_names("body", groups["body"], (*NUMBERS, *MASSES))
-    law = (find(gait) if isinstance(gait, str) else gait)(**own)
+    if groups["robot"]:
+        robot = _robot_with(robot, groups["robot"])
+    try:
+        law = (find(gait) if isinstance(gait, str) else gait)(**own)
+    except (ValueError, TypeError) as error:
+        raise ValueError(f"{error}{_of_robot(robot, own)}") from None
     body = body.changed(**groups["body"]) if groups["body"] else body
     scene, start = replace(base.scene, **groups["scene"]), _start(base.start, groups["initial"])
     flow, fins = _flow_with(flow, groups["flow"]), fins_with(checked_fins(fins, body, scene), groups["fins"])
-    return base._replace(law=law, body=body, scene=scene, accuracy=accuracy, start=start, flow=flow, fins=fins)
+    changes = {"law": law, "body": body, "scene": scene, "accuracy": accuracy, "start": start}
+    return base._replace(**changes, flow=flow, fins=fins, robot=robot)
+
+
+def _of_robot(robot: Robot | None, numbers: Numbers) -> str:
+    """A hint where one of the `numbers` that are no gait's is the robot's."""
+    for name, value in numbers.items():
+        with suppress(ValueError, TypeError):
+            _robot_with(robot, {name: value})
+            return f"; that of the robot is {ROBOT}{name}"
+    return ""
+
+
+def _robot_with(robot: Robot | None, numbers: Numbers) -> Robot:
+    if robot is None:
+        raise ValueError(f"robot must be given for {', '.join(ROBOT + name for name in numbers)} to change, got none")
+    return robot.with_numbers(numbers)
 
 
 def fins_with(fins: tuple[Fin, ...], changes: Numbers) -> tuple[Fin, ...]:

@@ -3,13 +3,10 @@
 
 | name | what it sets |
 |---|---|
-| `period`, `scene.viscosity`, `body.nose_drag`, `initial.v_x`, `accuracy` ... | as in `points` |
+| `period`, `scene.viscosity`, `flow.core`, `fins.area`, `robot.kp`, `initial.v_x`, `accuracy` ... | as in `points` |
 | `amplitude` | factor of the law's curvature |
 | `density_ratio` | density of the body by that of the water |
 | `spin` | turns/s of the head about all three of its axes alike |
-| `flow.core`, ... | a field of the flow |
-| `robot.stiffness`, ... | a field of all joints of the robot, or of their servos |
-| `fins.area`, `fins.k_p`, ... | a field of all fins, or of their hold of the roll |
 | `flow_speed` | m/s: size of the flow's velocity |
 | `step` | s: fixed steps of the classical method |
 | `tolerance`, `resolution`, `method` | settings given one by one |
@@ -18,7 +15,7 @@ Where the period changes, so does the duration: a map shows as many periods ever
 """
 
 from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -26,23 +23,18 @@ from eel_base.quantity import number
 from eel_base.wording import shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.runs.swim import Swim
-from eel_model.robot.robot import Robot
 
-from eel_studies.points import FINS, FLOW, GROUPS, check_names, fins_with, point_at
+from eel_studies.points import FINS, FLOW, GROUPS, ROBOT, point_at
 
 RESOLUTION = 36.0  # points per body length where a setting in time is given: the error in space stays below 1e-3
-ROBOT = "robot."
 
 
 def varied(swim: Swim, values: dict[str, Any]) -> Swim:
     """The `swim` with these `values` by name. `ValueError` for what does not fit."""
     period = _longest_period(swim)
-    shared = {name: value for name, value in values.items() if name.startswith(GROUPS) or name == "accuracy"}
-    gait = {
-        name: value
-        for name, value in values.items()
-        if name not in {*shared, *OWN} and not name.startswith((FLOW, ROBOT, FINS))
-    }
+    begins = (*GROUPS, FLOW, FINS, ROBOT)
+    shared = {name: value for name, value in values.items() if name.startswith(begins) or name == "accuracy"}
+    gait = {name: value for name, value in values.items() if name not in {*shared, *OWN}}
     if gait:
         swim = swim.with_gait(**{name: number(name, value) for name, value in gait.items()})
     if shared:
@@ -50,12 +42,6 @@ def varied(swim: Swim, values: dict[str, Any]) -> Swim:
     for name, value in values.items():
         if name in OWN:
             swim = swim._replace(**OWN[name](swim, value))
-        elif name.startswith(FLOW):
-            swim = _with_flow(swim, {name.removeprefix(FLOW): value})
-        elif name.startswith(FINS):
-            swim = swim._replace(fins=fins_with(swim.fins, {name.removeprefix(FINS): value}))
-        elif name.startswith(ROBOT):
-            swim = swim._replace(robot=_robot_of(swim).changed(**{name.removeprefix(ROBOT): value}))
     if period and isinstance(swim.duration, float) and (now := _longest_period(swim)) != period:
         swim = swim._replace(duration=swim.duration * now / period)
     return swim
@@ -65,24 +51,11 @@ def _longest_period(swim: Swim) -> float:
     return max((term.period for term in getattr(swim.law, "waves", ())), default=0.0)
 
 
-def _robot_of(swim: Swim) -> Robot:
-    if swim.robot is None:
-        raise ValueError("robot has no fields: the scene has no robot")
-    return swim.robot
-
-
-def _with_flow(swim: Swim, changes: dict[str, Any]) -> Swim:
-    if swim.flow is None:
-        raise ValueError(f"flow has no field {shown(next(iter(changes)))}: the scene has no flow")
-    check_names("flow", changes, [item.name for item in fields(swim.flow)])  # type: ignore[arg-type]
-    return swim._replace(flow=replace(swim.flow, **changes))  # type: ignore[type-var]
-
-
 def _flow_speed(swim: Swim, value: float) -> dict[str, Any]:
     velocity = np.array(getattr(swim.flow, "velocity", (0.0, 0.0, 0.0)))
     if not velocity.any():
         raise ValueError(f"flow_speed needs a flow with a velocity, got {shown(swim.flow)}")
-    return {"flow": _with_flow(swim, {"velocity": tuple(value * velocity / np.linalg.norm(velocity))}).flow}
+    return {"flow": replace(swim.flow, velocity=tuple(value * velocity / np.linalg.norm(velocity)))}  # type: ignore
 
 
 def _settings(swim: Swim, **changes: Any) -> dict[str, Any]:

@@ -176,8 +176,14 @@ NO_TERMS = "^gait must return a Law, whose terms are known, got SampledLaw"
         (lambda: MeasuredPath(TIME, PLACES, station=-0.1), "path station must be >= 0 m, got -0.1"),
         (lambda: MeasuredSpeed(0.0), "measured speed must be > 0 m/s, got 0.0"),
         (lambda: identify({}, MeasuredSpeed(0.3)), "parameters must be a dict of names and first guesses"),
-        (lambda: identify(GUESS, []), "measured must be MeasuredPath or MeasuredSpeed, one kind of them, got none"),
-        (lambda: identify(GUESS, [MeasuredSpeed(0.3), MeasuredPath(TIME, PLACES)]), "one kind of them, got Measured"),
+        (
+            lambda: identify(GUESS, []),
+            "measured must be of one kind of MeasuredPath, MeasuredAngles, MeasuredSpeed, got none",
+        ),
+        (
+            lambda: identify(GUESS, [MeasuredSpeed(0.3), MeasuredPath(TIME, PLACES)]),
+            "MeasuredSpeed, got MeasuredPath, MeasuredSpeed",
+        ),
         (lambda: identify({"body.lateral_drg": 1.0}, MeasuredSpeed(0.3)), r"did you mean 'lateral_drag'\?"),
         (
             lambda: identify({"body.lateral_drag": 1.0}, MeasuredSpeed(0.3), scene=PLANE),
@@ -285,7 +291,7 @@ def test_speeds_in_a_table_have_the_numbers_of_their_swims(files, tmp_path, caps
             ["run.nc", "--station", "0.3"],
             "--station must be one of its 3 stations, the nearest are 0, 0.5, 1 m, got 0.3",
         ),
-        (["path.csv", "speeds.csv", *GAIT], "one kind of them, got MeasuredPath, MeasuredSpeed"),
+        (["path.csv", "speeds.csv", *GAIT], "MeasuredSpeed, got MeasuredPath, MeasuredSpeed"),
         (["path.npz", *GAIT, "--level", "2"], "level must be below 1, got 2"),
         (["path.csv", *GAIT, "--first", "body.drag"], "--first must be NAME=VALUE, got 'body.drag'"),
         (["path.csv", *GAIT, "--first", "body.drag=x"], "--first must be NAME=NUMBER, got 'body.drag=x'"),

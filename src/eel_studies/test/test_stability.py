@@ -160,10 +160,16 @@ def test_a_map_of_a_scene_of_the_users(tmp_path, capsys):
         ("straight --over period=1 --over step=1:2", "--over must be NAME=LOW:HIGH, 0 < LOW < HIGH, got 'period=1'"),
         ("straight --over period=2:1 --over step=1:2", "got 'period=2:1'"),
         ("straight --over periode=1:2 --over step=1:2", "'periode'"),
-        ("straight --over flow.core=1:2 --over step=1:2", "flow has no field 'core': the scene has no flow"),
+        (
+            "straight --over flow.core=1:2 --over step=1:2",
+            "flow must be one built-in flow for core to change, got None",
+        ),
         ("straight --over flow_speed=1:2 --over step=1:2", "flow_speed needs a flow with a velocity"),
         ("straight --over fins.area=1:2 --over step=1:2", "fins have no field 'area': the scene has no fins"),
-        ("straight --over robot.stiffness=1:2 --over step=1:2", "robot has no fields: the scene has no robot"),
+        (
+            "straight --over robot.stiffness=1:2 --over step=1:2",
+            "robot must be given for robot.stiffness to change, got none",
+        ),
         ("straight --over scene.plane=1:2 --over step=1:2", "scene has no field 'plane'"),
         ("straight --over period=1:2 --over step=1:2 --study drift", "--study goes without a scene, got 'drift'"),
     ],

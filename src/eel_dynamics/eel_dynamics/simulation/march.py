@@ -232,7 +232,8 @@ class March:
             self.time = self.core.time
         checked = bool(self.setup.scene.ledger) and self.setup.settings.method == "classical"
         floor = self._bounds.momentum_floor**2 / self.discretisation.mass if checked else np.inf
-        failure = first_bad_sample(out, works, done, self.energy_at_start, floor)
+        robot = None if self.joints is None else self.joints.ledger()
+        failure = first_bad_sample(out, works, done, self.energy_at_start, floor, robot)
         if failure:
             done, quantity, value = failure
         if done:

@@ -14,18 +14,25 @@ import numpy as np
 OPEN = 0.2  # share of the energy; at twice the longest useful step of the robot's gaits it is 0.03, then grows at once
 
 
-def first_bad_sample(out, works: np.ndarray, done: int, start: float, floor: float) -> tuple[int, str, float] | None:
+def first_bad_sample(
+    out, works: np.ndarray, done: int, start: float, floor: float, robot: np.ndarray | None = None
+) -> tuple[int, str, float] | None:
     """The first bad sample of the first `done` ones: its index, the quantity and its value. None where all are good.
 
     out: `Observations`. works (T, 4) [J]. start [J]: the energy at the start. floor [J]: energy that counts as
-    none; where it is infinite, the ledger is not checked.
+    none; where it is infinite, the ledger is not checked. robot (T, 3): as of `EnergyLedger.of`.
     """
     with np.errstate(over="ignore", invalid="ignore"):
         failures = []
         if not math.isfinite(np.add.reduce(out.whole) + np.add.reduce(works, axis=None)):
             arrays = out.arrays() | {"works": works}
             failures = [_not_finite(name, array[:done]) for name, array in arrays.items()]
-        failures += [_open(out.energies[:done], works[:done], start, floor)] if done and np.isfinite(floor) else []
+        if done and np.isfinite(floor):
+            energies, works = out.energies[:done], works[:done]
+            if robot is not None:
+                energies = np.column_stack((energies, robot[:done, 0]))
+                works = np.column_stack((works, robot[:done, 2]))
+            failures.append(_open(energies, works, start, floor))
     return min((each for each in failures if each), default=None, key=lambda each: each[0])
 
 

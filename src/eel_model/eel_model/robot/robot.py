@@ -7,15 +7,16 @@ one ahead to midway to the one behind; the first reaches to the nose, the last t
 continuously. In an axis without motors the law is imposed, but for the supports of its joints, tails and muscles.
 """
 
+import math
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
 from eel_base.files.input_file import reading
 from eel_base.quantity import checked_instance
-from eel_base.wording import not_one_of, shown
+from eel_base.wording import did_you_mean, not_one_of, shown
 
 from eel_model.body.body import Body
 from eel_model.robot.actuators import Servo
@@ -87,18 +88,37 @@ class Robot:
     def changed(self, part: str | None = None, **changes: Any) -> "Robot":
         """The same robot with other fields of one `part`, or of all parts that have them; fields of an actuator too.
 
-        Such as robot.changed(torque_limit=1.0), or robot.changed("joint_3", stiffness=2.0). `ValueError` for a name
-        that no part has, or the part does not have.
+        Such as robot.changed(torque_limit=1.0), or robot.changed("joint_3", stiffness=2.0). part: a name, or a kind:
+        joints, servos, tails, muscles. `ValueError` for a name that no part has, or the part does not have.
         """
         names = [each.name for each in self.parts]
-        if part is not None and part not in names:
-            raise ValueError(not_one_of("part", part, names))
+        kind = None if part in names else SORTS.get(str(part))
+        if part is not None and part not in names and kind is None:
+            raise ValueError(not_one_of("part", part, (*names, *SORTS)))
+        meant = [part in (None, each.name) or (kind is not None and kind(each)) for each in self.parts]
+        known = {
+            item.name for each, yes in zip(self.parts, meant, strict=True) if yes
+            for one in _with_actuator(each) for item in fields(one)
+        }  # fmt: skip
         for name in changes:
-            if not any(_has(each, name) for each in self.parts if part in (None, each.name)):
+            if name not in known:
                 whose = "no part of the robot has" if part is None else f"{shown(part)} has no"
-                raise ValueError(f"{whose} {shown(name)}")
-        parts = (_changed(each, changes) if part in (None, each.name) else each for each in self.parts)
+                raise ValueError(f"{whose} {shown(name)}{did_you_mean(name, known)}")
+        parts = (_changed(each, changes) if yes else each for each, yes in zip(self.parts, meant, strict=True))
         return Robot(parts, name=self.name, body=self.body, notes=self.notes)
+
+    def with_numbers(self, numbers: Mapping[str, Any]) -> "Robot":
+        """The same robot with these `numbers`: FIELD of all parts that have it, or PART.FIELD as of `changed`.
+
+        Such as {"kp": 20.0, "joint_3.stiffness": 2.0, "tail.bending_stiffness": 0.3}. An infinite limit or series
+        stiffness is none.
+        """
+        robot = self
+        for name, value in numbers.items():
+            part, _, field_name = name.rpartition(".")
+            none = value == math.inf and field_name in UNLIMITED
+            robot = robot.changed(part or None, **{field_name: None if none else value})
+        return robot
 
     def __repr__(self) -> str:
         kinds = [type(part).__name__ for part in self.parts]
@@ -129,6 +149,13 @@ class Robot:
 
 
 KINDS = (Joint, PassiveTail, Muscle)
+UNLIMITED = ("torque_limit", "speed_limit", "series_stiffness")  # None is no limit, or no spring
+SORTS: dict[str, Callable[[Any], bool]] = {  # kinds of parts by name
+    "joints": lambda part: isinstance(part, Joint),
+    "servos": lambda part: isinstance(getattr(part, "actuator", None), Servo),
+    "tails": lambda part: isinstance(part, PassiveTail),
+    "muscles": lambda part: isinstance(part, Muscle),
+}
 
 
 def robot_of(text: str) -> Robot | None:
@@ -168,10 +195,6 @@ def _named(parts: list[Any]) -> tuple[Any, ...]:
             raise ValueError(f"each part of a robot must have a name of its own, got {shown(name)} twice")
         names.append(name)
     return tuple(part if part.name else replace(part, name=name) for part, name in zip(parts, names, strict=True))
-
-
-def _has(part: Any, name: str) -> bool:
-    return any(name in {item.name for item in fields(each)} for each in _with_actuator(part))
 
 
 def _with_actuator(part: Any) -> tuple[Any, ...]:

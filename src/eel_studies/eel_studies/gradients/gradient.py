@@ -11,7 +11,8 @@
 
 The derivatives are central differences of two swims per parameter, all in one batch, on one grid and with one sequence
 of fixed steps: no step control adds noise. Their error is measured as that of a run is: by companions with coarser
-settings and twice the difference.
+settings and twice the difference. A swim of a robot tells first how many steps it needs, and whether its motors come to
+their limits, which are kinks: then the differences are larger.
 """
 
 import warnings
@@ -34,6 +35,8 @@ from eel_dynamics.runs.sampling import default_sample_period
 from eel_dynamics.runs.swim import Swim
 from eel_model.body.body import Body
 from eel_model.equality import same_fields
+from eel_model.robot.actuators import at_limit
+from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
 from eel_model.section_data import CRITICAL_REYNOLDS
 
@@ -53,6 +56,7 @@ from eel_studies.points import (
 )
 
 RELATIVE_STEP = 1e-5  # of a parameter; of one unit where its value is 0
+ROBOT_STEP, KINKED_STEP = 1e-3, 1e-2  # the same of a robot, and of one whose motors come to their limits
 PRINTED = "printed"  # the friction law that jumps
 COMPANION_STEP = 2.0  # times the steps, of the companions
 
@@ -95,6 +99,7 @@ def gradient(
     duration: float = 10.0,
     body: Body | None = None,
     scene: Scene | None = None,
+    robot: Robot | str | None = None,
     accuracy: AccuracyLike = "standard",
     sample_period: float | None = None,
     stations: Stations = 51,
@@ -111,7 +116,8 @@ def gradient(
     `studies.points`: numbers of the gait, "scene.density", "body.lateral_drag", "initial.v_x" and the like. gait: its
     name, or a function of `numbers` and the parameters that returns a law. duration [s], body, scene, sample_period
     [s], stations, threads, most_evaluations: as in `simulate_batch`. accuracy: a target, or settings with fixed steps.
-    steps: differences by name, in place of 1e-5 of the value (of 1 where it is 0). estimate: state the derivatives'
+    steps: differences by name, in place of 1e-5 of the value (1e-3 of a robot's,
+    1e-2 where its motors come to their limits; of 1 where it is 0). estimate: state the derivatives'
     own errors; False: two swims per parameter, and no more. progress: as in `sweep`, by swims.
 
     Measures over whole periods take as many periods of each swim, so that they do not jump with the period. What may
@@ -122,8 +128,7 @@ def gradient(
     if not isinstance(parameters, dict) or not parameters:
         raise ValueError(f"parameters must be a dict of names and values, got {shown(parameters)}")
     at = {name: number(f"parameter {name}", value) for name, value in parameters.items()}
-    apart = _steps_of(at, steps)
-    base = base_point(body, scene, fixed_steps(accuracy))
+    base = base_point(body, scene, fixed_steps(accuracy), robot=robot)
     point = _point(at, gait, numbers, base)
     settings = point.accuracy.in_scene(point.scene)
     if sample_period is None:
@@ -131,10 +136,16 @@ def gradient(
     how = SwimSettings(duration, sample_period, stations, measure, False, most_evaluations)
     tell, swims = progress_of(progress, "swims"), 1 + 2 * len(at)
 
-    def taken(settings: Accuracy, apart: np.ndarray, before: int) -> _Differences:
+    lines: tuple[str, ...] = ()
+    relative, limit = RELATIVE_STEP, np.inf
+    if point.robot is not None:
+        relative, limit, lines = _of_robot(point, Accuracy.of(accuracy), how)
+    apart = _steps_of(at, steps, relative)
+
+    def taken(settings: Accuracy, apart: np.ndarray, before: int, limit: float) -> _Differences:
         moved = [at] + [at | {name: float(at[name] + h)} for name, h in zip([*at] * 2, [*apart, *-apart], strict=True)]
         points = [_point(values, gait, numbers, base._replace(accuracy=settings)) for values in moved]
-        points = on_one_grid(points, step_of(points[0]))
+        points = on_one_grid(points, min(limit, step_of(points[0])))
 
         def count(done: int, _: int) -> None:
             tell(before + done, swims * (1 + bool(estimate)))
@@ -142,11 +153,11 @@ def gradient(
         batch = batch_of_points(points, how, threads, count)
         return _Differences.of([_run(batch, index) for index in range(swims)], how, apart)
 
-    fine = taken(settings, apart, 0)
+    fine = taken(settings, apart, 0, limit)
     error = np.full(fine.derivative.shape, np.nan)
     if estimate:
-        error = fine.distance(taken(settings.coarser(), COMPANION_STEP * apart, swims))
-    lines = _jumps(fine.runs, tuple(at))
+        error = fine.distance(taken(settings.coarser(), COMPANION_STEP * apart, swims, COMPANION_STEP * limit))
+    lines += _jumps(fine.runs, tuple(at))
     for line in lines:
         warnings.warn(line, stacklevel=2)
     values = np.array(list(at.values()))
@@ -211,13 +222,27 @@ def _run(batch: Batch, index: int) -> Run:
     return batch[index]
 
 
-def _steps_of(at: dict[str, float], steps: dict[str, float] | None) -> np.ndarray:
+def _of_robot(point: Swim, accuracy: Accuracy, how: SwimSettings) -> tuple[float, float, tuple[str, ...]]:
+    """Relative differences for the robot of the `point`, the longest step [s], and a line on motors at their limits."""
+    given = accuracy.target is None  # settings with steps of their own
+    run = _run(batch_of_points([point if given else point._replace(accuracy=accuracy)], how, threads=1), 0)
+    longest = np.inf if given else 0.5 * float(run.time[-1]) / max(1, run.steps)
+    assert run.robot is not None and run.motor_torque is not None and run.motor_power is not None
+    limited = at_limit(run.robot.servos, run.motor_torque, run.motor_power)
+    names = [joint.name for joint, yes in zip(run.robot.joints, limited.T, strict=True) if yes.any()]
+    if not names:
+        return ROBOT_STEP, longest, ()
+    line = f"motors come to their limits, which are kinks ({', '.join(names)}): derivatives have the error that is told"
+    return KINKED_STEP, longest, (line,)
+
+
+def _steps_of(at: dict[str, float], steps: dict[str, float] | None, relative: float) -> np.ndarray:
     """Differences (P,) of the parameters to either side."""
     steps = {} if steps is None else checked_instance("steps", steps, dict)
     for name in steps:
         if name not in at:
             raise ValueError(not_one_of("steps", name, at))
-    own = {name: RELATIVE_STEP * (abs(value) or 1.0) for name, value in at.items()}
+    own = {name: relative * (abs(value) or 1.0) for name, value in at.items()}
     return np.array([positive(f"steps {name}", steps.get(name, own[name])) for name in at])
 
 

@@ -3,6 +3,7 @@
 
 eel identify path.csv --gait turning --first body.lateral_drag=1.5 --first body.nose_drag=0.1 --out fit.png
 eel identify speeds.csv --gait straight --first body.lateral_drag=1.5 --noise 0.005
+eel identify angles.csv --gait straight --robot my_robot.yaml --first robot.kp=10 --first robot.kd=0.2
 eel identify run.nc --first body.lateral_drag=1.5 --out fit.png --out fit.csv
 """
 
@@ -19,12 +20,13 @@ from eel_base.wording import shown
 from eel_dynamics.commands.options import add_options, add_repeated, body_of, scene_of, set_numbers
 from eel_dynamics.runs.storage.tables import write_columns
 from eel_gaits.laws.law import Law
+from eel_model.robot.robot import robot_of
 from eel_model.scene import Scene
 
 from eel_studies.identification.drawing import FORMATS, draw_identified
 from eel_studies.identification.identify import identify
 from eel_studies.identification.measured_file import MeasuredFile, read_measured
-from eel_studies.points import Gait
+from eel_studies.points import ROBOT, Gait
 
 NAME = "eel identify"
 SUFFIXES = (*FORMATS, ".csv")
@@ -39,15 +41,20 @@ def _identify(options: argparse.Namespace) -> int:
     start, progress = time.perf_counter(), Progress(NAME, "evaluations")
     outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
     first, numbers = set_numbers(options.first, "--first"), set_numbers(options.set)
-    files = [read_measured(path, station=options.station, namespace=options.namespace) for path in options.file]
+    robot, angles = robot_of(options.robot), any(name.startswith(ROBOT) for name in first) and not options.path
+    files = [
+        read_measured(path, station=options.station, namespace=options.namespace, robot=robot, angles=angles)
+        for path in options.file
+    ]
     measured = [each for file in files for each in file.measured]
     found = identify(
         first,
         measured,
         gait=_gait(options, files),
         numbers=numbers,
-        body=_common("body", files) if options.body is None else body_of(options.body),
+        body=body_of(options.body) if options.body is not None else (robot and robot.body) or _common("body", files),
         scene=_scene(options, files),
+        robot=_common("robot", files) if robot is None else robot,
         accuracy=options.accuracy,
         noise=options.noise,
         level=options.level,
@@ -107,10 +114,11 @@ def _parser() -> Parser:
     parser.add_argument(
         "file",
         nargs="+",
-        help=".csv or .npz with the columns time, x, y (perhaps z), or speed and numbers of the gait; a run (.nc); a "
-        "bag. Paths or speeds, not both",
+        help=".csv or .npz with the columns time, x, y (perhaps z), or time and a robot's joints, or speed and numbers "
+        "of the gait; a run (.nc); a bag. All of one kind",
     )
-    about = "a parameter and its first guess: body.FIELD, scene.FIELD, initial.v_x, a number of the gait"
+    about = "a parameter and its first guess: body.FIELD, scene.FIELD, robot.FIELD, initial.v_x, a number of the "
+    about += "gait"
     add_repeated(parser, "--first", "NAME=VALUE", about, required=True)
     add_options(
         parser,
@@ -118,6 +126,7 @@ def _parser() -> Parser:
         "--set",
         "--scene",
         "--body",
+        "--robot",
         "--accuracy",
         "--out",
         gait=(None, "the law of the run or bag"),
@@ -126,6 +135,7 @@ def _parser() -> Parser:
         accuracy=1e-4,
     )
     parser.add_argument("--station", type=float, default=0.0, metavar="X", help="m, of the point that was tracked (0)")
+    parser.add_argument("--path", action="store_true", help="fit the robot to the path, not to its joints' angles")
     parser.add_argument("--namespace", metavar="NS", help="of the swimmer in a bag; by default that of the only one")
     parser.add_argument("--noise", type=float, metavar="SIZE", help="standard deviation of the errors, m or m/s")
     parser.add_argument("--level", type=float, default=0.95, help="of the intervals (0.95)")

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from eel_studies.identification.identify import Identified
-from eel_studies.identification.measurements import MeasuredPath, MeasuredSpeed, Measurements
+from eel_studies.identification.measurements import MeasuredAngles, MeasuredPath, MeasuredSpeed, Measurements
 from eel_studies.pictures import BLUE, GREY, ORANGE, Axes, Figure, write_picture
 
 FORMATS = ".png", ".svg"
@@ -28,6 +28,8 @@ def _draw(figure: Figure, found: Identified, measured: Measurements) -> None:
     left, middle, right = figure.subplots(1, 3)
     if isinstance(measured[0], MeasuredPath):
         _draw_paths(left, middle, found, [each for each in measured if isinstance(each, MeasuredPath)])
+    elif isinstance(measured[0], MeasuredAngles):
+        _draw_angles(left, middle, found, [each for each in measured if isinstance(each, MeasuredAngles)])
     else:
         _draw_speeds(left, middle, found, [each for each in measured if isinstance(each, MeasuredSpeed)])
     _draw_intervals(right, found)
@@ -46,6 +48,17 @@ def _draw_paths(left: Axes, middle: Axes, found: Identified, measured: Sequence[
     for axes in (left, middle):
         handles: dict[str, Any] = dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
         axes.legend(handles.values(), handles.keys(), frameon=False)
+        axes.grid(alpha=0.3)
+
+
+def _draw_angles(left: Axes, middle: Axes, found: Identified, measured: Sequence[MeasuredAngles]) -> None:
+    for each, residual in zip(measured, found.residuals, strict=True):
+        left.plot(each.time, each.angles, ".", color=GREY, markersize=2)
+        left.plot(each.time, each.angles - residual, color=BLUE, linewidth=0.8)
+        middle.plot(each.time, MILLI * residual, linewidth=0.8)
+    left.set(xlabel="t [s]", ylabel="angle [rad]", title="joints: measured (dots), of the swim found")
+    middle.set(xlabel="t [s]", ylabel="measured less found [mrad]", title="residuals")
+    for axes in (left, middle):
         axes.grid(alpha=0.3)
 
 

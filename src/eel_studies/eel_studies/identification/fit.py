@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 from eel_dynamics.runs.run import Run
 
-from eel_studies.identification.measurements import MeasuredPath, Measurement
+from eel_studies.identification.measurements import MeasuredAngles, MeasuredPath, Measurement
 from eel_studies.identification.prediction import Predicted, Swims, placed, placement_of
 from eel_studies.identification.statistics import Block, correlation_of, undetermined, whitened
 
-POSITIVE = ("body.", "scene.")  # parameters that stay above 0
+POSITIVE = ("body.", "scene.", "robot.")  # parameters that stay above 0
 LEAST = 1e-6  # of the first guess, in place of 0
 PASSES = 4  # of the fit, each with the correlation of the one before
 SAME = 0.01  # change of the correlation that needs no further pass
@@ -74,13 +74,8 @@ class Fit:
 
     @property
     def residuals(self) -> tuple[np.ndarray, ...]:
-        """Measured less predicted: (T, D) of a path, (1,) of a speed."""
-        return tuple(
-            np.stack([block.residual for block in blocks], axis=-1)
-            if isinstance(each, MeasuredPath)
-            else blocks[0].residual
-            for each, blocks in zip(self._measured, self._grouped(), strict=True)
-        )
+        """Measured less predicted: (T, D) of a path, (T, J) of angles, (1,) of a speed."""
+        return tuple(_residual(each, blocks) for each, blocks in zip(self._measured, self._grouped(), strict=True))
 
     @property
     def blocks(self) -> list[Block]:
@@ -156,6 +151,9 @@ class Fit:
         """The blocks of each measurement."""
         grouped, place = [], len(self.names)
         for each, found in zip(self._measured, self._predicted(), strict=True):
+            if isinstance(each, MeasuredAngles):
+                grouped.append(_of_angles(each, found, self.unknowns))
+                continue
             if not isinstance(each, MeasuredPath):
                 derivative = np.zeros((1, self.unknowns))
                 derivative[:, : len(self.names)] = found.derivative
@@ -171,6 +169,31 @@ class Fit:
             grouped.append([Block(step, residual[:, axis], derivative[:, axis]) for axis in range(axes)])
             place += axes + 1
         return grouped
+
+
+def _of_angles(measured: MeasuredAngles, found: Predicted, unknowns: int) -> list[Block]:
+    """A block for each joint, of the instants at which its angle is known."""
+    count, joints = measured.angles.shape
+    value, blocks = found.value.reshape(count, joints), []
+    for joint in range(joints):
+        known = np.isfinite(measured.angles[:, joint])
+        time = measured.time[known]
+        derivative = np.zeros((len(time), unknowns))
+        own = found.derivative.reshape(count, joints, -1)[known, joint]
+        derivative[:, : own.shape[1]] = own
+        step = np.diff(time) / np.median(np.diff(time)) if len(time) > 1 else np.zeros(0)
+        blocks.append(Block(step, (measured.angles - value)[known, joint], derivative))
+    return [block for block in blocks if len(block.residual)]
+
+
+def _residual(measured: Measurement, blocks: list[Block]) -> np.ndarray:
+    if isinstance(measured, MeasuredPath):
+        return np.stack([block.residual for block in blocks], axis=-1)
+    if isinstance(measured, MeasuredAngles):
+        residual = np.full(measured.angles.shape, np.nan)
+        residual.T[np.isfinite(measured.angles.T)] = np.concatenate([block.residual for block in blocks])
+        return residual
+    return blocks[0].residual
 
 
 def _stays(name: str, value: float, low: float) -> bool:

@@ -22,11 +22,18 @@ from eel_base.wording import shown
 from eel_dynamics.runs.run import Run
 from eel_model.body.body import Body
 from eel_model.equality import same_fields
+from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
 
 from eel_studies.gradients.fixed_discretisation import fixed_steps
 from eel_studies.identification.fit import Fit
-from eel_studies.identification.measurements import MeasuredPath, MeasuredSpeed, Measurement, Measurements
+from eel_studies.identification.measurements import (
+    MeasuredAngles,
+    MeasuredPath,
+    MeasuredSpeed,
+    Measurement,
+    Measurements,
+)
 from eel_studies.identification.prediction import Swims
 from eel_studies.identification.statistics import gauss_newton_covariance
 from eel_studies.points import AccuracyLike, Gait, Numbers, Progress, base_point, point_at
@@ -45,9 +52,9 @@ class Identified:
     high: np.ndarray  #: (P,)
     level: float  #: probability with which an interval covers the true value
     covariance: np.ndarray  #: (P, P)
-    noise: float  #: standard deviation of the measurements' errors [m] or [m/s]
+    noise: float  #: standard deviation of the measurements' errors [m], [rad] or [m/s]
     correlation: float  #: of one error of a path with the next, at the median time between samples
-    residuals: tuple[np.ndarray, ...]  #: measured less predicted: (T, D) [m] of each path, (1,) [m/s] of each speed
+    residuals: tuple[np.ndarray, ...]  #: measured less predicted: (T, D) [m], (T, J) [rad] or (1,) [m/s] of each
     runs: tuple[Run, ...]  #: the swims with the values found, one per measurement
     warnings: tuple[str, ...]
 
@@ -90,6 +97,7 @@ def identify(
     numbers: Numbers | None = None,
     body: Body | None = None,
     scene: Scene | None = None,
+    robot: Robot | str | None = None,
     accuracy: AccuracyLike = 1e-4,
     noise: float | None = None,
     level: float = 0.95,
@@ -99,11 +107,12 @@ def identify(
     """The `parameters` with which the model comes nearest to what was `measured`, and their intervals.
 
     parameters: first guesses by name, with the names of `studies.points`: "body.lateral_drag", "scene.density",
-    "initial.v_x" and the like. Those of body and scene stay above 0. measured: one or several paths, or steady speeds;
-    each may have `numbers` of its own. Of each path a displacement and a turn about the vertical are fitted too, as the
-    axes of a laboratory are its own. gait, numbers, body, accuracy, threads: as in `optimise`. scene: by default that
-    of the library with blended friction. noise: standard deviation of the errors [m] or [m/s], where it is known; None:
-    from the residuals. level: of the intervals. progress: as in `sweep`, by evaluations.
+    "initial.v_x", "robot.kp" and the like. Those of body, scene and robot stay above 0. measured: one or several paths,
+    joint angles of a robot, or steady speeds; each may have `numbers` of its own. Of each path a displacement and a
+    turn about the vertical are fitted too, as the axes of a laboratory are its own. gait, numbers, body, robot,
+    accuracy, threads: as in `optimise`. scene: by default that of the library with blended friction. noise: standard
+    deviation of the errors [m], [rad] or [m/s], where it is known; None: from the residuals. level: of the intervals.
+    progress: as in `sweep`, by evaluations.
 
     `ValueError` names what does not fit, and parameters that the measurements do not determine; `SimulationStopped`: a
     swim stopped.
@@ -116,13 +125,15 @@ def identify(
     level = positive("level", level)
     if level >= 1.0:
         raise ValueError(f"level must be below 1, got {level:g}")
-    base = base_point(body, scene, fixed_steps(accuracy), friction="blended")
+    base = base_point(body, scene, fixed_steps(accuracy), friction="blended", robot=robot)
     swims = Swims(gait, dict(numbers or {}), base, threads)
     for each in measurements:
         try:
             point_at(first, gait, {**swims.numbers, **each.numbers}, base)
         except ValueError as error:
             raise ValueError(f"parameters {error}") from None
+        if isinstance(each, MeasuredAngles):
+            _check_angles(each, base.robot)
         if isinstance(each, MeasuredPath) and each.station > base.body.length:
             raise ValueError(f"path station must be at most the body's {base.body.length:g} m, got {each.station:g}")
     fit = Fit(swims, measurements, first, progress_of(progress, "evaluations"))
@@ -134,13 +145,25 @@ def identify(
     return found
 
 
+KINDS = MeasuredPath, MeasuredAngles, MeasuredSpeed
+
+
 def _checked_measurements(measured: Any) -> list[Measurement]:
-    rows = [measured] if isinstance(measured, (MeasuredPath, MeasuredSpeed)) else list(measured)
+    rows = [measured] if isinstance(measured, KINDS) else list(measured)
     kinds = {type(each) for each in rows}
-    if len(kinds) != 1 or not kinds <= {MeasuredPath, MeasuredSpeed}:
+    if len(kinds) != 1 or not kinds <= {*KINDS}:
         given = ", ".join(sorted(kind.__name__ for kind in kinds)) or "none"
-        raise ValueError(f"measured must be MeasuredPath or MeasuredSpeed, one kind of them, got {given}")
+        known = ", ".join(kind.__name__ for kind in KINDS)
+        raise ValueError(f"measured must be of one kind of {known}, got {given}")
     return rows
+
+
+def _check_angles(measured: MeasuredAngles, robot: Robot | None) -> None:
+    count = 0 if robot is None else len(robot.joints)
+    if robot is None or measured.angles.shape[1] != count:
+        raise ValueError(
+            f"angles must have a column for each of the robot's {count} joints, got {measured.angles.shape[1]}"
+        )
 
 
 def _identified(fit: Fit, noise: float | None, level: float) -> Identified:

@@ -2,10 +2,11 @@
 """What was measured, from a file: a path or steady speeds in a table, a saved run, or a bag.
 
     time, x, y, perhaps z      a path: a row for each instant, [s, m]
+    time, joint_1, ...         angles of a robot's joints by their names: a row for each instant, [s, rad]
     speed, other columns       steady speeds: a row for each swim, [m/s]; the others are numbers of the swim, as period
 
 Tables are .csv files with a header, or .npz archives of columns. A run (.nc) and a bag give the path of a point of the
-backbone, the law and the body; a run the scene too.
+backbone, or the joint angles, the law and the body; a run the scene and the robot too.
 """
 
 from dataclasses import replace
@@ -15,13 +16,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from eel_base.attitude import heading
 from eel_base.wording import shown
+from eel_dynamics.runs.exchange.eel_viz_functions import joints_of_bag
 from eel_dynamics.runs.run import Run
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.tables import Table, read_table
 from eel_model.body.body import Body
+from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
 
-from eel_studies.identification.measurements import MeasuredPath, MeasuredSpeed
+from eel_studies.identification.measurements import MeasuredAngles, MeasuredPath, MeasuredSpeed
 from eel_studies.points import VELOCITIES
 
 TABLES = ".csv", ".npz"
@@ -32,19 +35,30 @@ NEAR = 1e-6  # part of the body's length by which a run's station may lie elsewh
 class MeasuredFile(NamedTuple):
     """The measurements of a file, and what it tells of the swim."""
 
-    measured: list[Any]  # of MeasuredPath, or of MeasuredSpeed
+    measured: list[Any]  # of MeasuredPath, of MeasuredAngles, or of MeasuredSpeed
     law: Law | None = None
     body: Body | None = None
     scene: Scene | None = None  # of the motion alone
+    robot: Robot | None = None
 
 
-def read_measured(path: str, *, station: float = 0.0, namespace: str | None = None) -> MeasuredFile:
+def read_measured(
+    path: str,
+    *,
+    station: float = 0.0,
+    namespace: str | None = None,
+    robot: Robot | None = None,
+    angles: bool = False,
+) -> MeasuredFile:
     """What the file or bag at `path` holds. station [m]: X of the point of a path. namespace: of a bag's swimmer.
+
+    robot: that swims. angles: take the angles of its joints, in place of a path.
 
     `ValueError` in one line names the file, and the line or column of a table, that does not fit.
     """
     if Path(path).suffix in TABLES:
-        return MeasuredFile(_of_table(read_table(path), station))
+        table = read_table(path)
+        return MeasuredFile([_angles_of_table(table, robot)] if angles else _of_table(table, station))
     run = Run.load(path) if Path(path).suffix == ".nc" else Run.from_bag(path, namespace)
     if not isinstance(run.law, Law) or not run.law.terms:
         raise ValueError(f"{shown(path)}: it holds no law of terms, whose swim could be simulated")
@@ -59,8 +73,39 @@ def read_measured(path: str, *, station: float = 0.0, namespace: str | None = No
     twist = dict(zip(VELOCITIES, run.twist[0].tolist(), strict=True)) if run.time[0] == 0.0 else {}
     numbers = {f"initial.{name}": value for name, value in twist.items() if value}
     scene = replace(run.scene, internal_wrench=False, ledger=False) if Path(path).suffix == ".nc" else None
-    measured = _named(path, MeasuredPath, run.time, _tracked(path, run, station), station, numbers)
-    return MeasuredFile([measured], run.law, run.body, scene)
+    if angles:
+        robot = robot if run.robot is None else run.robot
+        time, found = (run.time, run.joint_angle) if run.joint_angle is not None else _angles_of_bag(path, robot)
+        measured = _named(path, MeasuredAngles, time, found, numbers)
+    else:
+        measured = _named(path, MeasuredPath, run.time, _tracked(path, run, station), station, numbers)
+    return MeasuredFile([measured], run.law, run.body, scene, run.robot)
+
+
+def _names_of(robot: Robot | None) -> list[str]:
+    if robot is None:
+        raise ValueError("--robot must be given: its joints name the columns of angles")
+    return [joint.name for joint in robot.joints]
+
+
+def _angles_of_table(table: Table, robot: Robot | None) -> MeasuredAngles:
+    names = _names_of(robot)
+    missing = [name for name in ("time", *names) if name not in table.columns]
+    if missing:
+        raise table.error(f"its columns must be time and the robot's joints, got none of {', '.join(missing)}")
+    table.check_finite(("time",))
+    angles = np.stack([table.columns[name] for name in names], axis=1)
+    made: MeasuredAngles = _named(str(table.path), MeasuredAngles, table.columns["time"], angles)
+    return made
+
+
+def _angles_of_bag(path: str, robot: Robot | None) -> tuple[np.ndarray, np.ndarray]:
+    wanted = _names_of(robot)
+    time, angles, names = joints_of_bag()(path)
+    missing = [name for name in wanted if name not in names]
+    if missing:
+        raise ValueError(f"{shown(path)}: its joint states must have the robot's joints, got none of {missing[0]}")
+    return time, angles[:, [names.index(name) for name in wanted]]
 
 
 def _of_table(table: Table, station: float) -> list[Any]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What was measured of a swim: the path of a point of the body, or a steady speed."""
+"""What was measured of a swim: the path of a point of the body, a robot's joint angles, or a steady speed."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -43,10 +43,7 @@ class MeasuredPath:
                 f"path position must be finite, got {shown(position[index].tolist())} at index {index}; leave such "
                 "samples out, with their times"
             )
-        if len(time) < FEWEST_SAMPLES:
-            raise ValueError(f"path must have {FEWEST_SAMPLES} samples or more, got {len(time)}")
-        if time[0] < 0.0 or np.any(np.diff(time) <= 0.0):
-            raise ValueError(f"path time must rise from 0 s or later, got {shown(time[:8].tolist())}")
+        _check_time("path", time)
         object.__setattr__(self, "time", time)
         object.__setattr__(self, "position", position)
         object.__setattr__(self, "station", number("path station", self.station, "m", minimum=0.0))
@@ -56,6 +53,41 @@ class MeasuredPath:
     def count(self) -> int:
         """Measured numbers."""
         return self.position.size
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredAngles:
+    """The angles of a robot's joints.
+
+    Attributes:
+        time: [s], (T,), rising from 0 or later, in the law's own time. The robot begins as in `simulate`.
+        angles: [rad], (T, J), of the robot's joints in their order and sign; NaN where unknown.
+        numbers: of this swim, as in `MeasuredPath`.
+
+    `ValueError` names what does not fit.
+    """
+
+    time: np.ndarray
+    angles: np.ndarray
+    numbers: dict[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        time = checked_row("angles time", self.time, None)
+        angles = real_numbers("angles", self.angles)
+        if angles.ndim != 2 or len(angles) != len(time) or np.isinf(angles).any():
+            raise ValueError(
+                f"angles must have a row of finite angles, or NaN, at each of {len(time)} times, got "
+                f"{shown(angles.shape) if not np.isinf(angles).any() else 'inf'}"
+            )
+        _check_time("angles", time)
+        object.__setattr__(self, "time", time)
+        object.__setattr__(self, "angles", angles)
+        checked_instance("angles numbers", self.numbers, dict)
+
+    @property
+    def count(self) -> int:
+        """Measured numbers."""
+        return int(np.count_nonzero(np.isfinite(self.angles)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,5 +107,12 @@ class MeasuredSpeed:
         return 1
 
 
-Measurement = MeasuredPath | MeasuredSpeed
-Measurements = list[MeasuredPath] | list[MeasuredSpeed] | list[Measurement]
+Measurement = MeasuredPath | MeasuredAngles | MeasuredSpeed
+Measurements = list[MeasuredPath] | list[MeasuredAngles] | list[MeasuredSpeed] | list[Measurement]
+
+
+def _check_time(what: str, time: np.ndarray) -> None:
+    if len(time) < FEWEST_SAMPLES:
+        raise ValueError(f"{what} must have {FEWEST_SAMPLES} samples or more, got {len(time)}")
+    if time[0] < 0.0 or np.any(np.diff(time) <= 0.0):
+        raise ValueError(f"{what} time must rise from 0 s or later, got {shown(time[:8].tolist())}")

@@ -16,7 +16,7 @@ from eel_dynamics.runs.swim import Swim
 from eel_gaits.laws.law import Law
 
 from eel_studies.gradients.gradient import gradient
-from eel_studies.identification.measurements import MeasuredPath
+from eel_studies.identification.measurements import MeasuredAngles, MeasuredPath, MeasuredSpeed
 from eel_studies.points import Gait, Numbers, law_of_terms, point_at
 from eel_studies.steady_swim import at_speed, swim_times
 
@@ -43,23 +43,26 @@ class Swims(NamedTuple):
     threads: int | None
 
     def predicted(self, measured: Any, at: dict[str, float]) -> Predicted:
-        """What the model says of `measured` where the parameters are `at`: positions in its own axes, or a speed."""
-        path = isinstance(measured, MeasuredPath)
-        numbers = {**self.numbers, **measured.numbers}
-        numbers = numbers if path else at_speed(numbers, measured.speed)
+        """What the model says of `measured` where the parameters are `at`: positions in its axes, angles, a speed."""
+        numbers, measure = {**self.numbers, **measured.numbers}, None
+        if isinstance(measured, MeasuredSpeed):
+            numbers = at_speed(numbers, measured.speed)
+        else:
+            measure = positions_at(measured) if isinstance(measured, MeasuredPath) else angles_at(measured)
         law = point_at(at, self.gait, numbers, self.base).law
-        times = path_times(measured, law) if path else swim_times(law, self.base.body.length, PERIODS)
+        times = swim_times(law, self.base.body.length, PERIODS) if measure is None else path_times(measured, law)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # the jump of the printed friction: it is in the derivatives' error
             found = gradient(
-                positions_at(measured) if path else SPEED,
+                measure or SPEED,
                 at,
                 gait=self.gait,
                 numbers=numbers,
                 body=self.base.body,
+                robot=self.base.robot,
                 scene=replace(self.base.scene, internal_wrench=False, ledger=False),
                 accuracy=self.base.accuracy,
-                stations=np.array([measured.station]) if path else 2,
+                stations=np.array([measured.station]) if isinstance(measured, MeasuredPath) else 2,
                 estimate=False,
                 threads=self.threads,
                 **times,
@@ -67,8 +70,8 @@ class Swims(NamedTuple):
         return Predicted(found.value, found.derivative, found.run)
 
 
-def path_times(path: MeasuredPath, law: Law) -> dict[str, Any]:
-    """Duration and sample period [s] of the swim of a `path`. `ValueError` for a law without terms."""
+def path_times(path: MeasuredPath | MeasuredAngles, law: Law) -> dict[str, Any]:
+    """Duration and sample period [s] of the swim of a `path`, or of angles. `ValueError` for a law without terms."""
     shortest = min((term.period for term in law_of_terms(law).terms if term.period), default=np.inf)
     duration = float(path.time[-1])
     count = np.ceil(duration / min(LONGEST_SAMPLE, shortest / SAMPLES))
@@ -84,6 +87,17 @@ def positions_at(path: MeasuredPath) -> Callable[[Run], dict[str, float]]:
         return {str(index): value for index, value in enumerate(found.ravel().tolist())}
 
     return positions
+
+
+def angles_at(measured: MeasuredAngles) -> Callable[[Run], dict[str, float]]:
+    """A measure: the joint angles (T, J) at the times of `measured`, flattened."""
+    from scipy.interpolate import CubicSpline
+
+    def angles(run: Run) -> dict[str, float]:
+        found = CubicSpline(run.time, run.joint_angle)(measured.time)
+        return {str(index): value for index, value in enumerate(found.ravel().tolist())}
+
+    return angles
 
 
 def placement_of(path: MeasuredPath, positions: np.ndarray) -> np.ndarray:

@@ -48,7 +48,7 @@ def _optimise(options: argparse.Namespace) -> int:
         bounds,
         _speeds(options.speeds),
         gait=options.gait,
-        numbers=set_numbers(options.set),
+        numbers={**set_numbers(options.set), **({"robot": options.robot} if options.robot else {})},
         body=body_of(options.body),
         scene=scene_of(options.scene, Scene(friction="blended")),
         cost=options.cost,
@@ -100,10 +100,10 @@ def _parser() -> Parser:
         description="Find the gait of least cost at each speed. The friction is blended unless --scene says otherwise.",
     )
     add_options(parser, "gait", gait="straight")
-    about = "a parameter and its bounds: a number of the gait, scene.FIELD, body.FIELD"
+    about = "a parameter and its bounds: a number of the gait, scene.FIELD, body.FIELD, robot.FIELD"
     add_repeated(parser, "--bound", "NAME=LOW:HIGH", about, required=True)
     parser.add_argument("--speeds", required=True, metavar="SPEEDS", help="m/s: a,b,c or start:end:count")
-    add_options(parser, "--set", "--scene", "--body", "--accuracy", "--out", accuracy=1e-3)
+    add_options(parser, "--set", "--scene", "--body", "--robot", "--accuracy", "--out", accuracy=1e-3)
     parser.add_argument("--cost", default="cost_of_transport", help=f"one of {', '.join(MEASURES)} (cost_of_transport)")
     parser.add_argument("--method", default="gradient", help=f"{' or '.join(METHODS)} (gradient); cma needs cma")
     parser.add_argument("--periods", type=int, default=10, metavar="N", help="of each swim (10)")

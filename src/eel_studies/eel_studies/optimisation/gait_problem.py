@@ -81,6 +81,7 @@ class GaitProblem:
                     gait=self.gait,
                     numbers=at_speed(self.numbers, speed),
                     body=self.base.body,
+                    robot=self.base.robot,
                     scene=self.base.scene,
                     accuracy=self.base.accuracy,
                     stations=self._stations,

@@ -22,6 +22,7 @@ from eel_base.wording import not_one_of, shown
 from eel_dynamics.analysis.measures import checked_measures, measures_of
 from eel_dynamics.runs.run import Run
 from eel_model.body.body import Body
+from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
 
 from eel_studies.gradients.fixed_discretisation import fixed_steps
@@ -46,6 +47,7 @@ def optimise(
     numbers: Numbers | None = None,
     body: Body | None = None,
     scene: Scene | None = None,
+    robot: Robot | str | None = None,
     cost: str = "cost_of_transport",
     periods: int = 10,
     accuracy: AccuracyLike = 1e-3,
@@ -79,7 +81,7 @@ def optimise(
         if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
             raise ValueError(f"{name} must be a whole number >= {least}, got {shown(value)}")
     (cost,) = checked_measures("cost", checked_instance("cost", cost, str), estimate=False)
-    base = base_point(body, scene, fixed_steps(accuracy), friction="blended")
+    base = base_point(body, scene, fixed_steps(accuracy), friction="blended", robot=robot)
     wrench = base.scene.internal_wrench or cost == "greatest_torque"
     base = base._replace(scene=replace(base.scene, current=(0.0, 0.0, 0.0), internal_wrench=wrench))
     problem = GaitProblem(tuple(bounds), low, high, gait, dict(numbers or {}), base, cost, int(periods), threads)

@@ -2,6 +2,7 @@
 """`eel sweep`: swim a grid of parameters, on all cores, into one file.
 
 eel sweep straight --vary period=0.5:2:16 --vary scene.friction=printed,laminar --out periods.nc
+eel sweep straight --robot passive_tail --vary robot.bending_stiffness=0.1,0.2,0.4,0.8 --out tails.nc
 eel sweep straight --vary body=boyer2010,kern2006 --vary wavelength=0.6:1.2:7 --scheduler tcp://host:8786 --out waves.nc
 """
 
@@ -40,7 +41,7 @@ def main(arguments: list[str] | None = None) -> int:
 def _sweep(options: argparse.Namespace) -> int:
     start = time.perf_counter()
     numbers: dict[str, Any] = set_numbers(options.set)
-    numbers |= {name: text for name in ("flow", "fins") if (text := getattr(options, name))}
+    numbers |= {name: text for name in ("flow", "fins", "robot") if (text := getattr(options, name))}
     vary = named_texts("--vary", options.vary)
     check_names([*numbers, *(name for name, _ in vary)])
     grid = {name: varied_values(text, partial(check_points, name)) for name, text in vary}
@@ -81,7 +82,8 @@ def _parser() -> Parser:
         description="Simulate every combination of parameters, and keep the measures of each run in a NetCDF file. "
         "After an interruption the same command resumes.",
     )
-    about = "a number of the gait, a FIELD of scene., body., flow. or fins., body, accuracy; a,b,c or start:end:count"
+    about = "a number of the gait, a FIELD of scene., body., flow., fins. or robot., body, accuracy; a,b,c or "
+    about += "start:end:count"
     add_options(parser, "gait", gait="straight")
     add_repeated(parser, "--vary", "NAME=VALUES", about, required=True)
     add_options(
@@ -89,6 +91,7 @@ def _parser() -> Parser:
         "--set",
         "--flow",
         "--fins",
+        "--robot",
         "--duration",
         "--accuracy",
         "--body",

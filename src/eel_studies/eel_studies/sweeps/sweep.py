@@ -33,6 +33,7 @@ from eel_dynamics.runs.storage.tables import needed
 from eel_dynamics.runs.swim import Swim
 from eel_model.axes import REP103
 from eel_model.body.body import Body
+from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
 
 from eel_studies.points import (
@@ -71,6 +72,7 @@ def sweep(
     duration: float | str = UNTIL_SETTLED,
     body: Body | None = None,
     scene: Scene | None = None,
+    robot: Robot | str | None = None,
     accuracy: AccuracyLike = "standard",
     sample_period: float | None = None,
     stations: Stations = 51,
@@ -93,11 +95,12 @@ def sweep(
     Args:
         grid: values by name, with the names of `studies.points`: numbers of the gait ("period"), of scene, body or
             initial state ("scene.friction", "body.lateral_drag", "initial.v_x"), of flow and fins ("fins.area",
-            "fins.k_p"), "body" and "accuracy".
+            "fins.k_p"), of a robot ("robot.kp", "robot.tails.bending_stiffness", "robot.joint_3.stiffness"), "robot",
+            "body" and "accuracy".
         gait: its name, or a function of `numbers` and the grid's that returns a law.
         numbers: by the same names, for all points, such as those of the gait, or "fins".
         duration: [s], or "settled": each point swims until its gait has settled, as in `simulate`.
-        body, scene, accuracy: as in `simulate`, for all points.
+        body, scene, robot, accuracy: as in `simulate`, for all points; a robot may be given by name or file.
         sample_period: [s], as in `simulate`.
         stations: as in `simulate`.
         estimate: measure each run's error, as in `simulate`.
@@ -128,7 +131,7 @@ def sweep(
     limit = positive("most_evaluations", most_evaluations, "per simulated second")
     _check_count("workers", workers)
     _check_count("chunk", chunk)
-    base = base_point(body, scene, Accuracy.of(accuracy))
+    base = base_point(body, scene, Accuracy.of(accuracy), robot=robot)
     try:
         points = [
             point_at(dict(zip(names, values, strict=True)), gait, numbers or {}, base)
@@ -258,7 +261,7 @@ def _dataset(
     }
     if how.sample_period is not None:
         attributes["sample_period"] = float(how.sample_period)
-    for name in ("body", "scene", "accuracy"):
+    for name in ("body", "scene", "robot", "accuracy"):
         values = {repr(getattr(point, name)) for point in points}
         if len(values) == 1:
             attributes[name] = values.pop()

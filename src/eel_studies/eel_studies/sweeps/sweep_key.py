@@ -9,12 +9,14 @@ from typing import Any
 
 import numpy as np
 from eel_base.wording import shown
-from eel_dynamics.runs.storage.plain import plain_of
+from eel_dynamics.runs.storage.plain import plain_of, plain_robot
 from eel_dynamics.runs.storage.tables import needed
 from eel_dynamics.runs.swim import Swim
 from eel_model.body.body import DRAGS, MASSES, Body
 from eel_model.body.shapes import NamedHalfAxis
 from eel_model.flow.plain import plain_of_flow
+from eel_model.robot.actuators import Torque
+from eel_model.robot.robot import Robot
 
 import eel_core
 import eel_dynamics
@@ -44,6 +46,7 @@ def key_of(points: list[Swim], how: SwimSettings) -> str:
         content.update(bodies[id(point.body)])
         content.update(repr((plain_of(point.law), point.scene, point.accuracy)).encode())
         content.update(repr((plain_of_flow(point.flow), point.fins)).encode())
+        content.update(_content_of_robot(point.robot, point.body))
         content.update(np.concatenate(point.start).tobytes())
     return content.hexdigest()[:32]
 
@@ -77,6 +80,16 @@ def _content_of_function(argument: str, function: Any) -> bytes:
     if home is not None and home.__name__ != "__main__" and getattr(home, "__file__", None):
         content += inspect.getsource(home)
     return content.encode()
+
+
+def _content_of_robot(robot: Robot | None, body: Body) -> bytes:
+    """The robot's numbers, with the code of torques that are functions."""
+    content = b""
+    for joint in robot.joints if robot is not None else ():
+        if isinstance(joint.actuator, Torque) and joint.actuator.time is None:
+            content += _content_of_function(f"joint {joint.name} torque", joint.actuator.torque)
+            robot = robot.changed(joint.name, actuator=None) if robot is not None else None
+    return content + repr(plain_robot(robot, body)).encode()
 
 
 def _content_of_body(body: Body) -> bytes:
