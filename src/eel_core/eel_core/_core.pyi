@@ -136,6 +136,9 @@ class Swimmer(_Shared):
         resistive: bool,
         first_watched: int,
         wake: bool,
+        inertia_of_water: bool,
+        tail_water: Buffer,
+        flow_gradient: bool,
         nose_mass: float,
         nose_drag: float,
         distributed_pressure: bool,
@@ -148,7 +151,9 @@ class Swimmer(_Shared):
     ) -> None:
         """sections: at the nodes. friction: of `FRICTION_LAWS`. resistive: drag along the body.
         first_watched: first of the speeds (0 V1, 1 V2, 2 V3, 3 Omega1, 4 Re/8e4 - 1) whose changes of sign within a
-        panel are integrated exactly; 5 for none. nose_mass: m_o [kg]; nose_drag: 1/2 rho_f k_o [kg/m].
+        panel are integrated exactly; 5 for none. inertia_of_water: the nodes' sections have that of the water.
+        tail_water: (3,) added masses [kg/m], [kg m] that are swept off at the tail. flow_gradient: its forces.
+        nose_mass: m_o [kg]; nose_drag: 1/2 rho_f k_o [kg/m].
         distributed_pressure: along the body in place of at the tail. offset: the centre of mass is off the axis.
         righting, gravity [m/s^2]: g where `lever` gives a moment of weight, and where `net` gives a force; else 0.
         missed_drag: (K, n) [m] for V2, V3 and Omega1: of each node, what the drag's integral from the start of its

@@ -150,9 +150,10 @@ inline Grid grid_from(const py::handle& g)
 inline std::shared_ptr<const Swimmer> swimmer_from(const py::object& grid, const py::object& sections,
                                                    const py::object& stations, const std::string& friction,
                                                    bool resistive, std::size_t first_watched, bool wake,
-                                                   double nose_mass, double nose_drag, bool distributed_pressure,
-                                                   bool offset, double righting, double gravity,
-                                                   const py::object& missed_drag)
+                                                   bool inertia_of_water, const py::object& tail_water,
+                                                   bool flow_gradient, double nose_mass, double nose_drag,
+                                                   bool distributed_pressure, bool offset, double righting,
+                                                   double gravity, const py::object& missed_drag)
 {
     auto swimmer = std::make_shared<Swimmer>();
     swimmer->grid = grid_from(grid);
@@ -163,6 +164,11 @@ inline std::shared_ptr<const Swimmer> swimmer_from(const py::object& grid, const
         throw py::value_error("friction is none of FRICTION_LAWS, got '" + friction + "'");
     swimmer->friction = static_cast<Friction>(name - friction_names.begin());
     swimmer->resistive = resistive, swimmer->first_watched = first_watched, swimmer->wake = wake ? 1.0 : 0.0;
+    swimmer->inertia_of_water = inertia_of_water ? 1.0 : 0.0, swimmer->flow_gradient = flow_gradient;
+    const Numbers water(tail_water, "tail_water");
+    water.check_size(3, "tail_water");
+    swimmer->tail.added2 = water.data()[0], swimmer->tail.added3 = water.data()[1];
+    swimmer->tail.added_roll = water.data()[2];
     swimmer->nose_mass = nose_mass, swimmer->nose_drag = nose_drag,
     swimmer->distributed_pressure = distributed_pressure;
     swimmer->offset = offset, swimmer->righting = righting, swimmer->gravity = gravity;

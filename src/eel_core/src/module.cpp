@@ -278,17 +278,19 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
     share_in_copies(swimmer);
     swimmer.def(
         py::init([](const py::object& grid, const py::object& sections, const py::object& stations,
-                    const std::string& friction, bool resistive, std::size_t first_watched, bool wake, double nose_mass,
+                    const std::string& friction, bool resistive, std::size_t first_watched, bool wake,
+                    bool inertia_of_water, const py::object& tail_water, bool flow_gradient, double nose_mass,
                     double nose_drag, bool distributed_pressure, bool offset, double righting, double gravity,
                     const py::object& missed_drag, const py::list& fins, const py::list& servos) {
-            auto made = std::const_pointer_cast<Swimmer>(
-                swimmer_from(grid, sections, stations, friction, resistive, first_watched, wake, nose_mass, nose_drag,
-                             distributed_pressure, offset, righting, gravity, missed_drag));
+            auto made = std::const_pointer_cast<Swimmer>(swimmer_from(
+                grid, sections, stations, friction, resistive, first_watched, wake, inertia_of_water, tail_water,
+                flow_gradient, nose_mass, nose_drag, distributed_pressure, offset, righting, gravity, missed_drag));
             add_fins(*made, fins, servos);
             return made;
         }),
         py::arg("grid"), py::arg("sections"), py::arg("stations"), py::kw_only(), py::arg("friction"),
-        py::arg("resistive"), py::arg("first_watched"), py::arg("wake"), py::arg("nose_mass"), py::arg("nose_drag"),
+        py::arg("resistive"), py::arg("first_watched"), py::arg("wake"), py::arg("inertia_of_water"),
+        py::arg("tail_water"), py::arg("flow_gradient"), py::arg("nose_mass"), py::arg("nose_drag"),
         py::arg("distributed_pressure"), py::arg("offset"), py::arg("righting"), py::arg("gravity"),
         py::arg("missed_drag") = py::tuple(), py::arg("fins") = py::list(), py::arg("servos") = py::list());
 

@@ -47,6 +47,9 @@ class Scene(Quantities):
         False, "", "motion in the plane z = 0 only: one angle in place of a rotation; a pitch term is refused"
     )
     reactive: bool = quantity(True, "", "inertia of the water: added mass M_f, J_f, wake, nose's added mass m_o")
+    added_inertia: bool = quantity(
+        True, "", "momentum of the added mass, which the body accelerates; off: the wake's load at the tail alone"
+    )
     wake: bool = quantity(
         True, "", "momentum that the water carries along the body and off at the tail; off: a section keeps its water"
     )
@@ -87,6 +90,9 @@ class Scene(Quantities):
     )
     density: float | None = quantity(
         None, "kg/m^3", "density of the body, overrides the body's own", 0.0, exclusive=True
+    )
+    flow_gradient: bool = quantity(
+        True, "", "forces by the gradient g of a flow, -g^T p and rho_f A g u; off: of its rate du/dt alone"
     )
     fluid_density: float = quantity(1000.0, "kg/m^3", "density of the water", 0.0)
     viscosity: float = quantity(1e-6, "m^2/s", "kinematic viscosity of the water", 0.0)

@@ -46,6 +46,11 @@ def added_masses(body: Body, scene: Scene, a_squared, b_squared):
     return lateral, rho * np.pi * along3, rho * np.pi / 8.0 * (a_squared - b_squared) ** 2
 
 
+def swept_water(body: Body, scene: Scene, x: np.ndarray):
+    """The added masses (n,) of the water that is swept past the sections at `x` (n,) [m]."""
+    return added_masses(body, scene, body.half_height(x) ** 2, body.half_width(x) ** 2)
+
+
 class SectionData(NamedTuple):
     """Section data at n points, (n,) each, SI units."""
 
@@ -94,7 +99,7 @@ class StationData(NamedTuple):
 def nose_of(body: Body, scene: Scene) -> tuple[float, float]:
     """m_o [kg] and 1/2 rho_f k_o [kg/m] of the nose."""
     area = np.pi * body.nose[0] * body.nose[1] if scene.nose else 0.0
-    reactive = scene.fluid_density if scene.reactive else 0.0
+    reactive = scene.fluid_density if scene.reactive and scene.added_inertia else 0.0
     resistive = 0.5 * scene.fluid_density if scene.resistive else 0.0
     return float(reactive * area * body.nose_added_mass * body.nose[2]), float(resistive * area * body.nose_drag)
 
@@ -106,6 +111,8 @@ def core_swimmer(
     [m]; `kinks`: which of the drag's are integrated exactly (`Accuracy`)."""
     nose_mass, nose_drag = nose_of(body, scene)
     of_fins, servos = core_fins(body, scene, grid, x, fins)
+    own = sections.added2, sections.added3, sections.added_roll
+    swept = own if scene.added_inertia else swept_water(body, scene, grid.x)
     return eel_core.Swimmer(
         grid,
         sections,
@@ -114,6 +121,9 @@ def core_swimmer(
         resistive=bool(scene.resistive),
         first_watched=WATCHED[kinks],
         wake=bool(scene.wake),
+        inertia_of_water=bool(scene.added_inertia),
+        tail_water=np.array([row[-1] for row in swept]),
+        flow_gradient=bool(scene.flow_gradient),
         nose_mass=nose_mass,
         nose_drag=nose_drag,
         distributed_pressure=scene.tail_pressure == "distributed",
@@ -172,8 +182,9 @@ def stations_of(body: Body, scene: Scene, grid: Grid, nodes: SectionData, x: np.
     a_squared, b_squared, a_slope, b_slope = _squares_at(body, x.tobytes())
     slope2, slope3, _ = added_masses(body, scene, a_slope, b_slope)
     rho = scene.fluid_density if scene.reactive else 0.0
+    sections, swept = sections_of(body, scene, x), swept_water(body, scene, x)
     return StationData(
-        sections=sections_of(body, scene, x),
+        sections=sections._replace(**dict(zip(("added2", "added3", "added_roll"), swept, strict=True))),
         points=grid.points_at(x),
         nodes_before=np.searchsorted(grid.x, x, side="right").astype(np.uint64),
         added2_slope=slope2,
@@ -214,7 +225,7 @@ def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionData:
     a, b = body.half_height(x), body.half_width(x)
     area = np.pi * a * b
     mass = body.mass_per_length(x, scene.density)
-    added2, added3, added_roll = added_masses(body, scene, a**2, b**2)
+    added2, added3, added_roll = (float(scene.added_inertia) * row for row in swept_water(body, scene, x))
     inertia2, inertia3 = mass * a**2 / 4.0, mass * b**2 / 4.0  # about the centre of mass
     lever, hung = np.zeros_like(mass), 0.0
     if body.offset:

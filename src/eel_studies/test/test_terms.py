@@ -32,7 +32,9 @@ def test_effects_are_the_differences_of_two_swims(plain):
 def test_what_matters_stays_and_what_does_not_goes(plain):
     assert plain.left_out == ["third dimension"] and plain.within  # a gait in yaw alone
     assert {name for name, each in plain.effects.items() if each.worst > 0.05} == {
-        "inertia of the water", "wake", "cross-flow drag", "friction", "turbulence of the friction", "nose",
+        "inertia of the water", "momentum of the added mass", "wake", "cross-flow drag", "friction",
+        "turbulence of the friction",
+        "nose",
     }  # fmt: skip
     assert plain.recommended.scene.planar and not plain.swim.scene.planar
     assert plain.recommended.scene.ledger and plain.recommended.duration == 6

@@ -21,7 +21,7 @@ void set_tail_load(const Swimmer& swimmer, Workspace<M>& work)
     const std::size_t tail = swimmer.grid.nodes - 1;
     const auto frame = work.frame.node(tail);
     const auto position = work.position.node(tail);
-    const Section<double> section = swimmer.sections.node(tail).weighed(swimmer.wake);
+    const Section<double> section = swimmer.tail.weighed(swimmer.wake);
     const Vector<M, double> v = frame.local(work.velocity_through_water().node(tail));
     const Angular<M, double> omega = frame.local(work.omega.node(tail));
     work.tail_speed = swimmer.wake * v.x;

@@ -5,7 +5,8 @@
 //
 // Drag, wake and nose see W for V, and the roll drag Omega1 - 1/2 t1 . curl u. Two forces per length are new: - g^T p,
 // and rho_f A a_u of the undisturbed pressure (Froude and Krylov); a_u = u_t + g u is the acceleration of the water.
-// The theory is that of irrotational u which varies little across a section.
+// The theory is that of irrotational u which varies little across a section. Without `flow_gradient` g is left out of
+// these two forces along the body.
 #pragma once
 
 #include "eel_core/drag.hpp"
@@ -39,6 +40,32 @@ EEL_CORE_APART Momentum<M, double> momentum_of_flow(const Swimmer& swimmer, cons
     return total_of(sum);
 }
 
+// rho_f A g u - g^T p of a block: what the gradient of the flow gives of the force per length, about the head.
+template <class M>
+Wrench<M, Lanes> load_of_gradient(const Section<Lanes>& section, Lanes displaced, const Workspace<M>& work,
+                                  std::size_t k)
+{
+    const auto frame = work.frame[k];
+    const FlowSample<M, Lanes> water = work.flow[k];
+    const Vector<M, Lanes> w = work.velocity[k] - water.u, p = frame.parent(section.water_momentum(frame.local(w)));
+    const Vector<M, Lanes> force = displaced * water.g.times(water.u) - water.g.transposed_times(p);
+    return {cross(work.position[k], force), force};
+}
+
+// Its integral over the body, and its power [W].
+template <class M>
+EEL_CORE_APART std::pair<Wrench<M, double>, double> total_of_gradient(const Swimmer& swimmer, const Workspace<M>& work)
+{
+    Wrench<M, Lanes> sum{};
+    Lanes power(0.0);
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const auto load = load_of_gradient<M>(swimmer.sections[k], swimmer.sections.displaced[k], work, k);
+        sum += swimmer.grid.weight[k] * load;
+        power += swimmer.grid.weight[k] * dot(load.linear, work.velocity[k]);
+    }
+    return {total_of(sum), total(power)};
+}
+
 // Velocities through the water, and the flow's part of the load on the momentum: per length rho_f A a_u - g^T p, with
 // the torque U x p besides; m_o a_u at the nose.
 template <class M>
@@ -58,6 +85,7 @@ EEL_CORE_APART void set_flow_load(const Swimmer& swimmer, Workspace<M>& work)
         sum += {cross(work.position[k], force) + cross(water.u, p), force};
     }
     work.flow_load = plus_axial<M>(total_of(sum), swimmer.nose_mass * work.flow.nose().acceleration().x);
+    if (!swimmer.flow_gradient) work.flow_load = work.flow_load - total_of_gradient(swimmer, work).first;
 }
 
 // The wrench about the head that the flow adds to the balance, beside that of a motion through water at rest, of a
@@ -92,7 +120,8 @@ EEL_CORE_APART Wrench<M, double> total_wrench_of_flow(const Swimmer& swimmer, co
     Wrench<M, Lanes> sum{};
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
         sum += swimmer.grid.weight[k] * wrench_of_flow<M>(swimmer.sections[k], swimmer.sections.displaced[k], work, k);
-    return total_of(sum);
+    const Wrench<M, double> whole = total_of(sum);
+    return swimmer.flow_gradient ? whole : whole + total_of_gradient(swimmer, work).first;
 }
 
 // Adds it to the `density` of the balance and to its integral.
@@ -102,6 +131,9 @@ EEL_CORE_APART void add_wrench_of_flow(const Swimmer& swimmer, const Wrench<M, d
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
         work.density.store(
             k, work.density[k] + wrench_of_flow<M>(swimmer.sections[k], swimmer.sections.displaced[k], work, k));
+    for (std::size_t k = 0; !swimmer.flow_gradient && k < swimmer.grid.blocks; ++k)
+        work.density.store(
+            k, work.density[k] + load_of_gradient<M>(swimmer.sections[k], swimmer.sections.displaced[k], work, k));
     work.balance += whole;
 }
 
@@ -118,7 +150,7 @@ EEL_CORE_APART double flow_power(const Swimmer& swimmer, const Workspace<M>& wor
                                Vector<M, Lanes>(frame.local(water.u_t)));
         sum += swimmer.grid.weight[k] * (part + swimmer.sections.displaced[k] * dot(water.acceleration(), velocity));
     }
-    return total(sum);
+    return swimmer.flow_gradient ? total(sum) : total(sum) - total_of_gradient(swimmer, work).second;
 }
 
 // What the drag's power lacks where it is that of the motion through the water [W]: integral n . U + c1 t1 . curl u

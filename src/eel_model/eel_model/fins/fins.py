@@ -51,7 +51,8 @@ class Fin:
     edge rises. time_constant [s]: of the servo that follows the angle; None: none, the fin has the angle. limit [rad]:
     of the servo; initial_angle [rad]: that it starts with (of a `RollHold` on the right). lift_slope: of sine times
     cosine of the incidence; None: Whicker's and Fehlner's. normal_drag, friction_drag: coefficients of a plate across
-    the stream and along it. efficiency: of its lift, in the induced drag.
+    the stream and along it. efficiency: of its lift, in the induced drag. added_mass: by that of
+    a flat plate; 0: none.
     """
 
     station: float
@@ -67,6 +68,7 @@ class Fin:
     normal_drag: float = 1.2
     friction_drag: float = 0.01
     efficiency: float = 0.9
+    added_mass: float = 1.0
 
     def __post_init__(self) -> None:
         if self.side not in SIDES:
@@ -86,7 +88,7 @@ class Fin:
             raise ValueError(f"fin initial_angle needs a time_constant, in s, got {shown(self.initial_angle)} and none")
         if self.lift_slope is not None:
             values["lift_slope"] = number("fin lift_slope", self.lift_slope, minimum=0.0)
-        for name in ("normal_drag", "friction_drag"):
+        for name in ("normal_drag", "friction_drag", "added_mass"):
             values[name] = number(f"fin {name}", getattr(self, name), minimum=0.0)
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -209,7 +211,7 @@ def core_fins(body: Body, scene: Scene, grid, x: np.ndarray, fins: tuple[Fin, ..
     rows = []
     for fin in fins:
         centre = fin.root(body) + 4.0 * fin.span / (3.0 * math.pi) * fin.axis
-        reactive = scene.fluid_density if scene.reactive else 0.0
+        reactive = scene.fluid_density * fin.added_mass if scene.reactive and scene.added_inertia else 0.0
         held = isinstance(fin.angle, RollHold) and fin.side == "left"
         rows.append(
             (

@@ -17,7 +17,7 @@ from eel_model.fins.fins import COMMANDED, SIDES, Fin, RollHold
 JOINED, PAIR = " + ", "pair"
 NUMBERS = (
     *("station", "area", "aspect_ratio", "dihedral", "angle", "time_constant", "limit", "initial_angle", "lift_slope"),
-    *("normal_drag", "friction_drag", "efficiency"),
+    *("normal_drag", "friction_drag", "efficiency", "added_mass"),
 )
 GAINS = "k_p", "k_d"
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from eel_dynamics.runs.swim import AT_REST, Swim
 from eel_gaits.laws.law import Law
+from eel_model.flow.sources import Gust, Uniform
 from eel_model.robot.joint import Joint
 from eel_model.robot.robot import Robot
 
@@ -65,6 +66,7 @@ def planar(swim: Swim) -> Swim:
 
 TERMS: dict[str, Off] = {
     "inertia of the water": _scene(reactive=False),
+    "momentum of the added mass": _scene(added_inertia=False),
     "wake": _scene(wake=False),
     "cross-flow drag": _scene(cross_flow=False),
     "friction": _scene(friction="none"),
@@ -75,7 +77,9 @@ TERMS: dict[str, Off] = {
     "mass off the axis": _on_the_axis,
     "current": _scene(current=(0.0, 0.0, 0.0)),
     "flow": lambda swim: swim._replace(flow=None),
+    "gradient of the flow": _scene(flow_gradient=False),
     "fins": lambda swim: swim._replace(fins=()),
+    "added mass of the fins": lambda swim: swim._replace(fins=tuple(replace(fin, added_mass=0.0) for fin in swim.fins)),
     "third dimension": planar,
     "compliance of the robot": lambda swim: swim._replace(robot=None),
     "limits of the servos": _joints(torque_limit=None, speed_limit=None),
@@ -85,7 +89,9 @@ TERMS: dict[str, Off] = {
 }
 WITHIN = {  # what goes with a term
     "friction": ("turbulence of the friction",),
-    "inertia of the water": ("wake",),
+    "inertia of the water": ("wake", "momentum of the added mass", "gradient of the flow", "added mass of the fins"),
+    "flow": ("gradient of the flow",),
+    "fins": ("added mass of the fins",),
     "compliance of the robot": ("limits of the servos", "rotors", "hard stops", "higher modes"),
 }
 
@@ -108,7 +114,9 @@ def _physics(swim: Swim) -> tuple[Any, ...]:
     """What a switch may change, as values that can be compared: a switch that has no effect leaves it equal."""
     scene = swim.scene
     if not scene.reactive:
-        scene = replace(scene, wake=False)
+        scene = replace(scene, wake=False, added_inertia=False)
+    if swim.flow is None or isinstance(swim.flow, (Uniform, Gust)):
+        scene = replace(scene, flow_gradient=True)
     if not scene.resistive:
         scene = replace(scene, cross_flow=False, friction="none")
     if not (scene.reactive or scene.resistive):

@@ -97,7 +97,8 @@ class MissedWrench {
     {
         for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
             const auto of_flow = [&](const Section<Lanes>& one, Lanes displaced) {
-                return wrench_of_flow<Space>(one, displaced, work, k);
+                const auto wrench = wrench_of_flow<Space>(one, displaced, work, k);
+                return swimmer.flow_gradient ? wrench : wrench + load_of_gradient<Space>(one, displaced, work, k);
             };
             const auto added2 = unit_[Part::added2][k], added3 = unit_[Part::added3][k];
             unit_[Part::added2].store(k, added2 + of_flow({0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0}, 0.0));

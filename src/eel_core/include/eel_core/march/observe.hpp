@@ -248,6 +248,7 @@ class Observer {
     {
         const FlowSample<Space, Lanes> water = here.flow[k];
         const Frame3<Lanes> frame = here.frame[k];
+        if (!swimmer_.flow_gradient) return frame.local(swimmer_.at_station.displaced[k] * water.u_t);
         return frame.local(swimmer_.at_station.displaced[k] * water.acceleration() -
                            water.g.transposed_times(frame.parent(p)));
     }
@@ -273,7 +274,8 @@ class Observer {
             const Vector3<Lanes> p = section.water_momentum(v);
             const Vector3<Lanes> p_slope = slope.water_momentum(v) + section.water_momentum(v_slope);
             Vector3<Lanes> force = -(section.water_momentum(v_rate) + cross(omega, p));
-            if constexpr (Flowing) force += force_of_flow(k, here, p);
+            if (swimmer_.inertia_of_water == 0.0) force = {};
+            if constexpr (Flowing) force += force_of_flow(k, here, swimmer_.inertia_of_water * p);
             if (swimmer_.wake > 0.0)
                 force += Lanes(swimmer_.wake) * (v_slope.x * p + v.x * (p_slope + cross(curvature, p)));
             if (swimmer_.distributed_pressure && swimmer_.wake > 0.0) {  // - d/dX (T_f t1)

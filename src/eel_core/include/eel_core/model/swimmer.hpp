@@ -41,6 +41,9 @@ struct Swimmer {
     bool resistive = true;                // drag along the body
     std::size_t first_watched = lateral;  // from this `Speed` on, changes of sign are integrated exactly
     double wake = 1.0;                    // 0 where no water is swept past the sections
+    double inertia_of_water = 1.0;        // 0 where the sections of the nodes have no water
+    bool flow_gradient = true;            // forces by the gradient of a flow
+    Section<double> tail{};               // what is swept off there, whatever the nodes have
     double nose_mass = 0.0;               // [kg], m_o
     double nose_drag = 0.0;               // [kg/m], 1/2 rho_f k_o
     bool distributed_pressure = false;    // -d/dX(T_f t1) along the body in place of -T_f t1 at the tail
