@@ -22,6 +22,7 @@ OWN = {  # relative: below the swimmer's namespace
     "joint_states": "sensor_msgs/msg/JointState",
     "joint_commands": "sensor_msgs/msg/JointState",
     "fin_states": "sensor_msgs/msg/JointState",
+    "motor_states": "eel_msgs/msg/MotorStates",
     "body": "eel_msgs/msg/BodyGeometry",
     "curvature_law": "eel_msgs/msg/CurvatureLaw",
     "curvature_samples": "eel_msgs/msg/CurvatureSamples",
@@ -39,7 +40,7 @@ INPUTS = (
     "fin_command",
 )  # of a controller or a sensor, by its own clock
 SAMPLED = tuple(name for name in OWN if name not in (*LATCHED, *INPUTS))  # once a sample
-WHERE_ASKED_FOR = ("joint_states", "fin_states", "flow_vectors")  # of `SAMPLED`: with joints, fins, a flow
+WHERE_ASKED_FOR = ("joint_states", "fin_states", "motor_states", "flow_vectors")  # of `SAMPLED`: with such parts
 SWIMMER = "head_pose"  # without publishers of this topic the swimmer has gone
 LATER_ENERGY_FIELDS = (  # that an older bag has not
     *("flow_power", "fins_power", "damping_power", "elastic"),

@@ -10,14 +10,15 @@ from eel_dynamics.accuracy.error_estimate import HeadErrors
 from eel_dynamics.ros.messages import SampleMessages, body_message, diagnostic_array, samples_from_message
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
+from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
 from eel_gaits.gaits.settings import Settings
 from eel_ros.loop.serialised_message import MARKED_TIME, SerialisedMessage
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry
 from rclpy.serialization import deserialize_message, serialize_message
 
-from eel_dynamics import Body, Scene, Simulation, simulate
-from eel_gaits import Law, falling
+from eel_dynamics import Body, Fin, Robot, Scene, Simulation, simulate
+from eel_gaits import Law, falling, straight
 from eel_msgs.msg import CurvatureSamples
 
 ERRORS = HeadErrors(relative=1e-5, position=2e-5, orientation=3e-5, velocity=4e-5, angular_velocity=5e-5)
@@ -182,6 +183,34 @@ def test_joint_states_are_the_actuators_of_the_library():
     without = SampleMessages(Simulation(scene=Scene(internal_wrench=False)), DynamicsParameters(yaw_joints=1))
     assert not filled(without, "joint_states", snapshot).effort
     assert "joint_states" not in SampleMessages(simulation, DynamicsParameters()).kinds
+
+
+def test_parts_of_a_robot_are_told_alike_by_node_and_library():
+    robot = Robot.named("eight_servos").changed(torque_limit=0.3)
+    fins = Fin.pair(0.2, 1e-3, 2.5, dihedral=0.2, angle=([0.0, 1.0], [0.0, 0.3]))
+    for parts, topic, fields in (
+        ({"robot": robot}, "motor_states", ("torque", "limit", "power")),
+        ({"robot": robot}, "joint_states", ("position", "velocity", "effort")),
+        ({"fins": fins}, "fin_states", ("position",)),
+    ):
+        scene = Scene(planar="robot" in parts)
+        simulation = Simulation(accuracy="draft", scene=scene, law=straight(), **parts)
+        simulation.advance(0.8)
+        told = filled(SampleMessages(simulation, DynamicsParameters()), topic, simulation.observe())
+        run = simulate(straight(), 0.8, accuracy="draft", scene=scene, sample_period=0.8, estimate=False, **parts)
+        messages = dict(messages_of_run(run))
+        for field in fields:
+            assert np.allclose(getattr(told, field), getattr(messages[topic], field), rtol=1e-9, atol=1e-12), field
+        body = body_message(simulation, "section")
+        for kind, names in (
+            ("fins", ("name", "station", "side", "area", "span", "dihedral")),
+            ("joints", ("station",)),
+        ):
+            for one, other in zip(getattr(body, kind), getattr(messages["body"], kind), strict=True):
+                assert [getattr(one, name) for name in names] == [getattr(other, name) for name in names]
+        assert (len(body.fins), len(body.joints)) == ((0, 8) if "robot" in parts else (2, 0))
+        if topic == "motor_states":
+            assert np.max(told.limit) == 0.3 and np.isclose(np.abs(told.torque), told.limit, rtol=1e-9).any()
 
 
 def test_energy_has_every_field(swum):

@@ -25,6 +25,8 @@ BOTH_WATER = "/world/water/both"
 SHADOW = "/world/water/near/shadow"
 SKIN = "/world/eel/skin"  # its flanks coloured by C3
 EYES = "/world/eel/eyes"
+FINS = "/world/eel/fins"
+JOINTS = "/world/eel/joints"  # rings, coloured by what their motors give of what they can
 BACKBONE = "/world/eel/backbone"
 HEAD = "/world/eel/head"
 TAIL = "/world/eel/tail"
@@ -56,8 +58,10 @@ TICKS = "ticks"
 KEY = "key"
 
 HEAT_MAP = "/heat_map"
-HEAT_MAP_IMAGE = "/heat_map/image"
-HEAT_MAP_FRAME = "/heat_map/frame"
+LOAD_MAP = "/load_map"  # of motors over time
+# below each of the two, beside a frame:
+IMAGE = "image"
+HEAT_MAP_IMAGE, HEAT_MAP_FRAME = f"{HEAT_MAP}/{IMAGE}", f"{HEAT_MAP}/{FRAME}"
 
 # --- scalars over time -------------------------------------------------------------------------------------------
 PLOTS = "/plots"
@@ -73,6 +77,11 @@ POWER_BESIDES = "/plots/power_besides"  # flow, fins, dampers [W]: from the firs
 KINETIC = "/plots/kinetic"  # body, fluid [J]
 STORED = "/plots/stored"  # of weight, of springs [J]: likewise
 RESIDUAL = "/plots/residual"  # [J]
+FIN_ANGLES = "/plots/fin_angles"  # [deg]
+HARDEST_MOTOR = "/plots/hardest_motor"  # torque of the motor that is nearest to its limit, and that limit [N m]
+SATURATED = "/plots/saturated_motors"  # how many motors are at their limits
+MOTOR_POWER = "/plots/motor_power"  # of all [W]
+MOTOR_WORK = "/plots/motor_work"  # of all since the start [J]
 
 # --- the profiles of the messages, in double precision -------------------------------------------------------------
 NUMBERS = "/numbers"
@@ -81,6 +90,9 @@ CURVATURE_NUMBERS = "/numbers/curvature"
 LOAD_NUMBERS = "/numbers/hydrodynamic_load"
 BODY_NUMBERS = "/numbers/body"
 ODOMETRY_NUMBERS = "/numbers/odom"
+FIN_NUMBERS = "/numbers/fin_states"
+JOINT_NUMBERS = "/numbers/joint_states"
+MOTOR_NUMBERS = "/numbers/motor_states"
 
 # --- text --------------------------------------------------------------------------------------------------------
 LOOK = "/run/look"  # what to look at

@@ -43,14 +43,40 @@ class Twist:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class Fin:
+    """A plate with its root on the body's side at X = `station` [m]; `side` along section axis 2: 1 right, -1 left.
+
+    `area` [m^2], `span` [m], `dihedral` [rad].
+    """
+
+    name: str
+    station: float
+    side: int
+    area: float
+    span: float
+    dihedral: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Joint:
+    """A joint at X = `station` [m] that bends about the section's `axis`, 2 or 3."""
+
+    name: str
+    station: float
+    axis: int
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Body:
-    """`length` [m], `mass` [kg], and half axes [m], (B,) at `x` [m], (B,)."""
+    """`length` [m], `mass` [kg], and half axes [m], (B,) at `x` [m], (B,); what it has of fins and joints."""
 
     length: float
     mass: float
     x: np.ndarray
     half_width: np.ndarray
     half_height: np.ndarray
+    fins: tuple[Fin, ...] = ()
+    joints: tuple[Joint, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -139,8 +165,8 @@ def read_twist(twist: Any) -> Twist:
 def read_backbone(message: Any) -> Backbone:
     """From eel_msgs/Backbone."""
     x = _stations(message.x)
-    position = _finite("position", _sized("position", message.position, 3 * len(x))).reshape(-1, 3)
-    orientation = _sized("orientation", message.orientation, 4 * len(x)).reshape(-1, 4)
+    position = finite("position", sized("position", message.position, 3 * len(x))).reshape(-1, 3)
+    orientation = sized("orientation", message.orientation, 4 * len(x)).reshape(-1, 4)
     _check_unit("orientation", orientation)
     return Backbone(x=x, position=position, orientation=orientation)
 
@@ -149,7 +175,7 @@ def read_body(message: Any) -> Body:
     """From eel_msgs/BodyGeometry."""
     x = _stations(message.x)
     half_width, half_height = (
-        _finite(name, _sized(name, getattr(message, name), len(x))) for name in ("half_width", "half_height")
+        finite(name, sized(name, getattr(message, name), len(x))) for name in ("half_width", "half_height")
     )
     for name, values in (("half_width", half_width), ("half_height", half_height)):
         if np.any(values < 0.0):
@@ -163,7 +189,7 @@ def read_body(message: Any) -> Body:
 def read_path(message: Any) -> np.ndarray:
     """From nav_msgs/Path: the positions (n, 3) [m]."""
     points = [(each.pose.position.x, each.pose.position.y, each.pose.position.z) for each in message.poses]
-    return _finite("poses", np.array(points, dtype=float).reshape(-1, 3))
+    return finite("poses", np.array(points, dtype=float).reshape(-1, 3))
 
 
 def read_wrench(message: Any) -> Profiles:
@@ -194,7 +220,7 @@ def read_flow(message: Any) -> tuple[np.ndarray, np.ndarray]:
     if count % 3 or count > 3 * MOST_STATIONS:
         raise BadMessage("position", f"must have 3 numbers for each of {MOST_STATIONS} points at most, got {count}")
     position, velocity = (
-        _finite(name, _sized(name, getattr(message, name), count)).reshape(-1, 3) for name in ("position", "velocity")
+        finite(name, sized(name, getattr(message, name), count)).reshape(-1, 3) for name in ("position", "velocity")
     )
     return position, velocity
 
@@ -224,10 +250,10 @@ def read_diagnostics(message: Any) -> list[Status]:
 
 def _profiles(message: Any, names: tuple[str, ...]) -> Profiles:
     x = _stations(message.x)
-    values = {name: _sized(name, getattr(message, name), len(x)) for name in names}
+    values = {name: sized(name, getattr(message, name), len(x)) for name in names}
     if not np.isfinite(np.array([*values.values()])).all():
         for name, array in values.items():
-            _finite(name, array)
+            finite(name, array)
     return Profiles(x=x, values=values)
 
 
@@ -239,7 +265,7 @@ def _stations(values: Any) -> np.ndarray:
 
 @lru_cache(maxsize=16)  # one array for all messages with equal stations
 def _checked_stations(content: bytes) -> np.ndarray:
-    x = _finite("x", np.frombuffer(content))
+    x = finite("x", np.frombuffer(content))
     if len(x) < 2:
         raise BadMessage("x", f"must have at least 2 stations, got {len(x)}")
     if not (x[1:] > x[:-1]).all():
@@ -247,14 +273,16 @@ def _checked_stations(content: bytes) -> np.ndarray:
     return x
 
 
-def _sized(name: str, values: Any, size: int) -> np.ndarray:
+def sized(name: str, values: Any, size: int, fitting: str = "x") -> np.ndarray:
+    """`values` as an array, (size,), as many as the field `fitting` has; `BadMessage` for another size."""
     array = np.asarray(values, dtype=float)
     if array.shape != (size,):
-        raise BadMessage(name, f"must have {size} numbers to fit x, got {array.size}")
+        raise BadMessage(name, f"must have {size} numbers to fit {fitting}, got {array.size}")
     return array
 
 
-def _finite(name: str, array: np.ndarray) -> np.ndarray:
+def finite(name: str, array: np.ndarray) -> np.ndarray:
+    """`array`, if all of it is finite; else `BadMessage`."""
     if not np.isfinite(array).all():
         raise BadMessage(name, "has values that are not finite")
     return array
@@ -263,7 +291,7 @@ def _finite(name: str, array: np.ndarray) -> np.ndarray:
 def _vector(name: str, vector: Any) -> np.ndarray:
     values = vector.x, vector.y, vector.z
     array = np.array(values)
-    return array if all(map(isfinite, values)) else _finite(name, array)
+    return array if all(map(isfinite, values)) else finite(name, array)
 
 
 def _check_unit(name: str, quaternions: np.ndarray) -> None:

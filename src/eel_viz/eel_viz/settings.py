@@ -15,7 +15,7 @@ def setting(default: Any, description: str, unit: str = "", **bounds: Any) -> An
 
 
 SINKS = ("spawn", "connect", "serve", "save")
-BLUEPRINTS = ("overview", "torques", "motion", "swimmer", "compare")
+BLUEPRINTS = ("overview", "torques", "motion", "robot", "swimmer", "compare")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -528,7 +528,7 @@ def test_the_recording_carries_its_blueprint(made):
     path, _ = made
     assert len(RrdReader(str(path)).blueprints()) == 1
     with pytest.raises(
-        ValueError, match="blueprint must be one of overview, torques, motion, swimmer, compare, got 'best'"
+        ValueError, match="blueprint must be one of overview, torques, motion, robot, swimmer, compare, got 'best'"
     ):
         arrangement("best")
 

@@ -43,7 +43,10 @@ def test_what_is_taken(given, field, taken):
         ({"sink": ["file"]}, "sink must be some of spawn, connect, serve, save or auto, got 'file'"),
         ({"sink": []}, "sink must name at least one of spawn, connect, serve, save, got none"),
         ({"sink": 3}, "sink must be a list of texts, got 3"),
-        ({"blueprint": "mine"}, "blueprint must be one of overview, torques, motion, swimmer, compare, got 'mine'"),
+        (
+            {"blueprint": "mine"},
+            "blueprint must be one of overview, torques, motion, robot, swimmer, compare, got 'mine'",
+        ),
         ({"rate": 0}, "rate must be >= 0.1 Hz, got 0"),
         ({"rate": float("nan")}, "rate must be finite, got nan"),
         ({"rate": True}, "rate must be a number, got True"),

@@ -20,6 +20,7 @@ from eel_gaits.laws.law import MAXIMUM_TERMS
 from eel_gaits.ros.messages import ROWS
 from eel_model.axes import with_section_axes
 from eel_model.flow.lattice import lattice_around, velocities_at
+from eel_model.robot.actuators import most_torque
 from eel_ros.loop.serialised_message import SerialisedMessage
 from eel_ros.serialised import Beginning
 from eel_ros.serving import read_message
@@ -33,7 +34,7 @@ from eel_dynamics.accuracy.error_estimate import HeadErrors
 from eel_dynamics.analysis.actuators import Joints
 from eel_dynamics.curvature.curvature_samples import LateSample, check_points
 from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
-from eel_dynamics.runs.exchange.messages_of_run import outline
+from eel_dynamics.runs.exchange.messages_of_run import fields_of_fins, fields_of_joints, outline
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
 from eel_msgs import msg
@@ -102,6 +103,9 @@ class SampleMessages:
             effort = zeros if scene.internal_wrench or robot is not None else []
             joint_state = JointState(name=names, position=zeros, velocity=zeros, effort=effort)
             topics["joint_states"] = joint_state, "", self._fill_joints if robot is None else self._fill_robot
+            if robot is not None and robot.joints:
+                motors = msg.MotorStates(torque=zeros, limit=zeros, power=zeros)
+                topics["motor_states"] = motors, "", self._fill_motors
         if simulation.fins:
             from sensor_msgs.msg import JointState
 
@@ -226,6 +230,12 @@ class SampleMessages:
         for field, name in (("position", "joint_angle"), ("velocity", "joint_rate"), ("effort", "joint_torque")):
             numbers[field][:] = joints[name]
 
+    def _fill_motors(self, numbers: Numbers, snapshot: Snapshot) -> None:
+        torque, power = snapshot.joints["motor_torque"], snapshot.joints["motor_power"]
+        assert self._simulation.robot is not None
+        numbers["torque"][:], numbers["power"][:] = torque, power
+        numbers["limit"][:] = most_torque(self._simulation.robot.servos, torque, power)
+
 
 def _lengthen(message: Any, x: np.ndarray, fins: int) -> None:
     """Set the lengths of the sequences in a `message` for so many `fins` and the stations `x` (M,) [m], and `x`."""
@@ -251,9 +261,14 @@ def root_message(parameters: DynamicsParameters) -> TFMessage:
 
 
 def body_message(simulation: Simulation, section_frame: str) -> msg.BodyGeometry:
-    """The body's outline at the stations and at points in between, which are denser at the nose."""
+    """The body's outline at the stations and at points in between, which are denser at the nose; fins and joints."""
     body = simulation.body
-    message = msg.BodyGeometry(length=float(body.length), mass=float(body.mass_in(simulation.scene.density)))
+    message = msg.BodyGeometry(
+        length=float(body.length),
+        mass=float(body.mass_in(simulation.scene.density)),
+        fins=[msg.FinGeometry(**fields) for fields in fields_of_fins(simulation.fins)],
+        joints=[msg.JointGeometry(**fields) for fields in fields_of_joints(simulation.robot)],
+    )
     message.header.frame_id = section_frame
     for name, values in outline(body, simulation.x).items():
         setattr(message, name, array.array("d", values.tolist()))

@@ -37,7 +37,7 @@ MATCH_LIMIT = 5.0  # s: longest wait for the subscribers that exist to be matche
 COUNT_PERIOD = 0.1  # s of wall time between two counts of subscribers: a count costs as much as a short message
 PARTS = {"wrench": ("internal_wrench", "joint_states", "swim_state"), "load": ("hydrodynamic_load",)}
 # of Simulation.observe, and the topics that need them
-NOT_AWAITED = ("/tf", "joint_states", "swim_state")  # topics that the run does not wait for subscribers of
+NOT_AWAITED = "/tf", "joint_states", "motor_states", "swim_state"  # the run does not wait for subscribers of these
 
 
 class Publishers:

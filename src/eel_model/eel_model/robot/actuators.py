@@ -123,12 +123,17 @@ Actuator = Servo | Torque
 AT_LIMIT = 1.0 - 1e-9  # of the torque that a servo can give at its speed, from which it counts as at its limit
 
 
-def at_limit(servos: Sequence[Servo | None], torque: np.ndarray, power: np.ndarray) -> np.ndarray:
-    """Whether motors (..., J) with this `torque` [N m] and `power` [W] are at their limits; None: no servo."""
+def most_torque(servos: Sequence[Servo | None], torque: np.ndarray, power: np.ndarray) -> np.ndarray:
+    """What motors (..., J) with this `torque` [N m] and `power` [W] could give at their speed; infinite: no limit."""
     limit, fastest = (
         np.array([np.inf if each is None else getattr(each, name) or np.inf for each in servos])
         for name in ("torque_limit", "speed_limit")
     )
     along = np.divide(power, np.abs(torque), out=np.zeros(torque.shape), where=torque != 0.0)  # rate along the torque
-    most = limit * np.clip(1.0 - along / fastest, 0.0, 1.0)
-    return np.asarray(np.isfinite(limit) & (np.abs(torque) >= AT_LIMIT * most))
+    left = np.clip(1.0 - along / fastest, 0.0, 1.0)
+    return np.asarray(np.multiply(limit, left, out=np.full(torque.shape, np.inf), where=np.isfinite(limit)))
+
+
+def at_limit(servos: Sequence[Servo | None], torque: np.ndarray, power: np.ndarray) -> np.ndarray:
+    """Whether motors (..., J) with this `torque` [N m] and `power` [W] are at their limits; None: no servo."""
+    return np.asarray(np.abs(torque) >= AT_LIMIT * most_torque(servos, torque, power))

@@ -27,7 +27,7 @@ SERIES = {  # entity: (name, colour) of each value
         ("nose", colours.ENDS),
         ("drag", colours.FORCE),
     ),
-    entities.POWER_BESIDES: (("flow", colours.FLOW), ("fins", colours.COURSE), ("dampers", colours.SPRINGS)),
+    entities.POWER_BESIDES: (("flow", colours.FLOW), ("fins", colours.FIN), ("dampers", colours.SPRINGS)),
     entities.KINETIC: (("body", colours.PLAIN), ("water", colours.FORCE)),
     entities.STORED: (("weight", colours.FLOW), ("springs", colours.SPRINGS)),
     entities.RESIDUAL: (("residual [J]", colours.PLAIN),),

@@ -32,6 +32,11 @@ LONGEST_NAME, LONGEST_TEXT = 60, 400  # characters
 MOST_WAITING = 100  # statuses, the earliest ones
 VOLATILE = ("warnings", "real_time_factor")  # keys that are shown only while they are fresh
 
+RINGS = (
+    "Rings are its **joints**: the whiter, the more of what it can does the motor give; thick and red at its limit. "
+    "The tab *robot* has all motors over time."
+)
+
 
 class Summary:
     """Collects the state of a run, and writes it as Markdown."""
@@ -129,14 +134,16 @@ class Summary:
         return shown
 
 
-def look_text(scales: Drawing) -> str:
-    """Markdown: what to look at, in three sentences, and the scales of the arrows."""
+def look_text(scales: Drawing, body: Body | None = None) -> str:
+    """Markdown: what to look at, a sentence each, and the scales of the arrows; with what `body` has of parts."""
     lines = [
         "The eel swims towards its eyes, along the white arrow: bends run from nose to tail and push the water back.",
         "Colour on its flanks is the torque **C3** that bends it sideways, red one way and blue the other, on the "
         "scale of the map at the upper right.",
         "Arrows are the **force of the water** (yellow; magenta at nose and tail), the violet ribbon what the tail "
         "leaves in the **wake**.",
+        *(["Pale plates are its **fins**, as large and turned as they are."] if body and body.fins else []),
+        *([RINGS] if body and body.joints else []),
         "",
         f"Lengths: {scales.load_scale:g} m for 1 N/m along the body, {scales.end_force_scale:g} m for 1 N at its ends.",
     ]

@@ -30,12 +30,13 @@ class DeliveryMonitor:
     A stream that the caller owns is not watched.
 
     Attributes:
+        stream: what it watches.
         failed: the file can no longer be written.
         disconnected: the viewer has ended.
     """
 
     def __init__(self, stream: rr.RecordingStream, destination: Destination, path: pathlib.Path | None) -> None:
-        self._stream, self._destination = stream, destination
+        self.stream, self._destination = stream, destination
         self._path: Any = path  # None where there is no file
         self._log_info, self._log_warning = destination.log_info, destination.log_warning
         self._watched = path is not None or destination.live
@@ -77,12 +78,12 @@ class DeliveryMonitor:
         A stream that blocks is detached instead.
         """
         if self.accepts_data:
-            self._destination.fit(self._stream, end)
+            self._destination.fit(self.stream, end)
         arrived = not self._watched or self.failed or self.disconnected or self._flush()
         if self._path is None and not arrived and not self.disconnected:
-            detach_blocked(self._stream)
+            detach_blocked(self.stream)
         elif not self.failed:
-            self._destination.close_recording(self._stream)
+            self._destination.close_recording(self.stream)
 
     def _check_growth(self, now: float) -> None:
         """Give the file up if it has not grown for `STALL_TIMEOUT`: a slow disk still grows it."""
@@ -95,7 +96,7 @@ class DeliveryMonitor:
     def _flush(self) -> bool:
         """Flush the stream; whether all data arrived within the time-out."""
         try:
-            self._stream.flush(timeout_sec=VIEWER_FLUSH_TIMEOUT if self._path is None else FILE_FLUSH_TIMEOUT)
+            self.stream.flush(timeout_sec=VIEWER_FLUSH_TIMEOUT if self._path is None else FILE_FLUSH_TIMEOUT)
         except RuntimeError as error:
             if "timed out" in str(error):
                 return False
@@ -108,8 +109,8 @@ class DeliveryMonitor:
 
     def _fail(self) -> None:
         self.failed = True
-        detach_blocked(self._stream)
-        self._destination.abort(self._stream)
+        detach_blocked(self.stream)
+        self._destination.abort(self.stream)
 
 
 def space_error(path: pathlib.Path, size: int) -> str:

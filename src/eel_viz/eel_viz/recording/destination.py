@@ -13,6 +13,7 @@ import pyarrow as pa
 import rerun as rr
 import rerun.blueprint as rrb
 
+from eel_viz.messages import Body
 from eel_viz.recording.rates import Rates
 from eel_viz.settings import Settings
 from eel_viz.views.blueprint import arrangement
@@ -34,6 +35,7 @@ class Destination(ABC):
     Attributes:
         incomplete: part of a recording is missing here.
         properties: of each recording: numbers and texts by group and name.
+        body: the swimmer's, of which tabs depend; None: not known yet.
     """
 
     def __init__(
@@ -43,6 +45,7 @@ class Destination(ABC):
         self.live = live
         self.incomplete = False
         self.properties: dict[str, dict[str, Any]] = {}
+        self.body: Body | None = None
         self._blueprint_sent = False  # sent once: later recordings keep the user's changes in the viewer
 
     @abstractmethod
@@ -75,12 +78,21 @@ class Destination(ABC):
     def blueprint(self, end: float = 0.0) -> rrb.Blueprint:
         """The arrangements of a recording that ends at `end` [s]; 0: it has not ended."""
         chosen = self.settings
-        look = Look(frames=chosen.frames, wake=chosen.wake, end=end)
+        parts = {name: bool(self.body and getattr(self.body, name)) for name in ("fins", "joints")}
+        look = Look(frames=chosen.frames, wake=chosen.wake, end=end, **parts)
         return arrangement(chosen.blueprint, live=self.live, comparison=bool(chosen.compare), look=look)
 
+    def adopt_body(self, stream: rr.RecordingStream | None, body: Body) -> None:
+        """Take the body, of which tabs depend: a viewer of the open `stream` gets them at once, a file at its end."""
+        before, self.body = self.body, body
+        changed = (body.fins, body.joints) != ((before.fins, before.joints) if before else ((), ()))
+        if self.live and stream is not None and changed:
+            stream.send_blueprint(self.blueprint(), make_active=True, make_default=True)
+
     def fit(self, stream: rr.RecordingStream, end: float) -> None:
-        """Fit the axes of a recording that ends at `end` [s], and what is repeated of it, unless it is short."""
-        if not self.live and end >= SHORT:
+        """Fit tabs, axes, and what is repeated of a recording that ends at `end` [s]; one that is short stays."""
+        has_parts = self.body is not None and bool(self.body.fins or self.body.joints)
+        if not self.live and (end >= SHORT or has_parts):
             stream.send_blueprint(self.blueprint(end), make_active=False, make_default=True)
 
     def close_recording(self, stream: rr.RecordingStream) -> None:

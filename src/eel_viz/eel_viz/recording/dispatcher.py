@@ -13,7 +13,7 @@ from typing import Any
 
 from eel_base.topics import SAMPLED
 
-from eel_viz import messages
+from eel_viz import messages, part_messages
 from eel_viz.messages import BadMessage, stamp_of
 from eel_viz.recording.destination import LogFunction
 from eel_viz.recording.recordings import Recordings
@@ -21,9 +21,10 @@ from eel_viz.recording.recordings import Recordings
 COARSE = 4  # stations, below which a backbone says little about the shape
 BODY_LIMIT = 2.0  # s after the first backbone within which the body is expected
 
-# What is shown: each topic is also the method of `Loggers` that draws it; here are its arguments after the stamp.
+# What is shown: each topic is also the method of `Loggers` or `Parts` that draws it; here are its arguments after the
+# stamp.
 READERS: dict[str, Callable[[Any], tuple[Any, ...]]] = {
-    "body": lambda message: (messages.read_body(message),),
+    "body": lambda message: (part_messages.read_body_with_parts(message),),
     "curvature_law": lambda message: (message.name,),
     "goal": lambda message: (messages.read_path(message),),
     "head_pose": lambda message: (messages.read_pose(message.pose),),
@@ -34,6 +35,9 @@ READERS: dict[str, Callable[[Any], tuple[Any, ...]]] = {
     "internal_wrench": lambda message: (messages.read_wrench(message),),
     "hydrodynamic_load": lambda message: (messages.read_load(message),),
     "flow_vectors": lambda message: messages.read_flow(message),
+    "fin_states": lambda message: (part_messages.read_joints(message),),
+    "joint_states": lambda message: (part_messages.read_joints(message),),
+    "motor_states": lambda message: (part_messages.read_motors(message),),
     "energy": lambda message: (messages.read_energy(message),),
     "diagnostics": lambda message: (messages.read_diagnostics(message),),
 }

@@ -26,6 +26,7 @@ from eel_viz.plots.series import Attitude, log_styles
 from eel_viz.plots.state_text import Summary, look_text
 from eel_viz.recording.destination import send_properties
 from eel_viz.recording.rates import Rates, Slots, period_of
+from eel_viz.robots.parts import Parts
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.swimmer_scene import SwimmerScene
 from eel_viz.settings import Settings
@@ -77,8 +78,10 @@ class Loggers:
         self._colour_limit = Limit(settings.colour_limit, grows=not settings.colour_limit)
         self._heat_map = HeatMap(stream, limit=self._colour_limit)
         log_styles(stream)
-        stream.log_static(entities.LOOK, rr.TextDocument(look_text(settings), media_type="text/markdown"))
-        self._targets: tuple[list[object], list[object]] = [self], []  # what draws this run, and the compared one
+        self._settings = settings
+        self._log_look(None)
+        parts = Parts(stream, self._due, numbers=self._number_period, drawings=self._drawing_period)
+        self._targets: tuple[list[object], list[object]] = [self, parts], []  # what draws this run, the compared one
         if settings.compare:
             comparison = Comparison(
                 stream,
@@ -112,6 +115,8 @@ class Loggers:
         """Log the geometry, valid at all times."""
         self._scene.body(body)
         self.summary.body = body
+        if body.fins or body.joints:
+            self._log_look(body)
         send_properties(self._recording, "body", {"length": float(body.length), "mass": float(body.mass)})
         values = {name: getattr(body, name) for name in ("length", "mass", "x", "half_width", "half_height")}
         self._stream.log_static(entities.BODY_NUMBERS, rr.DynamicArchetype("BodyGeometry", components=values))
@@ -247,6 +252,10 @@ class Loggers:
             self._stations[path] = x
             values = {"x": x, **values}
         self._stream.add_arrays(stamp, path, name, values)
+
+    def _log_look(self, body: Body | None) -> None:
+        text = rr.TextDocument(look_text(self._settings, body), media_type="text/markdown")
+        self._stream.log_static(entities.LOOK, text)
 
     def _event(self, stamp: int, text: str, level: str) -> None:
         self._stream.log(stamp, entities.LOG, rr.TextLog(text, level=level))

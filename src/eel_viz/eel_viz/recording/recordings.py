@@ -111,6 +111,10 @@ class Recordings:
         """
         self._lasting[topic, compared] = values
         at = self._newest.latest if stamp is None or stamp >= WALL_TIME else stamp
+        if topic == "body" and not compared:
+            for index, destination in enumerate(self._destinations):
+                opened = self._newest.opened.get(index)
+                destination.adopt_body(opened[1].stream if opened else None, *values)
         for loggers in self._newest.loggers:
             loggers.log(topic, at, *values, compared=compared)
 

@@ -10,6 +10,8 @@ from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker
 
 from eel_viz.messages import Backbone, Body, Load, Profiles
+from eel_viz.part_messages import JointStates
+from eel_viz.robots.fin_plates import FinPlates
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.load_vectors import ALONG, LoadVectors
 from eel_viz.scene3d.skin import Skin
@@ -53,6 +55,26 @@ class ForceMarkers:
         ends = _arrows(header, "end_force", self._vectors.ends(backbone, load), colours.ENDS, END_WIDTHS)
         gone = [Marker(header=header, ns="load", id=k, action=Marker.DELETE) for k in range(len(along), ALONG)]
         return [*along, *gone, *ends]
+
+
+class FinMarker:
+    """The fins of one `body` as triangles, both sides of them."""
+
+    def __init__(self, body: Body) -> None:
+        self._plates = FinPlates(body)
+        corners = self._plates.triangles
+        self._corners = np.concatenate([corners, corners[:, ::-1]]).ravel()
+
+    def markers(self, header: Header, backbone: Backbone, states: JointStates) -> list[Marker]:
+        """One marker; none where the `states` lack a fin."""
+        if not set(self._plates.names) <= set(states.names):
+            return []
+        vertices, _ = self._plates.place(backbone, states.angles_of(self._plates.names))
+        points = [_point(each) for each in vertices.tolist()]
+        marker = Marker(header=header, ns="fins", type=Marker.TRIANGLE_LIST, scale=Vector3(x=1.0, y=1.0, z=1.0))
+        marker.pose.orientation.w, marker.color = 1.0, _colour(colours.FIN)
+        marker.points = [points[corner] for corner in self._corners]
+        return [marker]
 
 
 def midline(header: Header, backbone: Backbone) -> Path:

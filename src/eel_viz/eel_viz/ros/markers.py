@@ -15,11 +15,13 @@ from eel_ros.parameters import declare_all, help_rows
 from eel_ros.qos import latched
 from eel_ros.run_node import run_node
 from nav_msgs.msg import Path
+from sensor_msgs.msg import JointState
 from visualization_msgs.msg import MarkerArray
 
 from eel_msgs.msg import Backbone, BodyGeometry, HydrodynamicLoad, InternalWrench
-from eel_viz.messages import BadMessage, read_backbone, read_body, read_load, read_wrench, stamp_of
-from eel_viz.ros.marker_messages import ForceMarkers, SkinMarker, midline
+from eel_viz.messages import BadMessage, read_backbone, read_load, read_wrench, stamp_of
+from eel_viz.part_messages import read_body_with_parts, read_joints
+from eel_viz.ros.marker_messages import FinMarker, ForceMarkers, SkinMarker, midline
 from eel_viz.settings import MarkerSettings
 
 NAME = "markers"
@@ -28,6 +30,7 @@ TOPICS = {
     "backbone": (Backbone, read_backbone),
     "internal_wrench": (InternalWrench, read_wrench),
     "hydrodynamic_load": (HydrodynamicLoad, read_load),
+    "fin_states": (JointState, read_joints),
 }
 DEPTH = 10  # samples that wait for the rest of their topics
 LOOK_PERIOD = 0.5  # s between two look-ups of the publishers
@@ -41,6 +44,7 @@ class Markers(ParameterNode):
         super().__init__(NAME)
         (self._settings,) = declare_all(self, MarkerSettings)
         self._skin: SkinMarker | None = None
+        self._fins: FinMarker | None = None
         self._forces = ForceMarkers(self._settings)
         self._waiting: OrderedDict[int, dict[str, Any]] = OrderedDict()  # stamp [ns]: messages by topic
         self._expected: set[str] = set(TOPICS)
@@ -63,7 +67,9 @@ class Markers(ParameterNode):
 
     def _receive_body(self, message: BodyGeometry) -> None:
         try:
-            self._skin = SkinMarker(read_body(message), self._settings.colour_limit)
+            body = read_body_with_parts(message)
+            self._skin = SkinMarker(body, self._settings.colour_limit)
+            self._fins = FinMarker(body) if body.fins else None
         except BadMessage as problem:
             self._warn_once("body", problem)
 
@@ -105,6 +111,8 @@ class Markers(ParameterNode):
                 markers.append(self._skin.marker(header, backbone, values.get("internal_wrench")))
             if load is not None:
                 markers.extend(self._forces.markers(header, backbone, load))
+            if self._fins is not None and "fin_states" in values:
+                markers.extend(self._fins.markers(header, backbone, values["fin_states"]))
             self._markers.publish(MarkerArray(markers=markers))
         if self._midline.get_subscription_count():
             self._midline.publish(midline(header, backbone))

@@ -17,8 +17,9 @@ ENDS = (222, 80, 150)  # magenta: of the water at nose and tail, and its power
 WAKE = (150, 120, 235)  # violet: what the tail leaves in it, and its power
 FLOW = (112, 190, 216)  # pale blue: of the water without the swimmer
 PATH = (150, 172, 192)  # blue-grey: of the head
-COURSE = (150, 232, 196)  # mint: way points of a goal; power of fins
+COURSE = (150, 232, 196)  # mint: way points of a goal
 SPRINGS = (176, 132, 96)  # brown: springs and dampers of joints
+FIN = (186, 214, 130)  # lime: fins, and their power
 OTHER = (244, 244, 240)  # white: the run that is laid over this one
 PLAIN = (190, 196, 202)  # a quantity that is alone in its plot
 GREY = (150, 155, 160)  # no data
@@ -54,6 +55,8 @@ DIVERGING = (
     .round()
     .astype(np.uint8)
 )
+# of what a motor gives of what it can: from grey to white; the last entry, red, is its limit
+LOADS = np.concatenate([np.linspace((84, 92, 102), (246, 246, 242), 255), [ACTUATORS]]).round().astype(np.uint8)
 
 
 def dim(colour: Colour, factor: float = 0.45) -> Colour:

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The arrangements of a recording, as functions without data. Each fits a window of 1280 by 720 pixels.
 
-A recording carries all of them as tabs: those of `ARRANGEMENTS`, and `compare` where another run is laid over this one.
+A recording carries all of them as tabs: those of `ARRANGEMENTS`, `robot` where the body has joints, and `compare` where
+another run is laid over this one.
 What a view shows is logged by recording/loggers.py under a path of entities.py.
 """
 
@@ -19,6 +20,7 @@ from eel_viz.views.views import (
     Look,
     following_view,
     heat_map_view,
+    load_map_view,
     path_view,
     profile_view,
     series_view,
@@ -27,7 +29,8 @@ from eel_viz.views.views import (
 
 SETTLED = 0.4  # of a run: from here on it is repeated, for the swim is settled by then
 POWER_SHOWN = 4.0  # s: duration of the last power that is shown, so that its scale fits the swim and not its start
-POWER = "Power [W]: actuators red, drag yellow, wake violet, nose magenta, flow blue, fins mint"
+POWER = "Power [W]: actuators red, drag yellow, wake violet, nose magenta, flow blue, fins lime"
+HARDEST = "Motor nearest to its limit [N m]: torque red, limit white"
 XYZ = "x orange, y green, z blue"
 
 
@@ -63,6 +66,25 @@ def torques(look: Look) -> rrb.Container:
     )
 
 
+def robot(look: Look) -> rrb.Container:
+    """The motors: how hard they work, the one nearest to its limit, power and work."""
+    return rrb.Horizontal(
+        rrb.Vertical(following_view(look), texts(look), row_shares=[2.5, 1.0]),
+        rrb.Vertical(
+            load_map_view(),
+            series_view(look, HARDEST, entities.HARDEST_MOTOR),
+            series_view(look, "Motors at their limits", entities.SATURATED),
+            rrb.Horizontal(
+                series_view(look, "Power of all motors [W]", entities.MOTOR_POWER, last=POWER_SHOWN),
+                series_view(look, "Work of all motors [J]", entities.MOTOR_WORK),
+            ),
+            row_shares=[1.1, 1.1, 0.7, 1.1],
+        ),
+        column_shares=[1.15, 1.0],
+        name="robot",
+    )
+
+
 def motion(look: Look) -> rrb.Container:
     """Path, attitude and velocities of the head."""
     return rrb.Horizontal(
@@ -80,6 +102,7 @@ def motion(look: Look) -> rrb.Container:
             series_view(look, "Head [deg]: heading blue, pitch green, roll orange", entities.ATTITUDE),
             series_view(look, f"Velocity of the head in base_link [m/s]: {XYZ}", entities.LINEAR),
             series_view(look, f"Angular velocity in base_link [rad/s]: {XYZ}", entities.ANGULAR),
+            *([series_view(look, "Angles of the fins [deg]", entities.FIN_ANGLES)] if look.fins else []),
         ),
         column_shares=[1.3, 1.0],
         name="motion",
@@ -119,7 +142,7 @@ def compare(look: Look) -> rrb.Container:
 
 
 ARRANGEMENTS: dict[str, Callable[[Look], rrb.Container]] = dict(
-    zip(BLUEPRINTS, (overview, torques, motion, swimmer, compare), strict=True)
+    zip(BLUEPRINTS, (overview, torques, motion, robot, swimmer, compare), strict=True)
 )
 
 
@@ -133,7 +156,8 @@ def arrangement(
     """
     if first not in ARRANGEMENTS:
         raise ValueError(not_one_of("blueprint", first, ARRANGEMENTS))
-    names = [name for name in ARRANGEMENTS if name != "compare" or comparison or first == "compare"]
+    asked_for = {"compare": comparison, "robot": look.joints}
+    names = [name for name in ARRANGEMENTS if name == first or asked_for.get(name, True)]
     swim = (rr.encodings.TimeInt(seconds=seconds) for seconds in (SETTLED * look.end, look.end))
     return rrb.Blueprint(
         rrb.Tabs(*(ARRANGEMENTS[name](look) for name in names), active_tab=names.index(first)),

@@ -22,11 +22,16 @@ WAKE = entities.WAKE, entities.WAKE_LEGEND
 
 @dataclass(frozen=True, kw_only=True)
 class Look:
-    """What is shown of `frames`, the axes of head and tail, and of the `wake`; the `end` of the run [s], 0: unknown."""
+    """What is shown of `frames`, the axes of head and tail, and of the `wake`; the `end` of the run [s], 0: unknown.
+
+    fins, joints: whether the body has some.
+    """
 
     frames: bool = False
     wake: bool = True
     end: float = 0.0
+    fins: bool = False
+    joints: bool = False
 
     @property
     def hidden(self) -> tuple[str, ...]:
@@ -93,6 +98,12 @@ def heat_map_view() -> rrb.Spatial2DView:
         heat_map.BOUNDS_X,
         heat_map.BOUNDS_Y,
     )
+
+
+def load_map_view() -> rrb.Spatial2DView:
+    """The loads of the motors over time."""
+    name = "Torque of each motor over its limit, in time: red at the limit"
+    return _drawing(entities.LOAD_MAP, name, heat_map.BOUNDS_X, heat_map.BOUNDS_Y)
 
 
 def _drawing(root: str, name: str, x: tuple[float, float], y: tuple[float, float]) -> rrb.Spatial2DView:

@@ -3,10 +3,14 @@
 
 from collections.abc import Iterator
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 from eel_base.topics import ENERGY_FIELDS
 from eel_model.flow.lattice import lattice_around, velocities_at
+from eel_model.fins.fins import SIDES
+from eel_model.robot.actuators import most_torque
+from eel_model.robot.part import AXES
 
 SECOND = 1_000_000_000  # ns
 
@@ -38,9 +42,27 @@ def outline(body, x: np.ndarray) -> dict[str, np.ndarray]:
     }
 
 
+def fields_of_fins(fins) -> list[dict[str, Any]]:
+    """The fields of a FinGeometry of each of the `fins`."""
+    own = ("name", "station", "area", "span", "dihedral")
+    return [{"side": int(SIDES[fin.side]), **{name: getattr(fin, name) for name in own}} for fin in fins]
+
+
+def fields_of_joints(robot) -> list[dict[str, Any]]:
+    """The fields of a JointGeometry of each joint of the `robot`; none without one."""
+    joints = () if robot is None else robot.joints
+    return [{"name": joint.name, "station": joint.position, "axis": AXES[joint.axis][0] + 1} for joint in joints]
+
+
 def _body_of(run) -> SimpleNamespace:
     """The body as a BodyGeometry."""
-    return SimpleNamespace(length=float(run.body.length), mass=float(run.body_mass), **outline(run.body, run.x))
+    return SimpleNamespace(
+        length=float(run.body.length),
+        mass=float(run.body_mass),
+        **outline(run.body, run.x),
+        fins=[SimpleNamespace(**fields) for fields in fields_of_fins(run.fins)],
+        joints=[SimpleNamespace(**fields) for fields in fields_of_joints(run.robot)],
+    )
 
 
 def _sample(run, k: int) -> dict[str, dict]:
@@ -86,6 +108,14 @@ def _sample(run, k: int) -> dict[str, dict]:
         points = lattice_around(run.backbone[k].mean(axis=0), run.body.length, run.flow)
         velocity = velocities_at(run.flow, points, run.time[k]) + run.scene.current
         found["flow_vectors"] = {"position": points.ravel(), "velocity": velocity.ravel()}
+    if run.fin_angle is not None:
+        found["fin_states"] = {"name": [fin.name for fin in run.fins], "position": run.fin_angle[k]}
+    if run.joint_angle is not None and run.robot.joints:
+        rows = {"position": run.joint_angle[k], "velocity": run.joint_rate[k], "effort": run.joint_torque[k]}
+        found["joint_states"] = {"name": [joint.name for joint in run.robot.joints], **rows}
+        torque, power = run.motor_torque[k], run.motor_power[k]
+        limit = most_torque(run.robot.servos, torque, power)
+        found["motor_states"] = {"torque": torque, "limit": limit, "power": power}
     if run.energy is not None:
         found["energy"] = {name: float(run.energy[name][k]) for name in ENERGY_FIELDS}
     return found

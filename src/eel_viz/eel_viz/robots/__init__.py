@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What robots have and eels do not: fins, joints and motors."""

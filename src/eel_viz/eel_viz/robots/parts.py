@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Draws fins, joints and motors of one swimmer, by the methods of their topics; of a body without them nothing."""
+
+from collections.abc import Callable
+
+import numpy as np
+import rerun as rr
+
+from eel_viz import entities
+from eel_viz.batched_stream import BatchedStream
+from eel_viz.messages import Backbone, Body
+from eel_viz.part_messages import JointStates, Motors
+from eel_viz.robots.fin_plates import FinPlates
+from eel_viz.robots.joint_rings import JointRings
+from eel_viz.robots.motor_plots import AT_LIMIT, MotorPlots, load_colours, loads_of
+from eel_viz.same_stamp import SameStamp
+from eel_viz.scene3d import colours
+
+THIN, THICK = -1.6, -3.2  # pixels, as Rerun counts them: lines of a ring, and at the limit
+
+
+class Parts:
+    """Draws into `stream`. due(what, stamp, period): whether `what` is to be logged at `stamp` [ns].
+
+    numbers, drawings: the periods of numbers and drawings [ns].
+    """
+
+    def __init__(
+        self, stream: BatchedStream, due: Callable[[str, int, int], bool], *, numbers: int, drawings: int
+    ) -> None:
+        self._stream, self._due, self._numbers, self._drawings = stream, due, numbers, drawings
+        self._plates: FinPlates | None = None
+        self._rings: JointRings | None = None
+        self._motors: MotorPlots | None = None
+        self._joints = 0
+        self._turned: SameStamp[Backbone, JointStates] = SameStamp(self._draw_fins)
+        self._driven: SameStamp[Backbone, Motors] = SameStamp(self._draw_rings)
+        self._names: dict[str, tuple[str, ...]] = {}
+
+    def body(self, stamp: int, body: Body) -> None:
+        """Take what the body has of fins and joints."""
+        self._joints = len(body.joints)
+        if body.fins:
+            self._plates = FinPlates(body)
+            plates = rr.Mesh3D.from_fields(triangle_indices=self._plates.triangles, albedo_factor=colours.FIN)
+            self._stream.log_static(entities.FINS, plates)
+            self._stream.log_static(
+                entities.FIN_ANGLES, rr.SeriesLines(names=self._plates.names, widths=[1.5] * len(body.fins))
+            )
+        if body.joints:
+            self._rings = JointRings(body)
+            self._motors = self._motors or MotorPlots(self._stream, self._due, self._numbers)
+
+    def backbone(self, stamp: int, backbone: Backbone) -> None:
+        """Take the line that fins and joints lie on."""
+        if self._plates is not None and self._due("fins", stamp, self._drawings):
+            self._turned.first(stamp, backbone)
+        if self._rings is not None and self._due("rings", stamp, self._drawings):
+            self._driven.first(stamp, backbone)
+
+    def fin_states(self, stamp: int, states: JointStates) -> None:
+        """Log and draw the angles of the fins."""
+        self._log_states(stamp, entities.FIN_NUMBERS, states)
+        if self._plates is not None and set(self._plates.names) <= set(states.names):
+            self._turned.second(stamp, states)
+            if self._due("fin angles", stamp, self._numbers):
+                angles = np.degrees(states.angles_of(self._plates.names))
+                self._stream.add_scalars(stamp, entities.FIN_ANGLES, angles)
+
+    def joint_states(self, stamp: int, states: JointStates) -> None:
+        """Log angles, rates and torques of the joints."""
+        self._log_states(stamp, entities.JOINT_NUMBERS, states)
+
+    def motor_states(self, stamp: int, motors: Motors) -> None:
+        """Log and draw torques, limits and powers of the motors."""
+        if self._due("motor numbers", stamp, self._numbers):
+            values = {name: getattr(motors, name) for name in ("torque", "limit", "power")}
+            self._stream.add_arrays(stamp, entities.MOTOR_NUMBERS, "MotorStates", values)
+        if self._motors is not None and len(motors.torque) == self._joints:
+            self._motors.draw(stamp, motors)
+            self._driven.second(stamp, motors)
+
+    def _log_states(self, stamp: int, path: str, states: JointStates) -> None:
+        if self._names.get(path) != states.names:
+            self._names[path] = states.names
+            names = rr.DynamicArchetype("JointState", components={"name": list(states.names)})
+            self._stream.log(stamp, path, names)
+        if self._due(path, stamp, self._numbers):
+            rows = {"position": states.angle, "velocity": states.rate, "effort": states.torque}
+            known = {name: row for name, row in rows.items() if row is not None}
+            self._stream.add_arrays(stamp, path, "JointState", known)
+
+    def _draw_fins(self, stamp: int, backbone: Backbone, states: JointStates) -> None:
+        assert self._plates is not None
+        vertices, normals = self._plates.place(backbone, states.angles_of(self._plates.names))
+        self._stream.add_row(stamp, entities.FINS, rr.Mesh3D, vertex_positions=vertices, vertex_normals=normals)
+
+    def _draw_rings(self, stamp: int, backbone: Backbone, motors: Motors) -> None:
+        assert self._rings is not None
+        loads = loads_of(motors)
+        self._stream.add_row(
+            stamp,
+            entities.JOINTS,
+            rr.LineStrips3D,
+            strips=self._rings.place(backbone).astype(np.float32),
+            colors=colours.LOADS[load_colours(loads)],
+            radii=np.where(loads >= AT_LIMIT, THICK, THIN).astype(np.float32),
+        )
