@@ -210,7 +210,7 @@ def read_load(message: Any) -> Load:
         tail=_vector("tail_force", message.tail_force),
         nose=_vector("nose_force", message.nose_force),
         wake=None if wake is None else _vector("wake_momentum_rate", wake),
-        fins=_finite("fin_force", np.asarray(getattr(message, "fin_force", ()), dtype=float)),
+        fins=finite("fin_force", np.asarray(getattr(message, "fin_force", ()), dtype=float)),
     )
 
 

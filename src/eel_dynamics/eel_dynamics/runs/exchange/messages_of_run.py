@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 from eel_base.topics import ENERGY_FIELDS
-from eel_model.flow.lattice import lattice_around, velocities_at
 from eel_model.fins.fins import SIDES
+from eel_model.flow.lattice import lattice_around, velocities_at
 from eel_model.robot.actuators import most_torque
 from eel_model.robot.part import AXES
 
