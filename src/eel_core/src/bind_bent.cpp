@@ -126,7 +126,7 @@ class PyBentMarch : public BoundMarch<BentMarch> {
             rows_into(rows, "rows", true);
         const Profiles profiles(instants.size(), march_.swimmer().stations, wrench, load);
         into.check_size(profiles.begin[Profiles::quantities], "whole");
-        works_into.check_size(std::tuple_size_v<Works> * instants.size(), "works");
+        works_into.check_size(std::tuple_size_v<WorkDone> * instants.size(), "works");
         rows_into.check_size(march_.row().size() * instants.size(), "rows");
         const Driven in_use(*this);
         std::size_t done = 0;

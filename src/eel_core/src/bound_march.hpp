@@ -77,7 +77,7 @@ class BoundMarch {
     }
     double time() const { return march_.time(); }
     py::list state() const { return list_of_state(march_.state()); }
-    py::list works() const { return list_of(std::span(march_.works()).first(std::tuple_size_v<Works>)); }
+    py::list works() const { return list_of(std::span(march_.works()).first(std::tuple_size_v<WorkDone>)); }
     py::tuple counts() const
     {
         const Counts counts = march_.counts();

@@ -169,7 +169,7 @@ class PyMarch : public BoundMarch<March> {
         const Numbers instants(times, "times"), into(whole, "whole", true), works_into(works, "works", true);
         const Profiles profiles(instants.size(), march_.swimmer().stations, wrench, load, march_.swimmer().fins.size());
         into.check_size(profiles.begin[Profiles::quantities], "whole");
-        works_into.check_size(std::tuple_size_v<Works> * instants.size(), "works");
+        works_into.check_size(std::tuple_size_v<WorkDone> * instants.size(), "works");
         const Driven in_use(*this);
         std::size_t done = 0;
         Status status = Status::marched;

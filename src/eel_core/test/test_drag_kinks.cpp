@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "eel_core/drag_kinks.hpp"
+#include "eel_core/loads/drag_kinks.hpp"
 
 using namespace eel_core;
 

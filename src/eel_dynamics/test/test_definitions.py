@@ -208,7 +208,6 @@ def test_demand_on_motors(measured):
             assert motors.rms[key] == pytest.approx(
                 np.sqrt(np.mean(values**2, axis=0)), rel=1e-3, abs=1e-4 * np.abs(values).max()
             )
-        assert np.array_equal(motors.torque_speed, np.stack([motors.speed, motors.torque], axis=2))
     summed = sum(np.sum(wanted.torque[..., k] * wanted.speed[..., k], axis=1) for k in (1, 2))
     measured("joints' summed power", np.abs(got.power - summed) / np.abs(summed).max(), 1e-4)
     assert np.array_equal(got.power_difference, got.power - got.continuous_power)

@@ -13,8 +13,8 @@ Without both, the square of the roll's frequency is 7 % too high at h = 10 mm on
 falling gait at 10 mm is 14 mm elsewhere after 4 s. It is fit where m h^2 << J1 + J_f1 and a << g roll.
 
 `weight` is the model of that, and of more: gravity acts on the body's own mass per length, at its
-`centre_of_mass_offset` below each section's centre, and buoyancy on the volume (eel_core/weight.hpp). Such bodies sink,
-trim, and come to rest. Without it, `density` and `mass_per_length` are inertia alone.
+`centre_of_mass_offset` below each section's centre, and buoyancy on the volume (eel_core/loads/weight.hpp). Such bodies
+sink, trim, and come to rest. Without it, `density` and `mass_per_length` are inertia alone.
 
 Without `wake` each section keeps its own water. The balance of the strips (50) then leaves out the terms d/dX of
 V1 sigma_f and of V1 p_f - T_f t1. It also leaves out their sum at the tail: the momentum flux and the pressure of eq.

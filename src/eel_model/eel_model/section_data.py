@@ -10,7 +10,7 @@ The printed eq. (37) exchanges the half-axes a and b in M_f. This is corrected h
 moves along one axis is proportional to the square of the other half-axis (Lamb; section 4.3 of the paper). The scene's
 `added_mass="printed"` keeps the printed form.
 
-The drag coefficients of the rows `drag2` to `turbulent` become loads in `resistive_load`, eel_core/drag.hpp.
+The drag coefficients of the rows `drag2` to `turbulent` become loads in `resistive_load`, eel_core/loads/drag.hpp.
 """
 
 from functools import lru_cache

@@ -9,12 +9,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from eel_model.robot.compiled import HINGE, mode_table
-from eel_model.robot.inertia import effective_inertia
 from eel_model.robot.ready import READY
 from scipy.integrate import quad
 
 from eel_gaits import Law, Term, falling
-from eel_model import Body, Joint, Muscle, PassiveTail, Robot, Scene, Servo, Torque
+from eel_model import Body, Joint, Muscle, PassiveTail, Robot, Servo, Torque
 
 BODY = Body.boyer2010()
 NAN, INF = float("nan"), float("inf")
@@ -121,14 +120,6 @@ def test_what_does_not_fit_the_body_is_refused(parts, told):
     assert told in str(refused.value)
 
 
-def test_modes_that_are_not_independent_are_named():
-    robot = Robot([PassiveTail(0.5, 1.0, modes=8), PassiveTail(0.5 + 1e-7, 1.0, modes=8, name="twin"), Joint(0.2)])
-    with pytest.raises(
-        ValueError, match=r"robot modes of '(tail|twin)'.* must be independent .*their matrix is singular"
-    ):
-        effective_inertia(mode_table(robot, BODY), BODY, Scene())
-
-
 def test_robots_are_equal_by_value_and_survive_copies():
     for name in READY:
         robot = Robot.named(name)
@@ -228,20 +219,3 @@ def test_the_moment_of_a_muscle_is_projected_on_its_modes():
     for row, mode in zip(muscle.projection, muscle.modes, strict=True):
         exact = quad(lambda x, mode=mode: table.shape(np.array([x]))[mode, 0] * np.sin(3.0 * x), 0.3, 0.9)[0]
         assert row @ moment == pytest.approx(exact, abs=1e-13)
-
-
-def test_effective_inertia_is_that_of_two_rigid_halves():
-    """A narrow joint in the middle of a body with an ellipse's constant section, without water: two rods."""
-    a, b, rho = 0.03, 0.01, 1000.0
-    body = Body(
-        length=1.0,
-        half_width=lambda x: b * np.minimum(1.0, np.sqrt(x / 1e-4)),
-        half_height=lambda x: a * np.minimum(1.0, np.sqrt(x / 1e-4)),
-        kinks=(1e-4,),
-    )
-    table = mode_table(Robot([Joint(0.5, width=1e-4)]), body)
-    found = effective_inertia(table, body, Scene(planar=True, reactive=False))[0, 0]
-    mass = rho * np.pi * a * b * 0.5
-    about_end = mass * 0.5**2 / 3.0 + mass * b**2 / 4.0
-    # two equal rods that turn by -q/2 and q/2 about the joint, which moves by their common momentum: I_end/2 - m l^2/8
-    assert found == pytest.approx(0.5 * about_end - 0.5 * mass * (0.5 * 0.5) ** 2, rel=1e-3)

@@ -6,40 +6,40 @@
 // Both are linear in the head's acceleration, which makes the wrench on the whole body vanish.
 #pragma once
 
-#include "eel_core/drag_kinks.hpp"
-#include "eel_core/loads.hpp"
+#include "eel_core/loads/drag_kinks.hpp"
+#include "eel_core/loads/tail_and_nose.hpp"
+#include "eel_core/loads/weight.hpp"
 #include "eel_core/momentum.hpp"
-#include "eel_core/weight.hpp"
 
 namespace eel_core {
 
-// alpha' of the sections of a block.
-inline Vector3<Lanes> alpha_slope(const LawOnGrid& law, const Workspace<Space>& work, std::size_t k)
+// alpha', the slope of the angular acceleration along X, of the sections of a block.
+inline Vector3<Lanes> angular_acceleration_slope(const LawOnGrid& law, const Workspace<Space>& work, std::size_t k)
 {
     const auto frame = work.frame[k];
     return turning(frame, law.combine_both(law.tables->node, work.factor, 2, k)) +
            cross(work.omega[k], turning(frame, work.curvature_rate[k]));
 }
-// acc' of the sections of a block.
+// acc', that of the linear acceleration.
 template <class M>
-Vector<M, Lanes> acceleration_slope(const Workspace<M>& work, std::size_t k)
+Vector<M, Lanes> linear_acceleration_slope(const Workspace<M>& work, std::size_t k)
 {
     const auto t1 = work.frame[k].t1();
     const auto omega = work.omega[k];
-    return cross(work.alpha[k], t1) + cross(omega, cross(omega, t1));
+    return cross(work.angular_acceleration[k], t1) + cross(omega, cross(omega, t1));
 }
 
-// `alpha` where the head has no acceleration.
+// Angular accelerations where the head has none.
 inline void set_turning_acceleration(const Swimmer& swimmer, const LawOnGrid& law, Workspace<Space>& work)
 {
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
-        work.integrand.store(k, {alpha_slope(law, work, k), Vector3<Lanes>{}});
-    swimmer.grid.from_nose.integrate(work.integrand, work.alpha);
+        work.integrand.store(k, {angular_acceleration_slope(law, work, k), Vector3<Lanes>{}});
+    swimmer.grid.from_nose.integrate(work.integrand, work.angular_acceleration);
 }
 inline void set_turning_acceleration(const Swimmer& swimmer, const LawOnGrid& law, Workspace<Plane>& work)
 {
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-        work.alpha.store(k, law.combine(law.tables->angle, LawOnGrid::yaw, work.factor, 2, k)[0]);
+        work.angular_acceleration.store(k, law.combine(law.tables->angle, LawOnGrid::yaw, work.factor, 2, k)[0]);
         work.curvature_rate.store(k, {0.0, law.combine(law.tables->node, LawOnGrid::yaw, work.factor, 1, k)[0]});
     }
 }
@@ -51,9 +51,9 @@ template <class M>
 Wrench<M, Lanes> inertial_wrench(const Section<Lanes>& section, const Workspace<M>& work, std::size_t k)
 {
     const auto frame = work.frame[k];
-    const Angular<M, Lanes> omega = frame.local(work.omega[k]), omega_rate = frame.local(work.alpha[k]);
+    const Angular<M, Lanes> omega = frame.local(work.omega[k]), omega_rate = frame.local(work.angular_acceleration[k]);
     const Vector<M, Lanes> v = frame.local(work.velocity[k]);
-    const Vector<M, Lanes> v_rate = frame.local(work.acceleration[k]) - cross(omega, v);
+    const Vector<M, Lanes> v_rate = frame.local(work.linear_acceleration[k]) - cross(omega, v);
     const Vector<M, Lanes> momentum = section.linear_momentum(v);
     const Wrench<M, Lanes> taken{
         section.angular_momentum(omega_rate) + cross(omega, section.angular_momentum(omega)) + cross(v, momentum),
@@ -66,8 +66,8 @@ Wrench<M, Lanes> inertial_wrench(const Section<Lanes>& section, const Workspace<
 inline Wrench<Space, Lanes> wrench_of_offset(Lanes lever, const Workspace<Space>& work, std::size_t k)
 {
     const Vector3<Lanes> moment = mass_moment(lever, work.frame[k].axis3), omega = work.omega[k];
-    const Vector3<Lanes> force = cross(work.alpha[k], moment) + cross(omega, cross(omega, moment));
-    return {cross(work.position[k], force) + cross(moment, work.acceleration[k]), force};
+    const Vector3<Lanes> force = cross(work.angular_acceleration[k], moment) + cross(omega, cross(omega, moment));
+    return {cross(work.position[k], force) + cross(moment, work.linear_acceleration[k]), force};
 }
 
 // Adds it to the `density` of the balance. Returns its integral over the body.
@@ -116,8 +116,8 @@ void find_shape_accelerations(const Swimmer& swimmer, const LawOnGrid& law, Work
 {
     set_turning_acceleration(swimmer, law, work);
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
-        work.integrand.store(k, {work.alpha[k], acceleration_slope(work, k)});
-    swimmer.grid.from_nose.integrate(work.integrand, work.acceleration, Components<Angular<M, Lanes>>::count);
+        work.integrand.store(k, {work.angular_acceleration[k], linear_acceleration_slope(work, k)});
+    swimmer.grid.from_nose.integrate(work.integrand, work.linear_acceleration, Components<Angular<M, Lanes>>::count);
 }
 
 // Acceleration of the head and of the sections, and the density of the balance: eq. (60) in accelerations. `work` holds
@@ -139,8 +139,8 @@ void find_accelerations(const Swimmer& swimmer, const LawOnGrid& law, Workspace<
     work.inertia.solve(head);
     work.head_acceleration = Components<Twist<M, double>>::make([&](std::size_t k) { return head[k]; });
 
-    add_head_motion(swimmer, work.head_acceleration, work.position, work.alpha, work.acceleration, work.alpha,
-                    work.acceleration);
+    add_head_motion(swimmer, work.head_acceleration, work.position, work.angular_acceleration, work.linear_acceleration,
+                    work.angular_acceleration, work.linear_acceleration);
     work.balance = set_inertial_density(swimmer, work) - work.drag;
     if (swimmer.resistive) add_resistance(swimmer, work);
     if (work.flowing) add_wrench_of_flow(swimmer, of_flow, work);

@@ -4,10 +4,10 @@
 //     momentum = I_o twist + momentum of the change of shape
 #pragma once
 
-#include "eel_core/fins.hpp"
 #include "eel_core/kinematics.hpp"
-#include "eel_core/moving_water.hpp"
-#include "eel_core/weight.hpp"
+#include "eel_core/loads/fins.hpp"
+#include "eel_core/loads/moving_water.hpp"
+#include "eel_core/loads/weight.hpp"
 
 namespace eel_core {
 

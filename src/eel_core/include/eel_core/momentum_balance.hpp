@@ -12,7 +12,7 @@
 // in components along the head's present axes, of vectors of the world; (T, F): wake, drag and weight.
 #pragma once
 
-#include "eel_core/loads.hpp"
+#include "eel_core/loads/tail_and_nose.hpp"
 #include "eel_core/momentum.hpp"
 
 namespace eel_core {

@@ -31,11 +31,6 @@ class Motors:
         return self.torque * self.speed
 
     @property
-    def torque_speed(self) -> np.ndarray:
-        """(T, n, 2) the points (speed [rad/s], torque [N m]) that each motor runs through: its load on a data sheet."""
-        return np.stack((self.speed, self.torque), axis=2)
-
-    @property
     def rms(self) -> dict[str, np.ndarray]:
         """Roots of the mean squares over the samples (n,), of the `QUANTITIES`."""
         return {name: np.sqrt(np.mean(getattr(self, name) ** 2, axis=0)) for name in QUANTITIES}

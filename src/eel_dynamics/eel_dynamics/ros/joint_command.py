@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Receives the commands of a robot's joints (sensor_msgs/JointState), and checks each.
+"""Receives the commands of a robot's joints and of fins (sensor_msgs/JointState), checks each, and queues it.
 
 A joint is driven by position, velocity or effort, whichever the parameter `command_interfaces` says; the other fields
 of the message are empty, or NaN for the joint.
@@ -21,6 +21,7 @@ from eel_dynamics.ros.messages import stamped
 TOPIC = "joint_commands"
 INTERFACES = ("position", "velocity", "effort")
 MOST_JOINTS = 1000  # of one message
+FIN_DEPTH = 10  # commands
 
 
 class JointCommand(NamedTuple):
@@ -80,3 +81,30 @@ class JointCommandSubscription:
             self._report.event("commands", f"joint command refused: {error}", ERROR, differing=True)
         else:
             self._run.requests.put(self._run.take_command, command)
+
+
+def fin_command_from_message(message: JointState) -> dict[str, float]:
+    """Angles [rad] by the names of fins, of a JointState. `ValueError` for as many positions as names."""
+    if len(message.name) != len(message.position) or not message.name:
+        raise ValueError(
+            f"fin_command must have a position for each name, one or more, got {len(message.name)} names and "
+            f"{len(message.position)} positions"
+        )
+    return dict(zip(message.name, message.position, strict=True))
+
+
+class FinSubscription:
+    """The subscription of `node` to fin_command, for a `run`: commands act between two samples."""
+
+    def __init__(self, node: ServedNode, run: RunLoop, report: Report) -> None:
+        self._run, self._report = run, report
+        node.create_subscription(JointState, "fin_command", self.receive, FIN_DEPTH)
+
+    def receive(self, message: JointState) -> None:
+        """Pass on the command in the `message`."""
+        try:
+            commands = fin_command_from_message(message)
+        except ValueError as error:
+            self._report.event("fin command", f"fin_command refused: {error}", ERROR)
+        else:
+            self._run.requests.put(self._run.command_fins, commands)

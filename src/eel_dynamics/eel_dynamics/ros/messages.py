@@ -275,16 +275,6 @@ def body_message(simulation: Simulation, section_frame: str) -> msg.BodyGeometry
     return message
 
 
-def fin_command_from_message(message: Any) -> dict[str, float]:
-    """Angles [rad] by the names of fins, of a JointState. `ValueError` for as many positions as names."""
-    if len(message.name) != len(message.position) or not message.name:
-        raise ValueError(
-            f"fin_command must have a position for each name, one or more, got {len(message.name)} names and "
-            f"{len(message.position)} positions"
-        )
-    return dict(zip(message.name, message.position, strict=True))
-
-
 def law_name(data: bytes) -> str:
     """The name in a serialised CurvatureLaw. `EOFError` if the message ends before its terms."""
     beginning = Beginning(data)

@@ -35,8 +35,7 @@ from tf2_msgs.msg import TFMessage
 from eel_dynamics.ros.current_subscription import CurrentSubscription
 from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration
-from eel_dynamics.ros.fin_subscription import FinSubscription
-from eel_dynamics.ros.joint_command import JointCommandSubscription, interfaces_of
+from eel_dynamics.ros.joint_command import FinSubscription, JointCommandSubscription, interfaces_of
 from eel_dynamics.ros.law_subscription import LawSubscription
 from eel_dynamics.ros.loop.run_loop import RunLoop
 from eel_dynamics.ros.messages import diagnostic_array, root_message, state_from_message, time_message, values_of_status

@@ -14,7 +14,6 @@ from dataclasses import replace
 import numpy as np
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.flow.flow import Flow
 
 from eel_dynamics.accuracy.error_estimate import (
     LEAST_SAMPLES,
@@ -25,10 +24,8 @@ from eel_dynamics.accuracy.error_estimate import (
     least_torque,
 )
 from eel_dynamics.accuracy.grid_settings import ShapeNeeds
-from eel_dynamics.curvature.curvature_samples import CurvatureSample
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Snapshot
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 COMPARED_EVERY = 0.1  # s of simulated time between two comparisons
@@ -38,7 +35,7 @@ FAILURES = SimulationStopped, ValueError, ArithmeticError, MemoryError
 
 
 class ErrorMeter:
-    """The estimate of the error of a `march` with this `setup`.
+    """The estimate of the error of a `march`.
 
     Attributes:
         measured_since: [s], start of the estimate. The companion begins again from the present state when the
@@ -46,9 +43,9 @@ class ErrorMeter:
         lost_at: [s], the first such time; None if there was none.
     """
 
-    def __init__(self, march: March, setup: SimulationSetup):
-        self._setup, self._companion = setup, None  # type: SimulationSetup, March | None
-        self._length = setup.body.length  # m
+    def __init__(self, march: March):
+        self._companion: March | None = None
+        self._length = march.setup.body.length  # m
         self.lost_at: float | None = None
         self.measured_since = self._compared_at = march.time
         self._last_position: np.ndarray | None = None
@@ -61,7 +58,7 @@ class ErrorMeter:
 
     def restart(self, march: March):
         """Measure a `march` that has been reset."""
-        self.lost_at, self._setup = None, replace(self._setup, flow=march.setup.flow)
+        self.lost_at = None
         self.begin_again(march)
 
     def begin_again(self, march: March, growth_rate: float = 0.0):
@@ -71,10 +68,10 @@ class ErrorMeter:
         self._path, self._torque_distance, self._apart = 0.0, 0.0, np.zeros(4)
         self._distances.clear()
         try:
-            settings = self._setup.settings.coarser()
-            self._companion = march.copy_with(replace(self._setup, accuracy=settings))
+            settings = march.setup.settings.coarser()
+            self._companion = march.copy_with(replace(march.setup, accuracy=settings))
             if self._has_same_grid(march):
-                self._companion = march.copy_with(replace(self._setup, accuracy=settings.with_other_points()))
+                self._companion = march.copy_with(replace(march.setup, accuracy=settings.with_other_points()))
         except FAILURES:
             self._companion = None
 
@@ -87,22 +84,13 @@ class ErrorMeter:
     def catch_up(self, march: March, interrupted: Callable[[], bool] | None = None):
         """Have the companion at the present time, so that what happens next happens to both at once."""
         if self._companion is not None and self._companion.time < march.time:
-            self._repeat(lambda companion: companion.advance(march.time, interrupted))
+            self.repeat(lambda companion: companion.advance(march.time, interrupted))
 
     def change_law(self, march: March, law: Law | SampledLaw, origin: float, transition: float, needs: ShapeNeeds):
         """As the `march` has done: `March.change_law`."""
-        self._repeat(lambda companion: companion.change_law(law, origin, transition, needs))
+        self.repeat(lambda companion: companion.change_law(law, origin, transition, needs))
         if self._has_same_grid(march):
             self.begin_again(march)
-
-    def change_flow(self, flow: Flow | None):
-        """As the march has done: `March.change_flow`."""
-        self._setup = replace(self._setup, flow=flow)
-        self._repeat(lambda companion: companion.change_flow(flow))
-
-    def command_fins(self, commands: dict[str, float]):
-        """As the march has done: `March.command_fins`."""
-        self._repeat(lambda companion: companion.command_fins(commands))
 
     def begin_with(self, march: March, law: Law | SampledLaw, origin: float):
         """As the `march` has done before its start: `March.from_start`."""
@@ -114,15 +102,8 @@ class ErrorMeter:
         if self._has_same_grid(march):
             self.begin_again(march)
 
-    def add(self, sample: CurvatureSample):
-        """As the march has done: `LawFollower.add`."""
-        self._repeat(lambda companion: companion.follower.add(sample))
-
-    def command(self, joint: str, kind: str, value: float):
-        """As the march has done: `BentMarch.command`."""
-        self._repeat(lambda companion: companion.command(joint, kind, value))
-
-    def _repeat(self, action: Callable[[March], object]):
+    def repeat(self, action: Callable[[March], object]):
+        """Have the companion do what the march has done."""
         if self._companion is None:
             return
         try:

@@ -39,6 +39,7 @@ from eel_dynamics.simulation.bending.joint_motion import JointMotion
 from eel_dynamics.simulation.discretisation import Discretisation
 from eel_dynamics.simulation.energy import WORKS
 from eel_dynamics.simulation.error_meter import ErrorMeter
+from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Observations, Snapshot
 from eel_dynamics.simulation.simulation_setup import SimulationSetup, checked_state
 from eel_dynamics.simulation.stopping import SimulationStopped
@@ -106,7 +107,7 @@ class Simulation:
         self._march = march_of(setup).from_start(setup, law)
         self.ready, self._started = law is not None, False
         self.currents = CurrentStream(setup.default_transition)
-        self._meter = ErrorMeter(self._march, setup) if measure_error else None
+        self._meter = ErrorMeter(self._march) if measure_error else None
 
     @property
     def time(self) -> float:
@@ -229,11 +230,7 @@ class Simulation:
             now=self.time,
             begun=self._started,
         )
-        if self._meter is not None:
-            self._meter.catch_up(self._march)
-        self._march.follower.add(sample)
-        if self._meter is not None:
-            self._meter.add(sample)
+        self._on_both(lambda march: march.follower.add(sample))
         self.ready = True
 
     def add_current(self, time: float, velocity: ArrayLike) -> None:
@@ -250,11 +247,7 @@ class Simulation:
         if (course := self.currents.add(self.time, float(time), row)) is None:
             return
         flow = course if self._setup.flow is None else self._setup.flow + course
-        if self._meter is not None:
-            self._meter.catch_up(self._march)
-        self._march.change_flow(flow)
-        if self._meter is not None:
-            self._meter.change_flow(flow)
+        self._on_both(lambda march: march.change_flow(flow))
 
     def command_fins(self, commands: Mapping[str, float]) -> None:
         """Have the servos of commanded fins follow these angles [rad], by `Fin.name`, from the present time on.
@@ -262,11 +255,7 @@ class Simulation:
         A reset forgets them. `ValueError` for a fin that is not commanded, or an angle that is no number.
         """
         angles = checked_commands(self._setup.fins, commands)
-        if self._meter is not None:
-            self._meter.catch_up(self._march)
-        self._march.command_fins(angles)
-        if self._meter is not None:
-            self._meter.command_fins(angles)
+        self._on_both(lambda march: march.command_fins(angles))
 
     def water_at(self, place: ArrayLike) -> np.ndarray:
         """Velocity (3,) [m/s], world, that the water has at a `place` (3,) [m] at present, without the swimmer."""
@@ -305,11 +294,15 @@ class Simulation:
             )
         kind, name, value = wanted[0] if wanted else ("law", "", 0.0)
         value = number(f"{name} of joint {shown(joint)}", value)
+        self._on_both(lambda march: march.command(joint, kind, value))
+
+    def _on_both(self, action: Callable[[March], object]) -> None:
+        """Do it to the march and, where the error is measured, to its companion, at the same time."""
         if self._meter is not None:
             self._meter.catch_up(self._march)
-        self._march.command(joint, kind, value)
+        action(self._march)
         if self._meter is not None:
-            self._meter.command(joint, kind, value)
+            self._meter.repeat(action)
 
     def copy_with(self, accuracy: Accuracy) -> "Simulation":
         """A copy in the present state that continues with the settings `accuracy`."""

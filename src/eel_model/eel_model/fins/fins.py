@@ -4,7 +4,7 @@
 A fin has its root on the side of the body and its span across it. Its forces act at the centre of an elliptic plate, on
 the hinge line: attached lift after Whicker and Fehlner (David Taylor Model Basin, report 933, 1958) without sweep, the
 drag that goes with it, and beyond the stall a plate's across the stream; and its added mass along its normal
-(eel_core/fins.hpp). The body is a mirror: the effective aspect ratio is 2 span^2 / area.
+(eel_core/loads/fins.hpp). The body is a mirror: the effective aspect ratio is 2 span^2 / area.
 """
 
 import math

@@ -69,8 +69,8 @@ class Instant {
     {
         move(law, time, twist, {}, {});
         find_shape_accelerations(*swimmer_, law, work_);
-        add_head_motion(*swimmer_, acceleration, work_.position, work_.alpha, work_.acceleration, work_.alpha,
-                        work_.acceleration);
+        add_head_motion(*swimmer_, acceleration, work_.position, work_.angular_acceleration, work_.linear_acceleration,
+                        work_.angular_acceleration, work_.linear_acceleration);
         return set_inertial_density(*swimmer_, work_);
     }
 

@@ -24,7 +24,7 @@ class March {
 
     double time() const { return time_; }
     const State& state() const { return state_; }
-    const Works& works() const { return works_; }
+    const WorkDone& works() const { return works_; }
     Counts counts() const
     {
         return std::visit([](const auto& stepper) { return stepper.counts(); }, stepper_);
@@ -224,7 +224,7 @@ class March {
     std::int64_t slice_ = Slice{}.left;
     double time_ = 0.0;  // [s]
     State state_{};
-    Works works_{};
+    WorkDone works_{};
 };
 
 }  // namespace eel_core

@@ -18,7 +18,8 @@ struct StationWork {
     {
         const std::size_t n = blocks_of(swimmer.stations);
         frame = Field<Frame3<double>>(n), curvature = Field<Vector2<double>>(n), base = Field<Quaternion<double>>(n);
-        position = omega = velocity = relative = alpha = acceleration = Field<Vector3<double>>(n);
+        position = omega = velocity = relative = Field<Vector3<double>>(n);
+        angular_acceleration = linear_acceleration = Field<Vector3<double>>(n);
         integral = Field<Wrench<Space, double>>(n);
         for (std::size_t i = 0; i < swimmer.stations; ++i) base.row(3)[i] = 1.0;
     }
@@ -26,7 +27,7 @@ struct StationWork {
     Field<Frame3<double>> frame;
     Field<Quaternion<double>> base;  // of the node before
     Field<Vector2<double>> curvature;
-    Field<Vector3<double>> position, omega, velocity, alpha, acceleration;
+    Field<Vector3<double>> position, omega, velocity, angular_acceleration, linear_acceleration;
     FlowValues<Space> flow;                 // where the water moves by itself
     Field<Vector3<double>> relative;        // velocity through that water
     Field<Wrench<Space, double>> integral;  // integral of the balance's density from the nose
@@ -198,10 +199,12 @@ class Observer {
     void find_accelerations_there(const LawOnGrid& law, Workspace<Space>& work, StationWork& here) const
     {
         for (std::size_t k = 0; k < swimmer_.grid.blocks; ++k)
-            work.integrand.store(k, {alpha_slope(law, work, k), acceleration_slope(work, k)});
+            work.integrand.store(k, {angular_acceleration_slope(law, work, k), linear_acceleration_slope(work, k)});
         const Twist<Space, double>& head = work.head_acceleration;
-        swimmer_.to_station.integrate(work.integrand, 0, head.angular, work.alpha, here.alpha);
-        swimmer_.to_station.integrate(work.integrand, 3, head.linear, work.acceleration, here.acceleration);
+        swimmer_.to_station.integrate(work.integrand, 0, head.angular, work.angular_acceleration,
+                                      here.angular_acceleration);
+        swimmer_.to_station.integrate(work.integrand, 3, head.linear, work.linear_acceleration,
+                                      here.linear_acceleration);
     }
 
     void show_internal_wrench(std::size_t sample, Workspace<Space>& work, StationWork& here) const
@@ -263,7 +266,7 @@ class Observer {
             const Frame3<Lanes> frame = here.frame[k];
             Vector3<Lanes> v = frame.local(here.velocity[k]);
             const Vector3<Lanes> omega = frame.local(here.omega[k]), e1{1.0, 0.0, 0.0};
-            Vector3<Lanes> v_rate = frame.local(here.acceleration[k]) - cross(omega, v);
+            Vector3<Lanes> v_rate = frame.local(here.linear_acceleration[k]) - cross(omega, v);
             const Vector2<Lanes> bending = here.curvature[k];
             const Vector3<Lanes> curvature{0.0, bending.x, bending.y};
             Vector3<Lanes> v_slope = cross(omega, e1) - cross(curvature, v);  // V'

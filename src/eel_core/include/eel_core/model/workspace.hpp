@@ -33,7 +33,7 @@ struct Workspace {
         position = Field<Vector<M, double>>(n);
         shape_omega = omega = Field<Angular<M, double>>(n), shape_velocity = velocity = Field<Vector<M, double>>(n),
         curvature_rate = Field<Vector2<double>>(n);
-        alpha = Field<Angular<M, double>>(n), acceleration = Field<Vector<M, double>>(n);
+        angular_acceleration = Field<Angular<M, double>>(n), linear_acceleration = Field<Vector<M, double>>(n);
         integrand = Field<Wrench<M, double>>(n), density = Field<Wrench<M, double>>(n),
         integral = Field<Wrench<M, double>>(n);
         friction_laminar = friction_excess = turbulent_share = turbulent_weight = Row(n);
@@ -57,8 +57,9 @@ struct Workspace {
     Field<Vector<M, double>> velocity;        // [m/s]
     Field<Vector2<double>> curvature_rate;    // Kdot [rad/m/s], pitch and yaw
     Field<Wrench<M, double>> integrand;
-    Field<Angular<M, double>> alpha;        // [rad/s^2]
-    Field<Vector<M, double>> acceleration;  // [m/s^2]
+    // Of the sections: without the head's in `find_shape_accelerations`, with it from `add_head_motion` on.
+    Field<Angular<M, double>> angular_acceleration;  // [rad/s^2]
+    Field<Vector<M, double>> linear_acceleration;    // [m/s^2]
     Field<Wrench<M, double>>
         density;  // of the balance: what the motion takes, less the loads, per length, about the head
     Field<Wrench<M, double>> integral;  // its integral from the nose
@@ -110,9 +111,10 @@ struct Workspace {
     {
         std::size_t sum = frame.bytes() + quaternion.bytes() + position.bytes() + shape_omega.bytes() + omega.bytes() +
                           shape_velocity.bytes() + velocity.bytes() + curvature_rate.bytes() + integrand.bytes() +
-                          alpha.bytes() + acceleration.bytes() + density.bytes() + integral.bytes() +
-                          friction_laminar.bytes() + friction_excess.bytes() + turbulent_share.bytes() +
-                          turbulent_weight.bytes() + kink_density.bytes() + flow.bytes() + relative.bytes();
+                          angular_acceleration.bytes() + linear_acceleration.bytes() + density.bytes() +
+                          integral.bytes() + friction_laminar.bytes() + friction_excess.bytes() +
+                          turbulent_share.bytes() + turbulent_weight.bytes() + kink_density.bytes() + flow.bytes() +
+                          relative.bytes();
         for (const Row& row : speed) sum += row.bytes();
         for (const Row& row : load_weight) sum += row.bytes();
         return sum + sizeof(*this);

@@ -7,7 +7,7 @@
 
 namespace eel_core {
 
-using Works = Powers;  // [J], of actuators, wake, nose, drag, flow and fins since the start
+using WorkDone = Powers;  // [J], of actuators, wake, nose, drag, flow and fins since the start
 
 // Lobatto's points, as fractions of the step.
 inline constexpr std::array<double, 4> lobatto{0.0, 0.276393202250021030, 0.723606797749978970, 1.0};
@@ -34,10 +34,10 @@ struct StepPowers {
     std::array<Powers, 4> at{};  // [W], at Lobatto's points
 
     // Works at the fraction `theta` of a step of `length` [s]: the integral of the cubic through the powers.
-    Works works_until(const Works& start, double length, double theta) const
+    WorkDone works_until(const WorkDone& start, double length, double theta) const
     {
         static constexpr auto cubic = lagrange_cubics();
-        Works result = start;
+        WorkDone result = start;
         for (std::size_t i = 0; i < 4; ++i) {
             double power = theta, weight = 0.0;
             for (std::size_t j = 0; j < 4; ++j, power *= theta)

@@ -66,7 +66,7 @@ class Stepper {
     }
 
     // Lets the next step begin at `time` [s] in state y. `first_length` [s]: of the first of all steps.
-    void begin(double time, const State& y, const Works& works, double first_length)
+    void begin(double time, const State& y, const WorkDone& works, double first_length)
     {
         end_ = y, works_ = works;
         start_ = time, length_ = 0.0, anew_ = true;
@@ -89,7 +89,7 @@ class Stepper {
     }
 
     // State and works at `time` [s] within the step.
-    void state_at(double time, bool ledger, State& y, Works& works) const
+    void state_at(double time, bool ledger, State& y, WorkDone& works) const
     {
         double theta = 1.0;
         if (std::abs(end_time() - time) <= 1e-12 * std::max(1.0, std::abs(time))) {
@@ -242,7 +242,7 @@ class Stepper {
     double start_ = 0.0, length_ = 0.0, proposed_ = 0.0;  // [s]
     State begin_{}, end_{}, trial_{};
     std::array<State, Method::most_stages> rate_{};
-    Works works_{};  // at the start of the step
+    WorkDone works_{};  // at the start of the step
     StepPowers powers_;
     MomentumScale scale_;
     Counts counts_;

@@ -2,7 +2,7 @@
 // Loads at the ends of the body: what the tail gives up to the wake, and the water on the nose; eq. (60).
 #pragma once
 
-#include "eel_core/drag.hpp"
+#include "eel_core/loads/drag.hpp"
 
 namespace eel_core {
 

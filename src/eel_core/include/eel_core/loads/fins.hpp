@@ -10,7 +10,7 @@
 
 #include <numbers>
 
-#include "eel_core/moving_water.hpp"
+#include "eel_core/loads/moving_water.hpp"
 
 namespace eel_core {
 
@@ -146,8 +146,8 @@ EEL_CORE_APART inline Wrench<Space, double> wrench_of_fins(const Swimmer& swimme
         const Fin& fin = swimmer.fins[i];
         FinMotion& now = work.fins[i];
         const Vector3<double> omega = work.omega.node(fin.node);
-        const Vector3<double> acceleration = work.acceleration.node(fin.node) +
-                                             cross(work.alpha.node(fin.node), now.arm) +
+        const Vector3<double> acceleration = work.linear_acceleration.node(fin.node) +
+                                             cross(work.angular_acceleration.node(fin.node), now.arm) +
                                              cross(omega, cross(omega, now.arm));
         const double relative = dot(now.normal, acceleration - now.water_rate);
         now.whole = now.force - fin.added_mass * relative * now.normal;

@@ -9,7 +9,7 @@
 // these two forces along the body.
 #pragma once
 
-#include "eel_core/drag.hpp"
+#include "eel_core/loads/drag.hpp"
 
 namespace eel_core {
 

@@ -9,7 +9,7 @@
 // and the integrals to X_j come from the polynomial through the panel's nodes, as all others do.
 #pragma once
 
-#include "eel_core/drag.hpp"
+#include "eel_core/loads/drag.hpp"
 
 namespace eel_core {
 
