@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The model against measurements of robots and animals: the last table of docs/appendix/validation.md.
+"""The model against measurements of robots and animals: docs/appendix/measurements.csv.
 
 `make validation` writes it, from swims that this file defines. Nothing is fitted to what is compared: where a source
 does not tell a number of the gait, the number is varied over a stated range, and our column shows the whole range.
 """
 
+import csv
 from dataclasses import dataclass
 from functools import cache
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 
@@ -17,7 +19,8 @@ from eel_studies import optimise
 
 WATER = Scene(friction="blended", planar=True)
 EEL = Body.kern2006(0.6)  # m: Methling et al. had silver eels of 0.599 m
-TAIL = 0.155  # L, from side to side: between 0.15 (D'Aout and Aerts) and 2 x 0.08 (Gillis)
+# L, from side to side: between 0.15 (D'Aout and Aerts, J. Exp. Biol. 202 (1999), 1511-1521) and 2 x 0.08 (Gillis)
+TAIL = 0.155
 WAVELENGTHS, GROWTHS = (0.6, 0.8), (1.0, 3.0)  # L, and of the amplitude e^(growth X/L): not told, varied
 FREQUENCIES = (1.0, 3.0)  # Hz
 PERIODS = 16
@@ -25,9 +28,9 @@ SPEED = 0.545  # m/s, of the measured costs
 OXYGEN = 13.6  # J/mg, of aerobic metabolism
 MAMBA = {"amplitude": np.radians(40.0), "links": 10, "frequency": 120.0 / 360.0, "links per wave": 360.0 / 40.0}
 
+COLUMNS = "compared", "measured", "source", "ours", "verdict"
 AMPLITUDES = (1.0, 2.0, 4.0, 6.0, 8.0)  # rad/L, of a uniform wave
 SOURCES = {
-    "D": "D'Août and Aerts, J. Exp. Biol. 202 (1999), 1511-1521",
     "G": "Gillis, J. Exp. Biol. 201 (1998), 949-961",
     "T1": "Tytell, Proc. R. Soc. B 271 (2004), 2535-2540",
     "T2": "Tytell, J. Exp. Biol. 207 (2004), 3265-3279",
@@ -41,17 +44,13 @@ SOURCES = {
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the section: what is compared, theirs with its error bar, ours, the verdict and its reason."""
+    """One line of the file: what is compared, theirs with its error bar, ours, the verdict and its reason."""
 
     what: str
     theirs: str
     source: str
     ours: str
     verdict: str
-
-    @property
-    def line(self) -> str:
-        return f"| {self.what} | {self.theirs} [{self.source}] | {self.ours} | {self.verdict} |"
 
 
 def swum(law: Law, period: float, body: Body, speed: float):
@@ -256,8 +255,8 @@ def rows() -> list[Row]:
     ]
 
 
-def section() -> str:
-    """Table and sources, in Markdown."""
-    table = ["| compared | measured [source] | ours | verdict |", "|---|---|---|---|", *(row.line for row in rows())]
-    sources = [f"- [{key}] {text}" for key, text in SOURCES.items()]
-    return "\n".join([*table, "", "Sources:", *sources])
+def write(path: Path) -> None:
+    """Write the rows to `path`, each with its source."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        lines = [(row.what, row.theirs, SOURCES[row.source], row.ours, row.verdict) for row in rows()]
+        csv.writer(file, lineterminator="\n").writerows([COLUMNS, *lines])

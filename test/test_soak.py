@@ -2,14 +2,13 @@
 """Long runs as fast as possible, a subscriber on every topic: nothing is lost, and memory does not grow.
 
 `make soak` swims for an hour of simulation and leaves out/soak.csv and out/soak.png, which `make robustness` brings
-into docs/appendix/robustness.md; ten seconds are in `make test`.
+into docs/images; ten seconds are in `make test`.
 """
 
 from pathlib import Path
 
 import numpy as np
 import pytest
-from fault_table import soak_table
 from soak import NODES, RATE, soak
 
 OUT = Path(__file__).parents[1] / "out"
@@ -42,7 +41,6 @@ def test_an_hour(start, fresh_domain):
     result = soak(start, HOUR, limit=3 * 3600.0)
     result.write(OUT / "soak.csv")
     draw(result, OUT / "soak.png")
-    print("\n" + soak_table(OUT / "soak.csv"))
     assert set(result.counts.values()) == {round(HOUR * RATE) + 1}, result.counts
     for node in NODES:
         assert result.memory[node].max() < MOST, node

@@ -166,17 +166,10 @@ def _burst_and_coast(swim, swims):
     )
 
 
-def _depth(swim, swims):
-    return f"It ends {abs(swim.path[-1, 2]):.2f} m {'lower' if swim.path[-1, 2] < 0.0 else 'higher'}."
-
-
 def _diving(swim, swims):
     way = swim.path[-1] - swim.path[swim.at(10.0)]
     slope = math.degrees(math.atan2(way[2], math.hypot(way[0], way[1])))
-    return (
-        f"From 10 s on the path slopes by {slope:+.0f} degrees. The mean heading has changed by "
-        f"{swim.change(swim.heading):+.0f} degrees; nothing keeps the body from rolling."
-    )
+    return f"From 10 s on the path slopes by {slope:+.0f} degrees; nothing keeps the body from rolling."
 
 
 def _spiral(swim, swims):
@@ -207,28 +200,19 @@ def _roll_over(swim, swims):
     )
 
 
-def _rolling(swim, swims):
-    rate = math.degrees(swim.roll[-1] - swim.roll[swim.at(10.0)]) / 10.0
-    return f"The body rolls by {rate:+.0f} degrees per second."
-
-
 NOTES = {  # what was measured, beside the table
     "turning": _turning,
     "c_start": _c_start,
     "burst_and_coast": _burst_and_coast,
-    "falling": _depth,
-    "rising": _depth,
     "diving": _diving,
     "spiral": _spiral,
-    "rolling": _rolling,
     "roll_over": _roll_over,
-    "helix": _rolling,
 }
 
 
 def section(swim, swims):
     """What the page says of one gait."""
-    about = (inspect.getdoc(GAITS[swim.name]) or "").split("\n\nNumbers")[0]
+    about = (inspect.getdoc(GAITS[swim.name]) or "").split("\n\n")[0]
     note = f" {NOTES[swim.name](swim, swims)}" if swim.name in NOTES else ""
     return f"### {swim.name}\n{about}{note}\n\n![{swim.name}](../images/manoeuvres/{swim.name}.png)\n\n"
 

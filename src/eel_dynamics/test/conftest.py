@@ -2,10 +2,10 @@
 """For the tests of the mechanics, `measured`; for those of the dynamics node, a client that subscribes to it."""
 
 import pytest
-from validation import PAGE, Checks
+from validation import KEPT, Checks
 
 CHECKS = Checks()
-collect_ignore = [] if PAGE.is_file() else ["test_validation_page.py"]  # a package alone has no page
+collect_ignore = [] if KEPT.is_file() else ["test_validation_file.py"]  # a package alone has no file
 
 
 @pytest.fixture(scope="session")
@@ -21,7 +21,7 @@ def checks():
 
 
 def pytest_collection_modifyitems(items):
-    items.sort(key=lambda item: item.path.name == "test_validation_page.py")  # after all that it looks at
+    items.sort(key=lambda item: item.path.name == "test_validation_file.py")  # after all that it looks at
 
 
 def pytest_runtest_setup(item):

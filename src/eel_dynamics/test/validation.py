@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the tests of the mechanics measure: recorded while they run, listed at their end, kept in
-docs/appendix/validation.csv and told in short by validation.md beside it.
+docs/appendix/validation.csv. docs/explanation/trust.md has the worst of each kind.
 
-    make validation        # runs those tests and writes both
+    make validation        # runs those tests, and writes the file and measurements.csv beside it
 
 A test that carries the marker `identity` calls the fixture `measured(what, value, tolerance)`: it fails where the value
 is beyond its tolerance, and is recorded else, the worst value of all cases.
@@ -17,34 +17,30 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from eel_base.files import markdown
 
 ROOT = Path(__file__).resolve().parents[3]
 RECORD = ROOT / "out" / "validation.csv"  # of the last session
 KEPT = ROOT / "docs" / "appendix" / "validation.csv"
-PAGE = KEPT.with_suffix(".md")
+MEASUREMENTS = KEPT.with_name("measurements.csv")
 COLUMNS = "identity", "compared", "measured", "tolerance", "cases", "share of tolerance", "test"
 
-IDENTITIES = {
-    "Energy ledger": "The change of the energy of body and water is the integral of the powers.",
-    "Closure": "What the internal wrench leaves over at nose and tail; accelerations against the motion marched.",
-    "Lighthill": "Planar motion without drag is Lighthill's theory, large amplitude (1971) and linear (1960).",
-    "No water": "Momentum stays; kinetic energy is the work of the actuators.",
-    "Righting moment": "Weight below buoyancy: a pendulum in water, a torque from a potential, no direction special "
-    "but up.",
-    "Bodies that weigh": "Gravity, buoyancy, mass along the body, a centre of mass off the axis: closed forms at "
-    "release, the roll's frequency, the same at any depth.",
-    "Fins": "Lift, drag and added mass of fins by hand and against the second implementation, the roll that they hold, "
-    "the ledger and both forms of the balance.",
-    "Rigid body": "The straight rigid body has closed forms: Munk's moment, coasting, Euler's top.",
-    "Symmetry": "Another pose, a mirror, the plane, rest, a current.",
-    "Convergence": "Orders in time and in space, and what the presets reach on the falling gait over 10 s.",
-    "Scaling": "Similar swimmers at equal Reynolds number swim alike.",
-    "Second implementation": "The equations again from the kinetic energy alone, by other code (`reference.py`).",
-    "Pressure at the tail": "Lumped at the tail or distributed along the body: the same resultant and moment.",
-    "Bodies": "Geometry and section data against what is printed or known.",
-    "Read off a run": "Figures of `Run.analysis()` and `Run.actuators()` against the same, computed another way.",
-}
+IDENTITIES = (
+    "Energy ledger",
+    "Closure",
+    "Lighthill",
+    "No water",
+    "Righting moment",
+    "Bodies that weigh",
+    "Fins",
+    "Rigid body",
+    "Symmetry",
+    "Convergence",
+    "Scaling",
+    "Second implementation",
+    "Pressure at the tail",
+    "Bodies",
+    "Read off a run",
+)
 
 
 @dataclass
@@ -126,8 +122,8 @@ class Checks:
         return [(identity, group) for identity, group in listed.items() if group]
 
     def save(self) -> None:
-        """Keep the record, where there is a page of it: a package that is tested alone has none."""
-        if not PAGE.is_file():
+        """Keep the record, where there is a kept one: a package that is tested alone has none."""
+        if not KEPT.is_file():
             return
         RECORD.parent.mkdir(exist_ok=True)
         with RECORD.open("w", newline="", encoding="utf-8") as file:
@@ -149,16 +145,6 @@ def kept() -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def summary() -> str:
-    """The page's table: what must hold, how many checks show it, and how near the worst comes to its tolerance."""
-    lines = []
-    for identity, about in IDENTITIES.items():
-        shares = [float(row["share of tolerance"]) for row in kept() if row["identity"] == identity]
-        if shares:
-            lines.append((f"**{identity}.** {about}", str(len(shares)), f"{100.0 * max(shares):.2g} %"))
-    return markdown.table(("what must hold", "checks", "worst, of its tolerance"), lines)
-
-
 def main() -> int:
     RECORD.unlink(missing_ok=True)
     tests = [sys.executable, "-m", "pytest", "-m", "identity and not soak", "src/eel_dynamics/test", "-q"]
@@ -169,11 +155,8 @@ def main() -> int:
     import measurements  # simulates, which the tests that import this file need not
 
     shutil.copy(RECORD, KEPT)
-    page = PAGE.read_text(encoding="utf-8")
-    for name, text in (("identities", summary()), ("measurements", measurements.section())):
-        page = markdown.with_part(page, name, text)
-    PAGE.write_text(page, encoding="utf-8")
-    print(f"wrote {KEPT.relative_to(ROOT)} and {PAGE.relative_to(ROOT)}")
+    measurements.write(MEASUREMENTS)
+    print(f"wrote {KEPT.relative_to(ROOT)} and {MEASUREMENTS.name}")
     return 0
 
 

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/appendix/validation.csv is what the tests measure, its page the summary: `make validation` writes both anew."""
+"""docs/appendix/validation.csv is what the tests measure: `make validation` writes it anew."""
 
 import re
 
-from eel_base.files.markdown import with_part
-from validation import PAGE, ROOT, kept, summary
+from validation import ROOT, kept
 
 STALE = "docs/appendix/validation.csv is stale: make validation"
 
@@ -28,8 +27,3 @@ def test_every_line_of_the_file_is_a_test_that_measures_it(checks, request):
         assert re.search(rf"^def {name}\(", source, re.MULTILINE), (test, STALE)
         if test in ran and not any(item.startswith(f"{name}[") for item in alone):  # a parametrised one may run in part
             assert (row["identity"], row["compared"]) in measured, (row["compared"], STALE)
-
-
-def test_the_page_sums_up_the_file():
-    page = PAGE.read_text(encoding="utf-8")
-    assert with_part(page, "identities", summary()) == page, STALE
