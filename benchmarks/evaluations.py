@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One evaluation of the head's dynamics, and what a scene adds to it or is spared. CPU times, one thread."""
+"""One evaluation of the head's dynamics, and what water that moves and samples add to it. CPU times, one thread."""
 
 import statistics
 import time
 from functools import partial
 
 import numpy as np
-from measuring import MOTION, Action, Lines, median_ratio, swimming, times_in_turn
+from measuring import Action, Lines, median_ratio, swimming, times_in_turn
 
 import eel_core
 from eel_dynamics import (
-    Accuracy,
     Flow,
     GriddedFlow,
     Scene,
@@ -18,14 +17,12 @@ from eel_dynamics import (
     Simulation,
     VortexStreet,
     Wave,
-    simulate,
     simulate_batch,
 )
-from eel_gaits import falling, straight
+from eel_gaits import falling
 
 COUNT = 2000  # evaluations that are timed together
 RESOLUTIONS = (8.0, 13.0, 36.0, 80.0, 180.0)  # points per body length
-DURATIONS = (10.0, 30.0, 100.0, 300.0)  # s
 
 
 def evaluations(simulation: Simulation, flow: Flow | None = None) -> Action:
@@ -84,77 +81,8 @@ def flows() -> Lines:
         yield f"{case}, two threads", median_ratio(spent[2], spent[1]), "times the CPU time"
 
 
-def growth() -> Lines:
-    """A whole run of a straight gait, motion alone, set-up included, against its duration."""
-    swim = partial(simulate, straight(), scene=Scene(**MOTION), estimate=False)
-    times = times_in_turn({each: partial(swim, each, sample_period=each) for each in DURATIONS})
-    spent = {duration: statistics.median(values) for duration, values in times.items()}
-    for duration, seconds in spent.items():
-        yield f"{duration:4.0f} s", duration / seconds, "s per CPU second"
-    yield "exponent of growth", _exponent(spent), "(1: linear)"
-
-
 def _exponent(costs: dict) -> float:
     return float(np.polyfit(np.log(list(costs)), np.log(list(costs.values())), 1)[0])
-
-
-def plane() -> Lines:
-    """Evaluations in the plane against those in space, straight gait: one evaluation at equal nodes, with the drag's
-    kinks and without, and 10 s of motion alone at equal targets."""
-    for friction in ("laminar", "printed"):
-        for kinks in ("all", "jumps", "none"):
-            scenes = {flat: Scene(planar=flat, friction=friction, **MOTION) for flat in (False, True)}
-            swimmers = {flat: swimming(straight(), scene, kinks=kinks) for flat, scene in scenes.items()}
-            times = times_in_turn({flat: evaluations(swimmer) for flat, swimmer in swimmers.items()})
-            name = f"{friction} friction, kinks {kinks}"
-            yield f"{name}, in space", _microseconds(times[False]), "us per evaluation (CPU)"
-            yield f"{name}, in the plane", _microseconds(times[True]), "us per evaluation (CPU)"
-            yield f"{name}, ratio", median_ratio(times[False], times[True]), "times cheaper"
-    for target in (1e-2, 1e-4, 1e-6):
-        swim = partial(simulate, straight(), accuracy=target, sample_period=10.0)
-        times = times_in_turn({flat: partial(swim, scene=Scene(planar=flat, **MOTION)) for flat in (False, True)})
-        yield f"ratio, 10 s, target {target:g}", median_ratio(times[False], times[True]), "times cheaper"
-
-
-def switches() -> Lines:
-    """What a switch of the scene costs: time of 10 s of a straight gait relative to that with everything on, at equal
-    steps and points; and what one evaluation costs without each load, relative to that with all of them."""
-    loads: dict[str, tuple[dict, str]] = {  # the scene beside the motion alone, and which kinks of the drag are located
-        "no ledger, no wrench": ({}, "all"),
-        "  and kinks: jumps": ({}, "jumps"),
-        "  and kinks: none": ({}, "none"),
-        "  and no friction": ({"friction": "none"}, "all"),
-        "  and no wake": ({"wake": False}, "all"),
-        "  and no drag": ({"resistive": False}, "all"),
-        "  and planar": ({"planar": True}, "all"),
-        "  and planar, no drag": ({"planar": True, "resistive": False}, "all"),
-    }
-    cases = {
-        "everything": (Scene(), "all"),
-        "no ledger": (Scene(ledger=False), "all"),
-        "no internal wrench": (Scene(internal_wrench=False), "all"),
-    } | {name: (Scene(**MOTION | settings), kinks) for name, (settings, kinks) in loads.items()}
-
-    def run(scene: Scene, kinks: str) -> Action:
-        accuracy = Accuracy(name="bench", resolution=20.0, step=0.02, kinks=kinks)
-        return partial(simulate, straight(), scene=scene, accuracy=accuracy)
-
-    def single(scene: Scene, kinks: str) -> Action:
-        return evaluations(swimming(straight(), scene, kinks=kinks))
-
-    times = times_in_turn({name: run(*case) for name, case in cases.items()})
-    whole = f"of {statistics.median(times['everything']) * 1e3:.1f} ms"
-    for name, values in times.items():
-        yield name, 1.0 / median_ratio(times["everything"], values), whole
-    times = times_in_turn({name: single(*cases[name]) for name in loads})
-    first, *_ = loads
-    for name, values in times.items():
-        label = "all loads" if name == first else name.strip()
-        yield (
-            f"an evaluation, {label}",
-            1.0 / median_ratio(times[first], values),
-            f"of {_microseconds(times[first]):.2f} us",
-        )
 
 
 def wrench() -> Lines:

@@ -11,7 +11,7 @@ import sys
 
 from against_paper_scheme import paper_scheme
 from eel_base.wording import did_you_mean
-from evaluations import evaluation, flows, growth, plane, switches, wrench
+from evaluations import evaluation, flows, wrench
 from integrators import integrators
 from lockstep import lockstep
 from measuring import REPEATS
@@ -21,14 +21,11 @@ from swims import batch, falling_gait, gym, start, ticks
 
 FIGURES = {
     "evaluation": evaluation,
-    "plane": plane,
     "flows": flows,
     "falling": falling_gait,
     "wrench": wrench,
-    "switches": switches,
     "start": start,
     "ticks": ticks,
-    "growth": growth,
     "integrators": integrators,
     "batch": batch,
     "visualiser": visualiser,

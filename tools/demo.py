@@ -15,17 +15,23 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from eel_dynamics.runs.exchange.eel_viz_functions import messages_of_bag
+from eel_dynamics.runs.exchange.recorded_run import fields_of_messages
 from eel_ros.testing.node_process import NodeProcess
 from eel_ros.testing.ros_domain import reserve_domain
 from plain_picture import draw_plain
-from run_summary import describe, summarise
+
+from eel_dynamics import Run, simulate
+from eel_gaits import falling
 
 OUT = Path("out")
 RECORDING = OUT / "falling.rrd"
 PICTURE = OUT / "falling.png"
 DURATION, RATE = 10.0, 100.0  # s, Hz
 LISTENERS = 2  # the visualiser and the recorder
+RESIDUAL_LIMIT = 1e-3  # of the energy ledger, by the actuators' work
+CLOSURE_LIMIT = 1e-10  # of the internal force and torque at the nose, by their greatest values
 
 
 class DemoError(Exception):
@@ -36,15 +42,16 @@ def main() -> int:
     """Exit status 1, with one line of reason, where a node or a figure fails."""
     began = time.monotonic()
     try:
-        summary = summarise(swim())
-        shown = count_recorded(RECORDING)
-        print(describe(summary))
-        counts = summary.published, len(summary.run.time), shown
-        print("  samples            {} published, {} received here, {} in {}".format(*counts, RECORDING))
+        messages = swim()
+        run, shown = Run(**fields_of_messages(messages, None, None)), count_recorded(RECORDING)
+        print(run.summary())
+        told = diagnostics(messages)
+        counts = int(told["samples_published"][-1]), len(run.time), shown
+        print("samples             {} published, {} received here, {} in {}".format(*counts, RECORDING))
         if set(counts) != {round(DURATION * RATE) + 1}:
             raise DemoError(f"of {DURATION * RATE + 1:g} samples not all were published, came here, and were recorded")
-        if summary.failures:
-            raise DemoError("; ".join(summary.failures))
+        if found := failures(run, told):
+            raise DemoError("; ".join(found))
         say(f"the library alone runs it {library_speed():,.0f} times faster than real time")
         draw()
     except (DemoError, ValueError) as error:
@@ -109,6 +116,29 @@ def await_end(
             raise DemoError(f"{node.name} ended too early, with status {node.status}: {last} (all of it: {node.log})")
 
 
+def diagnostics(messages: list[tuple[str, Any]]) -> dict[str, list[float]]:
+    """The numbers of the dynamics node's diagnostics, in order; `DemoError` where it has sent none."""
+    told: dict[str, list[float]] = {}
+    for _, message in (each for each in messages if each[0] == "diagnostics"):
+        for pair in (pair for status in message.status for pair in status.values):
+            if pair.key in ("samples_published", "closure_force", "closure_torque"):
+                told.setdefault(pair.key, []).append(float(pair.value))
+    if len(told) < 3:
+        raise DemoError("no diagnostics of the dynamics node came")
+    return told
+
+
+def failures(run: Run, told: dict[str, list[float]]) -> list[str]:
+    """What breaks the limits; empty for a sound run."""
+    assert run.energy is not None
+    residual = np.abs(run.energy.residual).max() / abs(run.energy.actuator_work[-1])
+    sizes = {"energy residual by the work": (residual, RESIDUAL_LIMIT)}
+    for name in ("force", "torque"):
+        greatest = np.linalg.norm(getattr(run, name), axis=2).max()
+        sizes[f"closure of the {name}, by its greatest"] = max(told[f"closure_{name}"]) / greatest, CLOSURE_LIMIT
+    return [f"{what} is {size:.3g}, of {limit:g}" for what, (size, limit) in sizes.items() if not size <= limit]
+
+
 def count_recorded(path: Path) -> int:
     """Samples in a recording: those of the topic of which it has the fewest."""
     from rerun.chunk import RrdReader
@@ -125,9 +155,6 @@ def count_recorded(path: Path) -> int:
 
 def library_speed() -> float:
     """Simulated seconds per second of the library without ROS, on one core: the median of five runs."""
-    from eel_dynamics import simulate
-    from eel_gaits import falling
-
     speeds = []
     for _ in range(6):
         start = time.perf_counter()
