@@ -8,7 +8,7 @@ import pytest
 def test_the_page_has_a_row_for_each_group_that_tests_show():
     page, shown = fault_table.PAGE.read_text(), {row.group for row in fault_table.faults()}
     assert shown == set(fault_table.GROUPS)
-    assert [heading for heading in fault_table.GROUPS.values() if f"| **{heading}**" not in page] == []
+    assert [heading for heading in fault_table.GROUPS.values() if f"- **{heading}**" not in page] == []
 
 
 def test_every_fault_is_told_once():

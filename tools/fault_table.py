@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "appendix" / "robustness.md"
 LIST = ROOT / "out" / "robustness.md"
 SOAK = ROOT / "out" / "soak.png"  # memory of the nodes over an hour
-GROUPS = {  # key in the decorator: heading, as the page begins its row, in its order
+GROUPS = {  # key in the decorator: heading, as the page begins its line, in its order
     "laws": "Laws",
     "samples": "Curvature samples",
     "nodes": "Nodes",
