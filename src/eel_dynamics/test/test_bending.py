@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bodies that bend by themselves: the march of a robot against what must hold for it."""
 
+import pickle
 from copy import deepcopy
 
 import numpy as np
@@ -13,6 +14,7 @@ from eel_model.robot.robot import Robot
 
 from eel_dynamics import (
     Accuracy,
+    Batch,
     Run,
     Scene,
     Simulation,
@@ -151,14 +153,20 @@ def test_run_of_a_robot_comes_back_from_a_file(tmp_path):
     assert Run.load(tmp_path / "robot.nc") == run
 
 
-def test_batch_of_robots_has_the_runs_of_each():
+def test_batch_of_robots_has_the_runs_of_each_and_comes_back_from_a_file(tmp_path):
     robots = [Robot.named("eight_servos"), None, Robot.named("passive_tail")]
     batch = simulate_batch(straight(), 0.5, robots=robots, accuracy=1e-3, stations=11)
     for index, robot in enumerate(robots):
         alone = simulate(straight(), 0.5, robot=robot, accuracy=1e-3, stations=11)
         assert batch[index] == alone
-    with pytest.raises(ValueError, match="batch with robots"):
-        batch.save("batch.nc")
+    assert batch.joint_angle.shape == (3, len(batch.time), 8) and batch.mode_amplitude.shape[2] == 4
+    assert not batch.motor_torque[1:].any() and batch.motor_torque[0].any()
+    batch.save(tmp_path / "batch.nc")
+    loaded = Batch.load(tmp_path / "batch.nc")
+    assert loaded == batch and loaded[2] == batch[2] and pickle.loads(pickle.dumps(batch)) == batch
+    driven = Robot([Joint(0.5, actuator=Torque(lambda time: 0.01 * time))])
+    with pytest.raises(ValueError, match="joint 'joint_1' torque is a function, which no file holds"):
+        simulate_batch(straight(), 0.1, robots=driven, estimate=False).save(tmp_path / "driven.nc")
     with pytest.raises(ValueError, match="swimmer 0: joint"):
         simulate_batch(straight(), 0.5, robots=Robot([Joint(0.999)]))
 

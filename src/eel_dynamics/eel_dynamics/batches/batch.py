@@ -25,10 +25,16 @@ from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.run_picture import lines_of_batch, picture_of_batch
 from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.storage.netcdf import loaded, write
-from eel_dynamics.runs.storage.run_contents import contents_of_batch, fins_of, observed_of_batch, with_warnings
+from eel_dynamics.runs.storage.run_contents import (
+    contents_of_batch,
+    fins_of,
+    motion_of_batch,
+    observed_of_batch,
+    with_warnings,
+)
 from eel_dynamics.runs.storage.tables import dataset_of, frame_of_all, needed
 from eel_dynamics.runs.storage.variables import COUNTS, Contents, documented_arrays
-from eel_dynamics.simulation.bending.joint_motion import JointMotion
+from eel_dynamics.simulation.bending.joint_motion import MotionOfMany
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import FINS, LOAD, Observations
 from eel_dynamics.simulation.stopping import SimulationStopped
@@ -43,7 +49,8 @@ class Batch:
 
     Values after the last valid sample of a swimmer that stopped are 0, see `valid`. Profiles are None without stations;
     wrench and energy are None unless every scene has them, and fluid_force without `load`. `energy` has one (B, T)
-    array per field. Two batches are equal where all their fields are. Arrays:
+    array per field. The joints' arrays are None without a robot; J and N are the most of any, 0 fills the rest.
+    Two batches are equal where all their fields are. Arrays:
     """
 
     laws: tuple[Law | SampledLaw, ...]
@@ -76,8 +83,16 @@ class Batch:
     fins: tuple[tuple[Fin, ...], ...] = ()  #: of each swimmer; fewer than F leave 0 in the arrays
     fin_angle: np.ndarray | None = None
     fin_force: np.ndarray | None = None
-    _joints: tuple[JointMotion | None, ...] = ()
+    joint_angle: np.ndarray | None = None
+    joint_rate: np.ndarray | None = None
+    joint_torque: np.ndarray | None = None
+    motor_angle: np.ndarray | None = None
+    motor_torque: np.ndarray | None = None
+    motor_power: np.ndarray | None = None
+    mode_amplitude: np.ndarray | None = None
+    mode_rate: np.ndarray | None = None
     _out: tuple[Any, ...] = ()  # observations, works, energy at the start, of all, for `__getitem__`
+    _joints: MotionOfMany | None = None
 
     def __len__(self) -> int:
         return len(self.laws)
@@ -89,8 +104,8 @@ class Batch:
         return hash((self.laws, self.bodies, self.scenes))
 
     def __reduce__(self) -> tuple[Any, ...]:  # each array once
-        more = self.flows, self.robots, self._joints, self.fins
-        return _batch_from, (contents_of_batch(self, *self._out), self.laws, self.bodies, self.scenes, *more)
+        more = self.flows, self.robots, self.fins
+        return _batch_from, (self._contents, self.laws, self.bodies, self.scenes, *more)
 
     def __repr__(self) -> str:
         return (
@@ -104,6 +119,11 @@ class Batch:
 
     def _repr_html_(self) -> str:
         return cell_of(self.plot, lines_of_batch(self))
+
+    @property
+    def _contents(self) -> Contents:
+        out, works, start = self._out
+        return contents_of_batch(self, out, works, start, None if self._joints is None else self._joints.ledger)
 
     @property
     def valid(self) -> np.ndarray:
@@ -125,11 +145,11 @@ class Batch:
         """Swimmer `index` as a `Run`, with the samples that it has."""
         index = range(len(self))[index]
         out, works, start = self._out
-        scene, done = self.scenes[index], int(self.samples[index])
+        scene, robot, done = self.scenes[index], self.robots[index], int(self.samples[index])
         return Run.of(
             Swimmer(
                 *(self.laws[index], self.bodies[index], scene, self.x[index]),
-                *(self.flows[index], self.robots[index], self.fins[index]),
+                *(self.flows[index], robot, self.fins[index]),
             ),
             out[index],
             works=works[index, :done],
@@ -143,14 +163,12 @@ class Batch:
             evaluations=int(self.evaluations[index]),
             nodes=int(self.nodes[index]),
             error_estimate=self.error_estimates[index],
-            joints=self._joints[index],
+            joints=None if robot is None or self._joints is None else self._joints.one(index, robot),
         )
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the whole batch to a netCDF file (.nc), as `Run.save` does a run. `ValueError` for one with robots."""
-        if any(self.robots):
-            raise ValueError("a batch with robots cannot be saved: save its runs one by one, batch[0].save(...)")
-        write(with_warnings(self, contents_of_batch(self, *self._out)), path)
+        """Write the whole batch to a netCDF file (.nc), as `Run.save` does a run."""
+        write(with_warnings(self, self._contents), path)
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> "Batch":
@@ -160,7 +178,7 @@ class Batch:
 
     def to_xarray(self) -> Any:
         """An `xarray.Dataset` as `Run.to_xarray` gives it, with a first dimension `swimmer`."""
-        return dataset_of(with_warnings(self, contents_of_batch(self, *self._out)))
+        return dataset_of(with_warnings(self, self._contents))
 
     def to_dataframe(self) -> Any:
         """A `pandas.DataFrame` as `Run.to_dataframe` gives it, by swimmer and time; valid samples alone."""
@@ -205,12 +223,7 @@ def batch_of(
 ) -> Batch:
     """The batch of these `swimmers`: what was `found` of each, and all that was observed."""
     settings, errors, estimates, (samples, steps, evaluations, nodes), joints = found
-    robots = None
-    if any(each is not None for each in joints):
-        robots = np.zeros((len(swimmers), len(times), 3))
-        for index, each in enumerate(joints):
-            if each is not None:
-                robots[index, : samples[index]] = each.ledger()[: samples[index]]
+    ledger_of_robots = None if joints is None else joints.ledger
     finned = any(each.fins for each in swimmers)
     absent = {"energies", "powers", "closure", *LOAD, *FINS}
     absent -= {*(("fluid_force",) if load else ()), *(FINS if finned else ())}
@@ -230,12 +243,13 @@ def batch_of(
         nodes=nodes,
         error_estimates=tuple(estimates),
         x=np.array([each.x for each in swimmers]),
-        energy=EnergyLedger.of(out.energies, out.powers, works, start[:, None], robots) if ledger else None,
+        energy=EnergyLedger.of(out.energies, out.powers, works, start[:, None], ledger_of_robots) if ledger else None,
         flows=tuple(each.flow for each in swimmers),
         robots=tuple(each.robot for each in swimmers),
         fins=tuple(each.fins for each in swimmers),
-        _joints=tuple(joints),
+        _joints=joints,
         _out=(out, works, start),
+        **({} if joints is None else joints.arrays),
         **{"fluid_force": None} | observed | dict.fromkeys(none),
     )
 
@@ -247,7 +261,6 @@ def _batch_from(
     scenes: Any = None,
     flows: Any = None,
     robots: Any = None,
-    joints: Any = None,
     fins: Any = None,
 ) -> Batch:
     """The batch of these contents; the others too, where they are at hand."""
@@ -267,6 +280,9 @@ def _batch_from(
     wrench = [scene.internal_wrench and stations is not None for scene in scenes]
     flows = flows or [flow_of(each) for each in values.get("flows", count * [None])]
     fins = fins or [fins_of(each) for each in values.get("fins", count * [()])]
-    swum = list(map(Swimmer, laws, bodies, scenes, arrays["x"], flows, robots or count * [None], fins))
-    found = settings, errors, estimates, counts, joints or count * [None]
+    robots = robots or [
+        plain.robot_of(each, body) for each, body in zip(values.get("robots", count * [None]), bodies, strict=True)
+    ]
+    swum = list(map(Swimmer, laws, bodies, scenes, arrays["x"], flows, robots, fins))
+    found = settings, errors, estimates, counts, motion_of_batch(contents) if any(robots) else None
     return batch_of(swum, found, arrays["time"], out, works, start, wrench, "fluid_force" in arrays, stations)

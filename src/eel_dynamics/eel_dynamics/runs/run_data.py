@@ -19,7 +19,7 @@ from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
-from eel_dynamics.simulation.bending.joint_motion import JointMotion
+from eel_dynamics.simulation.bending.joint_motion import JointMotion, KeptMotion
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import FINS, LOAD, WRENCH, Observations
 
@@ -83,7 +83,7 @@ class RunData:
         time: np.ndarray,
         wrench: bool,
         load: bool,
-        joints: JointMotion | None = None,
+        joints: JointMotion | KeptMotion | None = None,
         **others: Any,
     ) -> Self:
         """The run of the samples in `out` that were reached.

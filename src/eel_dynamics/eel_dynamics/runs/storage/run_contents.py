@@ -14,9 +14,11 @@ from eel_model.scene import Scene
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.storage.variables import COUNTS, ENERGY, LEDGER, OWN, Contents
-from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS
+from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS, MotionOfMany
 from eel_dynamics.simulation.energy import WORKS, EnergyLedger
 from eel_dynamics.simulation.observations import OBSERVED, Observations
+
+OF_ROBOTS = "elastic", "damping_power", "damping_work"  # in the ledger
 
 
 def contents_of_run(run) -> Contents:
@@ -79,8 +81,10 @@ def in_rep103_axes(contents: Contents) -> Contents:
     return contents._replace(arrays=contents.arrays | turned(contents.arrays), axes=REP103)
 
 
-def contents_of_batch(batch, out: Observations, works: np.ndarray, energy_at_start: np.ndarray) -> Contents:
-    """The contents of a `Batch`, with all that was observed of its swimmers; without their warnings."""
+def contents_of_batch(
+    batch, out: Observations, works: np.ndarray, energy_at_start: np.ndarray, robots: np.ndarray | None
+) -> Contents:
+    """The contents of a `Batch`, with all that was observed of its swimmers; without their robots and warnings."""
     values = {
         **{name: plain.each_once(getattr(batch, name)) for name in ("laws", "bodies", "scenes", "accuracies")},
         "error_estimates": [plain.plain_of(each) for each in batch.error_estimates],
@@ -93,14 +97,23 @@ def contents_of_batch(batch, out: Observations, works: np.ndarray, energy_at_sta
     arrays |= {name: getattr(batch, name) for name in COUNTS}
     arrays |= {name: array for name, array in out.arrays().items() if name in OWN}
     arrays |= {"closure_torque": out.closure[..., 0], "closure_force": out.closure[..., 1]}
-    arrays |= _of_ledger(EnergyLedger.of(out.energies, out.powers, works, energy_at_start[:, None]))
+    arrays |= {name: getattr(batch, name) for name in JOINT_ARRAYS if getattr(batch, name) is not None}
+    arrays |= _of_ledger(EnergyLedger.of(out.energies, out.powers, works, energy_at_start[:, None], robots))
     return Contents("batch", values, {name: each for name, each in arrays.items() if each.size})
 
 
 def with_warnings(batch, contents: Contents) -> Contents:
-    """The `contents` of a `Batch`, and for each swimmer its warnings."""
+    """The `contents` of a `Batch`, and for each swimmer its robot and its warnings."""
     lines = [list(batch[index].warnings) if samples else [] for index, samples in enumerate(batch.samples)]
-    return contents._replace(values=contents.values | {"warnings": lines})
+    robots = [plain.plain_robot(*each) for each in zip(batch.robots, batch.bodies, strict=True)]
+    return contents._replace(values=contents.values | {"robots": robots, "warnings": lines})
+
+
+def motion_of_batch(contents: Contents) -> MotionOfMany:
+    """The motion of the robots of a batch."""
+    none, ledger = np.zeros((*contents.arrays["position"].shape[:2], 0)), _ledger_of(contents.arrays)
+    arrays = {name: contents.arrays.get(name, none) for name in JOINT_ARRAYS}
+    return MotionOfMany(arrays, np.stack([ledger[name] for name in OF_ROBOTS], axis=-1))
 
 
 def observed_of_batch(contents: Contents) -> tuple[Observations, np.ndarray]:
@@ -123,7 +136,7 @@ def observed_of_batch(contents: Contents) -> tuple[Observations, np.ndarray]:
 def _ledger_of(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The arrays of the ledger; files of still water or imposed bending need not have theirs."""
     none = np.zeros_like(arrays[ENERGY + "residual"])
-    later = "flow_power", "flow_work", "fins_power", "fins_work", "elastic", "damping_power", "damping_work"
+    later = "flow_power", "flow_work", "fins_power", "fins_work", *OF_ROBOTS
     absent = {name: none for name in later if ENERGY + name not in arrays}
     return absent | {name: arrays[ENERGY + name] for name in LEDGER if name not in absent}
 

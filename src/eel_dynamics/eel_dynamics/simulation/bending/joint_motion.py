@@ -5,8 +5,13 @@
 `Robot.joints`, in their order and in their sign; modes are those of its tails and muscles, in section axes.
 """
 
+from collections.abc import Sequence
+from typing import NamedTuple
+
 import numpy as np
 from eel_model.robot.compiled import HINGE
+from eel_model.robot.joint import Joint
+from eel_model.robot.robot import Robot
 
 from eel_dynamics.simulation.bending.modes_on_grid import ModesOnGrid
 from eel_dynamics.simulation.observations import Variable
@@ -23,6 +28,52 @@ JOINT_ARRAYS = {
     "mode_rate": Variable(("time", "mode"), "rad/m/s", "its rate"),
 }
 ELASTIC, DAMPING_POWER, DAMPING_WORK = "elastic", "damping_power", "damping_work"
+
+
+class KeptMotion(NamedTuple):
+    """The motion of one robot's joints as a batch keeps it; as `JointMotion` otherwise."""
+
+    kept: dict[str, np.ndarray]  # of JOINT_ARRAYS
+    robot: np.ndarray  # (T, 3)
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        """The arrays of `JOINT_ARRAYS`."""
+        return self.kept
+
+    def ledger(self) -> np.ndarray:
+        """As of `JointMotion`."""
+        return self.robot
+
+
+class MotionOfMany(NamedTuple):
+    """The motion of the robots of B swimmers; of fewer joints or modes than the most, 0 fills the rest."""
+
+    arrays: dict[str, np.ndarray]  # of JOINT_ARRAYS, (B, T, J) or (B, T, N)
+    ledger: np.ndarray  # (B, T, 3)
+
+    @staticmethod
+    def of(motions: Sequence["JointMotion | None"], samples: np.ndarray, times: int) -> "MotionOfMany":
+        """Those of `motions`, None without a robot, of which the first `samples` (B,) of T `times` are valid."""
+        found = [{} if each is None else each.arrays() for each in motions]
+        arrays = {}
+        for name in JOINT_ARRAYS:
+            most = max((each[name].shape[1] for each in found if each), default=0)
+            arrays[name] = np.zeros((len(motions), times, most))
+            for row, each, count in zip(arrays[name], found, samples.tolist(), strict=True):
+                if each:
+                    row[:count, : each[name].shape[1]] = each[name][:count]
+        ledger = np.zeros((len(motions), times, 3))
+        for row, motion, count in zip(ledger, motions, samples.tolist(), strict=True):
+            if motion is not None:
+                row[:count] = motion.ledger()[:count]
+        return MotionOfMany(arrays, ledger)
+
+    def one(self, index: int, robot: Robot) -> KeptMotion:
+        """That of swimmer `index`."""
+        modes = sum(part.modes for part in robot.parts if not isinstance(part, Joint))
+        sizes = {"joint": len(robot.joints), "mode": modes}
+        cut = {name: sizes[about.dimensions[1]] for name, about in JOINT_ARRAYS.items()}
+        return KeptMotion({name: self.arrays[name][index, :, :most] for name, most in cut.items()}, self.ledger[index])
 
 
 class JointMotion:
