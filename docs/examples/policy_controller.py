@@ -20,7 +20,7 @@ from eel_ros.stamps import seconds_of
 from nav_msgs.msg import Odometry
 from train_policy import actions_of, file_of
 
-from eel_gym import HeadingEnv
+from eel_gym import HeadingEnv, LawAction
 from eel_msgs.msg import CurvatureSamples
 
 NAME = "policy_controller"
@@ -58,6 +58,7 @@ class PolicyController(ParameterNode):
 
     def message(self, time, rows):
         """The curvature `rows` (6, points) at `time` [s]."""
+        assert isinstance(self.env.action, LawAction)
         message = CurvatureSamples(x=array.array("d", self.env.action.x.tobytes()))
         message.header.stamp.sec, message.header.stamp.nanosec = divmod(round(time * 1e9), 1_000_000_000)
         for name, row in zip(FIELDS, rows, strict=True):

@@ -19,6 +19,7 @@ from eel_gaits.pilot.head_motion import HeadMotion
 
 from eel_gym.depth import DepthEnv
 from eel_gym.heading import HeadingEnv
+from eel_gym.joint_action import JointAction
 from eel_gym.knot_action import KnotAction
 from eel_gym.law_action import LawAction
 from eel_gym.swimmer_env import SwimmerEnv
@@ -31,6 +32,7 @@ __all__ = [
     "Episode",
     "HeadMotion",
     "HeadingEnv",
+    "JointAction",
     "KnotAction",
     "LawAction",
     "Observed",

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from eel_dynamics.runs.run import Run
+from eel_dynamics.simulation.commanded_robots import CommandedRobots
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.sampled_swimmers import SampledSwimmers
@@ -34,7 +35,7 @@ class EpisodeRecording:
         """Add the present instant."""
         self._snapshots.append(snapshot)
 
-    def finish(self, swimmers: SampledSwimmers, index: int) -> None:
+    def finish(self, swimmers: SampledSwimmers | CommandedRobots, index: int) -> None:
         """Write the episode of swimmer `index`, if it has more than its start. The next `add` begins another."""
         snapshots, self._snapshots = self._snapshots, []
         if len(snapshots) < 2:
@@ -57,7 +58,7 @@ class EpisodeRecording:
                 return path
 
 
-def run_of(snapshots: list[Snapshot], swimmers: SampledSwimmers, index: int, name: str) -> Run:
+def run_of(snapshots: list[Snapshot], swimmers: SampledSwimmers | CommandedRobots, index: int, name: str) -> Run:
     """The run of swimmer `index` from its `snapshots`. Its law has this `name` and no terms: a policy moved it."""
     columns: dict[str, Any] = {}
     for field in STACKED:
@@ -68,8 +69,11 @@ def run_of(snapshots: list[Snapshot], swimmers: SampledSwimmers, index: int, nam
         names = EnergyLedger.keys()
         ledgers: list[Any] = [snapshot.energy for snapshot in snapshots]
         energy = EnergyLedger(*(np.array([ledger[each] for ledger in ledgers]) for each in names))
+    for field in snapshots[0].joints:
+        columns[field] = np.array([snapshot.joints[field] for snapshot in snapshots])
     steps, _, evaluations = swimmers.evaluations(index)
     return Run(
+        robot=swimmers.robot if isinstance(swimmers, CommandedRobots) else None,
         law=Law(name=name),
         body=swimmers.body,
         scene=swimmers.scene,

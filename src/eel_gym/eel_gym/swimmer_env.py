@@ -9,6 +9,7 @@ import gymnasium
 import numpy as np
 from eel_base.wording import not_one_of, one_line, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.simulation.commanded_robots import CommandedRobots
 from eel_dynamics.simulation.head_motion import level_orientation
 from eel_dynamics.simulation.sampled_swimmers import LEFT_OUT, Array, SampledSwimmers
 from eel_gaits.pilot.head_motion import HeadMotion
@@ -17,11 +18,10 @@ from eel_model.flow.flow import Flow
 from eel_model.scene import Scene
 
 from eel_gym.episode_recording import EpisodeRecording
-from eel_gym.knot_action import KnotAction
-from eel_gym.law_action import LawAction
+from eel_gym.joint_action import JointAction
 from eel_gym.mean_heading import MeanHeading
 from eel_gym.picture import picture
-from eel_gym.task import Start, Task
+from eel_gym.task import Action, Start, Task
 
 
 class Judged(NamedTuple):
@@ -46,7 +46,7 @@ class SwimmerEnv(Task):
 
     Args:
         body, scene, accuracy: as of `Simulation`.
-        action: a `LawAction` or a `KnotAction`; by default that of the task.
+        action: a `LawAction`, a `KnotAction`, or a `JointAction` of a robot; by default that of the task.
         render_mode: by "rgb_array" `render` returns a picture of the present, from above and from the side; by "rerun"
             each episode is written to the folder `recordings`, as the visualiser would show it.
         flow: how the water moves, as of `Simulation`; or a function of the environment's random numbers
@@ -63,7 +63,7 @@ class SwimmerEnv(Task):
         body: Body | None = None,
         scene: Scene | None = None,
         accuracy: str | float | Accuracy = "standard",
-        action: LawAction | KnotAction | None = None,
+        action: Action | None = None,
         render_mode: str | None = None,
         recordings: Any = "recordings",
         swimmers: int | None = None,
@@ -79,16 +79,14 @@ class SwimmerEnv(Task):
         self.render_mode, self.flow = render_mode, flow
         self.metadata = self.metadata | {"render_fps": round(1.0 / self.numbers.control_period)}
         count, stations = swimmers or 1, 51 if render_mode else 2
-        self.swimmers = SampledSwimmers(
-            count,
-            self.action.x,
-            self.action.waves,
-            body=self.body,
-            scene=self.scene,
-            accuracy=accuracy,
-            stations=stations,
-            threads=threads,
-        )
+        swims: dict[str, Any] = {"body": self.body, "scene": self.scene, "accuracy": accuracy}
+        swims |= {"stations": stations, "threads": threads}
+        self.swimmers: SampledSwimmers | CommandedRobots
+        if isinstance(self.action, JointAction):
+            joints, kind = self.action.names, self.action.kind
+            self.swimmers = CommandedRobots(count, self.action.robot, joints, kind, **swims)
+        else:
+            self.swimmers = SampledSwimmers(count, self.action.x, self.action.waves, **swims)
         recorded = count if render_mode == "rerun" else 0
         self._recordings = [EpisodeRecording(recordings, self.name) for _ in range(recorded)]
         self._mean_heading = MeanHeading(max(1, round(self.action.period / self.numbers.control_period)), self.shape)
@@ -98,9 +96,10 @@ class SwimmerEnv(Task):
         self._stopped: dict[int, str] = {}  # in the last control step
         self.starts = [Start()] * count  #: of the present episodes
         self.restart(np.zeros(self.shape))
-        rows = self.action.advance(np.full((*self.shape, self.action.size), 0.5), self.numbers.control_period)
-        self.swimmers.check(rows.reshape(-1, *rows.shape[-2:])[0])
-        self.restart(np.zeros(self.shape))
+        if isinstance(self.swimmers, SampledSwimmers):
+            rows = self.action.advance(np.full((*self.shape, self.action.size), 0.5), self.numbers.control_period)
+            self.swimmers.check(rows.reshape(-1, *rows.shape[-2:])[0])
+            self.restart(np.zeros(self.shape))
 
     # -- one swimmer: Gymnasium's interface
 
@@ -153,14 +152,14 @@ class SwimmerEnv(Task):
         self._end(index)
         self.starts[index] = start = self.begin(options)
         rows = self.action.begin_one(index, start.own_time) if self.shape else self.restart(start.own_time)
-        rows[3] -= start.left_trim
+        self._add_trim(rows, np.asarray(start.left_trim))
         twist = (start.roll_rate, 0.0, 0.0, start.speed, 0.0, 0.0)
         flow = self.flow if self.flow is None or isinstance(self.flow, Flow) else self.flow(self.np_random)
         self.swimmers.start(index, start.position, level_orientation(start.heading), twist, rows, flow)
         self._trim[index], self.ticks[index], self._under_way[index] = start.left_trim, 0, True
         if len(start.goal) != len(self.goal):
             self.goal = np.zeros((len(start.goal), *self.shape))
-        self.head = self._heads()
+        self._look()
         if self.shape:
             self.goal[:, index] = start.goal
             self.heading[index] = self._mean_heading.begin_one(index, self.head.heading[index])
@@ -172,11 +171,12 @@ class SwimmerEnv(Task):
     def march(self, actions: Array) -> None:
         """March all swimmers that are under way through a control step with their `actions`."""
         rows = self.action.advance(actions, self.numbers.control_period)
-        rows.reshape(-1, *rows.shape[-2:])[:, 3] -= self._trim[:, None]
+        self._add_trim(rows, self._trim if self.shape else self._trim[0])
+        rows = rows if self.shape else rows[None]
         self.ticks += 1
         status = np.where(self._under_way, 0, LEFT_OUT)
         stopped = self.swimmers.advance(self.ticks * self.numbers.control_period, rows, status)
-        self.head = self._heads()
+        self._look()
         self.heading = self._mean_heading.add(self.head.heading)
         self._stopped = {index: one_line(reason) for index, reason in stopped.items()}
         for index in stopped:
@@ -213,11 +213,21 @@ class SwimmerEnv(Task):
             return None
         return picture(self.swimmers.observe(index, wrench=False, load=False), self.body, self.one(index).marks())
 
-    def _heads(self) -> HeadMotion:
+    def _look(self) -> None:
+        """Take in the motion of the heads, and of the joints."""
         heads = self.swimmers.heads.copy()
         if not self.shape:
             heads = heads[:, 0]
-        return HeadMotion(heads[:3], heads[3:7], heads[7:10], heads[10:])
+        self.head = HeadMotion(heads[:3], heads[3:7], heads[7:10], heads[10:])
+        if isinstance(self.swimmers, CommandedRobots) and isinstance(self.action, JointAction):
+            self.action.see(self.swimmers.joints.copy() if self.shape else self.swimmers.joints[..., 0].copy())
+
+    def _add_trim(self, rows: Array, left_trim: Any) -> None:
+        """Bend the body by `left_trim` [rad/m], () or (N,), beside what the action asks of it."""
+        if not isinstance(self.action, JointAction):
+            rows[..., 3, :] -= np.asarray(left_trim)[..., None]
+        elif self.action.kind == "position":
+            rows += np.asarray(left_trim)[..., None] * self.body.length / self.action.size
 
     def _record(self, index: int) -> None:
         if self._recordings and self._under_way[index]:

@@ -14,9 +14,11 @@ from eel_gaits.gaits.swimming import straight
 from eel_model.body.body import Body, checked_body
 from eel_model.scene import Scene
 
+from eel_gym.joint_action import JointAction
 from eel_gym.knot_action import KnotAction
 from eel_gym.law_action import LawAction
 
+Action = LawAction | KnotAction | JointAction
 FASTEST, SPIN, FARTHEST = 10.0, 50.0, 100.0  # m/s, rad/s, m: bounds of what is observed
 GREATEST_START_SPEED = 0.5  # m/s, that the tasks draw: near that of straight()
 
@@ -71,15 +73,15 @@ class Task(gymnasium.Env[Any, Any]):
         self,
         body: Body | None,
         scene: Scene | None,
-        action: LawAction | KnotAction | None,
+        action: Action | None,
         shape: tuple[int, ...],
         numbers: dict[str, Any],
     ):
         self.numbers = checked_numbers(self.name, self.Numbers, numbers)
         self.scene = self.default_scene() if scene is None else checked_instance("scene", scene, Scene)
-        self.body = checked_body(body)
-        if action is not None and not isinstance(action, (LawAction, KnotAction)):
-            raise ValueError(f"action must be a LawAction or a KnotAction, got {shown(action)}")
+        self.body = checked_body(action.robot.body if body is None and isinstance(action, JointAction) else body)
+        if action is not None and not isinstance(action, Action):
+            raise ValueError(f"action must be a LawAction, a KnotAction or a JointAction, got {shown(action)}")
         self.action = self.default_action() if action is None else action
         bounds = [bound for _, _, bound in (*self.observed, *self.action.names_of_state)]
         self._bounds = np.array(bounds, dtype=np.float32)
@@ -97,7 +99,7 @@ class Task(gymnasium.Env[Any, Any]):
         """The scene where none is given: of the motion alone, without internal wrench and energy ledger."""
         return Scene(internal_wrench=False, ledger=False)
 
-    def default_action(self) -> LawAction | KnotAction:
+    def default_action(self) -> Action:
         """The action where none is given."""
         bends = {"left_bend": (-0.5, 0.5)} if self.scene.planar else {"left_bend": (-0.5, 0.5), "up_bend": (-0.5, 0.5)}
         return LawAction(straight(), bends, length=self.body.length)

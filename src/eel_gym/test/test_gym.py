@@ -266,7 +266,11 @@ def test_unknown_and_bad_parameters_are_named_in_one_line():
             make("Eel/Heading-v0", gain=3.0)
     with pytest.raises(ValueError, match=r"control_period must be >= 0\.001 s, got 0$"):
         HeadingEnv(control_period=0)
-    for name, wanted in (("scene", "a Scene"), ("body", "a Body"), ("action", "a LawAction or a KnotAction")):
+    for name, wanted in (
+        ("scene", "a Scene"),
+        ("body", "a Body"),
+        ("action", "a LawAction, a KnotAction or a JointAction"),
+    ):
         with pytest.raises(ValueError, match=f"{name} must be {wanted}, got 'none'"):
             HeadingEnv(**{name: "none"})
     with pytest.raises(ValueError, match="accuracy"):

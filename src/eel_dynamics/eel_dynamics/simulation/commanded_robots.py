@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Many robots of one kind side by side, whose joints are commanded: as `SampledSwimmers`, of bodies that bend."""
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from eel_gaits.laws.law import Law
+from eel_model.body.body import Body
+from eel_model.flow.flow import Flow
+from eel_model.robot.robot import Robot
+from eel_model.scene import Scene
+from numpy.typing import NDArray
+
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.simulation.observations import Snapshot
+from eel_dynamics.simulation.sampled_swimmers import LEFT_OUT, Array
+from eel_dynamics.simulation.simulation import Simulation
+from eel_dynamics.simulation.stopping import SimulationStopped
+
+MODES = {"position": "position", "velocity": "velocity", "torque": "effort"}  # arguments of `Simulation.command`
+
+
+class CommandedRobots:
+    """N robots. Each swims as a `Simulation` with the same commands, to the last bit, for any number of threads.
+
+    Args:
+        count: N. robot: of all. names: of the joints that are commanded. kind: "position", "velocity" or "torque".
+        body, scene, accuracy, stations: as of `Simulation`. threads: how many march.
+
+    Attributes:
+        heads: (13, N) position [m], orientation x y z w, angular velocity [rad/s] and velocity [m/s] of each.
+        joints: (2, J, N) angle [rad] and rate [rad/s] of all joints of each.
+    """
+
+    def __init__(
+        self,
+        count: int,
+        robot: Robot,
+        names: Sequence[str],
+        kind: str,
+        *,
+        body: Body | None = None,
+        scene: Scene | None = None,
+        accuracy: str | float | Accuracy = "standard",
+        stations: int = 51,
+        threads: int = 1,
+    ):
+        self.robot, self._names, self._mode = robot, tuple(names), MODES[kind]
+        self._arguments = {"body": body, "scene": scene, "accuracy": accuracy, "stations": stations, "robot": robot}
+        first = self._simulation()
+        self.body, self.scene, self.x, self.accuracy, self.grid = (
+            getattr(first, name) for name in ("body", "scene", "x", "accuracy", "grid")
+        )
+        self._swims = [first] * count
+        self.heads: Array = np.zeros((13, count))
+        self.joints: Array = np.zeros((2, len(robot.joints), count))
+        self._pool = ThreadPoolExecutor(threads, thread_name_prefix="robot") if threads > 1 else None
+
+    def start(self, index: int, position, orientation, twist, commands: Array, flow: Flow | None = None) -> None:
+        """Put a robot at the start, at time 0, with springs at rest and these `commands` (n,) in force.
+
+        position, orientation, twist, flow: as of `Simulation`.
+        """
+        self._swims[index] = self._simulation(position=position, orientation=orientation, twist=twist, flow=flow)
+        self._command(index, commands)
+        self._look(index)
+
+    def advance(self, times: Array, commands: Array, status: NDArray[np.int64]) -> dict[int, SimulationStopped]:
+        """March each robot to its own of the `times` (N,) [s] under its `commands` (N, n).
+
+        status (N,): robots with `LEFT_OUT` stay; it is written to. Returns why robots stopped, by their index.
+        """
+        stopped: dict[int, SimulationStopped] = {}
+
+        def march(index: int) -> None:
+            try:
+                self._command(index, commands[index])
+                self._swims[index].advance(float(times[index]))
+                self._look(index)
+            except SimulationStopped as error:
+                stopped[index] = error
+                status[index] = LEFT_OUT
+
+        marched = np.flatnonzero(status != LEFT_OUT).tolist()
+        list((map if self._pool is None else self._pool.map)(march, marched))
+        return dict(sorted(stopped.items()))
+
+    def observe(self, index: int, *, wrench: bool = True, load: bool = True) -> Snapshot:
+        """The snapshot of a robot at present, as of `Simulation.observe`."""
+        return self._swims[index].observe(wrench=wrench, load=load)
+
+    def evaluations(self, index: int) -> tuple[int, int, int]:
+        """Numbers of steps, rejected steps and evaluations of a robot since its start."""
+        return self._swims[index].evaluations
+
+    def _simulation(self, **start) -> Simulation:
+        return Simulation(**self._arguments | start, law=Law(name="commands"))
+
+    def _command(self, index: int, commands: Array) -> None:
+        for name, value in zip(self._names, commands.tolist(), strict=True):
+            self._swims[index].command(name, **{self._mode: value})
+
+    def _look(self, index: int) -> None:
+        swim = self._swims[index]
+        head, found = swim.head, swim.observe(wrench=False, load=False).joints
+        self.heads[:, index] = np.concatenate((head.position, head.orientation, head.twist))
+        self.joints[:, :, index] = found["joint_angle"], found["joint_rate"]

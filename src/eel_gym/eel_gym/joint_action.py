@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Actions that are commands for the joints of a robot: positions, velocities, or torques of its servos."""
+
+from typing import Any
+
+import numpy as np
+from eel_base.quantity import checked_instance, positive
+from eel_base.wording import not_one_of, shown
+from eel_dynamics.simulation.sampled_swimmers import Array
+from eel_model.robot.robot import Robot
+
+KINDS = {"position": ("rad", None), "velocity": ("rad/s", "speed_limit"), "torque": ("N m", "torque_limit")}
+"""Of a command: its unit, and the field of a servo that is its greatest value."""
+GREATEST_ANGLE, GREATEST_RATE = 0.6, 20.0  # rad, rad/s: of a position by default; bound of an observed rate
+SEEN_ANGLE = 3.0  # rad, bound of an observed angle
+
+
+class JointAction:
+    """Turns actions into commands, which hold over a control step. The policy sees angle and rate of each joint.
+
+    An action holds one value for each joint with a servo, from -1 to 1 times its greatest command, in the joint's sign.
+    A bend that the body has by itself is added to positions, an equal share to each joint; other commands have none.
+
+    Args:
+        robot: a `Robot`, or its name.
+        kind: "position", "velocity" or "torque".
+        greatest: [rad, rad/s or N m]; None: 0.6 rad, or the servo's own limit.
+    """
+
+    period = 1.0  # s, over which a task averages: there is no wave
+
+    def __init__(self, robot: Robot | str, kind: str = "position", greatest: float | None = None):
+        self.robot = Robot.named(robot) if isinstance(robot, str) else checked_instance("robot", robot, Robot)
+        if not isinstance(kind, str) or kind not in KINDS:
+            raise ValueError(not_one_of("kind", kind, KINDS))
+        driven = [
+            (joint.name, servo) for joint, servo in zip(self.robot.joints, self.robot.servos, strict=True) if servo
+        ]
+        if not driven:
+            raise ValueError(f"robot must have a joint with a servo, got {shown(self.robot)}")
+        self.kind, self.names = kind, tuple(name for name, _ in driven)
+        unit, limit = KINDS[kind]
+        if greatest is None and limit is not None:
+            values = [getattr(servo, limit) for _, servo in driven]
+            if None in values:
+                raise ValueError(f"greatest must be given where a servo has no {limit}, got None")
+            self.greatest: Array = np.array(values, dtype=float)
+        else:
+            value = GREATEST_ANGLE if greatest is None else positive("greatest", greatest, unit)
+            self.greatest = np.full(len(driven), value)
+        self._joints: Array = np.zeros((2, len(self.robot.joints)))
+
+    @property
+    def size(self) -> int:
+        """How many values an action has."""
+        return len(self.names)
+
+    def described(self) -> list[str]:
+        """One line for each value of an action: name, unit, bounds."""
+        unit, _ = KINDS[self.kind]
+        pairs = zip(self.names, self.greatest.tolist(), strict=True)
+        return [f"{self.kind} of {name} [{unit}], {-greatest:g} to {greatest:g}" for name, greatest in pairs]
+
+    def begin(self, own_time: Any = 0.0) -> Array:
+        """The first commands (size,), or (N, size) where `own_time` is (N,): all 0."""
+        self._joints = np.zeros((2, len(self.robot.joints), *np.shape(own_time)))
+        commands: Array = np.zeros((*np.shape(own_time), self.size))
+        return commands
+
+    def begin_one(self, swimmer: int, own_time: float) -> Array:
+        """The first commands (size,) of one of N swimmers."""
+        self._joints[..., swimmer] = 0.0
+        commands: Array = np.zeros(self.size)
+        return commands
+
+    def advance(self, action: Array, step: float) -> Array:
+        """The commands (size,), or (N, size), for this `action`."""
+        commands: Array = action * self.greatest
+        return commands
+
+    def see(self, joints: Array) -> None:
+        """Take in angles and rates (2, J), or (2, J, N), of the joints."""
+        self._joints = joints
+
+    @property
+    def names_of_state(self) -> list[tuple[str, str, float]]:
+        """Name, unit and greatest size of what `state` holds."""
+        names = [joint.name for joint in self.robot.joints]
+        return [(f"angle of {name}", "rad", SEEN_ANGLE) for name in names] + [
+            (f"rate of {name}", "rad/s", GREATEST_RATE) for name in names
+        ]
+
+    @property
+    def state(self) -> list[Any]:
+        """Angles, then rates of all joints; of N swimmers (N,) each."""
+        return [*self._joints[0], *self._joints[1]]
