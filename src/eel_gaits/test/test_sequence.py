@@ -102,11 +102,6 @@ def test_a_bad_step_in_python_is_named(rows, message):
         ("gait: turning", "gait: [turning]", "line 7, key 'gait': unknown gait ['turning'], must be one of"),
         ("left_bend: 0.5", "left_bend: x", "line 8, key 'left_bend': left_bend must be a number, got 'x'"),
         ("left_bend: 0.5", "left_bend: 1e9", "line 8, key 'left_bend': left_bend must be <= 100000 rad/m"),
-        (
-            "left_bend: 0.5",
-            "period: 1, yaw_bend: 0.5",
-            "line 8, key 'yaw_bend': gait 'turning' has no number 'yaw_bend': it is 'left_bend' now, of the opposite",
-        ),
         ("left_bend: 0.5", "bend_start: 2", "line 8, key 'bend_start': bend_full must be > bend_start (2 s), got 2.0"),
         ("{left_bend: 0.5}", "fast", "line 8, key 'set': must be a mapping of names to numbers, got 'fast'"),
         ("blend: 1e-1", "blend: 0", "line 10, key 'blend': blend must be > 0, got 0"),

@@ -27,14 +27,6 @@ def test_what_the_user_set_carries_over_and_defaults_do_not():
     assert rolled.changed({"gait": "falling"}).law() == settings.law()
 
 
-def test_a_number_that_was_renamed_is_refused_with_the_new_name_and_its_sign():
-    told = r"has no parameter 'yaw_bend': it is 'left_bend' now, of the opposite sign"
-    with pytest.raises(ValueError, match=told):
-        Settings(gait="turning").changed({"yaw_bend": 0.5})
-    with pytest.raises(ValueError, match=r"no parameter 'yaw_angle': it is 'left_angle' now"):
-        Settings.start({"gait": "falling", "yaw_angle": 0.1})
-
-
 def test_the_numbers_are_those_of_the_gait():
     settings = Settings(gait="turning")
     assert settings.law() == turning() and settings.numbers()["left_bend"] == turning.numbers().left_bend

@@ -121,6 +121,7 @@ def _of_the_torque(a: Analysis) -> list[str]:
 
 def _of_the_cost(run) -> list[str]:
     lines = [f"cost                {run.steps} steps, {run.evaluations} evaluations of the head's dynamics"]
+    lines = lines if run.evaluations else []  # a bag does not tell
     error = run.error_estimate
     if error is not None:
         torque = "" if error.torque is None else f", of the torque {error.torque:.1e}"

@@ -14,7 +14,6 @@ from eel_base.wording import did_you_mean
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 
-RENAMED = {"yaw_bend": "left_bend", "yaw_angle": "left_angle"}  # former numbers, positive to the right
 TO_THE_LEFT = "; positive: to the left, negative: to the right"
 
 
@@ -76,7 +75,5 @@ def left_turn(bend: float, envelope: tuple[Ramp, ...]) -> tuple[Term, ...]:
 
 
 def named_instead(name: str, known: Collection[str]) -> str:
-    """What a message says after a number `name` that is not `known`: its new name, or those that there are."""
-    if (new := RENAMED.get(name)) in known:
-        return f": it is {new!r} now, of the opposite sign (positive: to the left)"
+    """What a message says after a number `name` that is not `known`: those that there are."""
     return f"{did_you_mean(name, known)}, it has: {', '.join(known) or 'none'}"

@@ -14,7 +14,7 @@ from eel_base.quantity import Quantities, quantity
 from eel_base.wording import shown
 
 from eel_gaits.gaits.cpg import Oscillation
-from eel_gaits.gaits.numbers import RENAMED, named_instead
+from eel_gaits.gaits.numbers import named_instead
 from eel_gaits.gaits.registry import GAITS, Transition, find
 from eel_gaits.gaits.sequence_file import sequence_from_file
 from eel_gaits.laws.law import Law
@@ -74,14 +74,8 @@ class Settings:
 
     @classmethod
     def start(cls, overrides: Mapping[str, Any]) -> "Settings":
-        """The settings at start, from a mapping of name to value. Names that no gait has are ignored.
-
-        `ValueError` for a number that was renamed.
-        """
+        """The settings at start, from a mapping of name to value. Names that no gait has are ignored."""
         names = cls.known_names()
-        for name in RENAMED:
-            if name in overrides and name not in names:
-                raise ValueError(f"no parameter {shown(name)}{named_instead(name, names)}")
         known = {name: value for name, value in overrides.items() if name in names}
         return cls(gait=known.pop("gait", cls.gait), file=known.pop("file", cls.file), chosen=known)
 
