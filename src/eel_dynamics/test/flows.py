@@ -107,3 +107,51 @@ def in_paper_axes(u):
     """The same function in the paper's axes."""
     signs = turn_vector(np.ones(3))
     return lambda x, t: u(x * signs, t) * signs
+
+
+def any_flow(rng, planar, near):
+    """One to three flows of odd numbers whose middles are near the place `near`, as pairs of formula and flow."""
+    flat = np.array([1.0, 1.0, 0.0 if planar else 1.0])
+
+    def one():
+        size, scale = 10.0 ** rng.uniform(-1.5, 0.3), 10.0 ** rng.uniform(-0.8, 0.7)
+        velocity, place, drift = size * rng.normal(size=3) * flat, (near + 0.15 * rng.normal(size=3)) * flat, flat
+        across = np.cross(velocity, [0.0, 0.0, 1.0] if planar else rng.normal(size=3))
+        core = max(0.12, 0.3 * scale)
+        rows, time = size * rng.normal(size=(6, 3)) * flat, np.linspace(0.0, rng.uniform(0.5, 3.0), 6)
+        kinds = [
+            (uniform, lambda: Uniform(rows, time=time)),
+            (gust, lambda: Gust(velocity=velocity, start=rng.uniform(-1.0, 0.3), rise=scale, hold=0.4, fall=0.7)),
+            (shear, lambda: Shear(velocity=velocity, across=across, centre=tuple(place), width=scale)),
+            (shear, lambda: Shear(velocity=velocity, across=across, centre=tuple(place), profile="linear")),
+            (
+                vortex,
+                lambda: Vortex(circulation=rng.normal() * scale, core=core, centre=tuple(place), drift=0.4 * drift),
+            ),
+            (
+                street,
+                lambda: VortexStreet(
+                    circulation=rng.normal() * scale,
+                    core=core,
+                    spacing=2.0 * scale + 0.4,
+                    width=scale,
+                    count=int(rng.integers(1, 6)),
+                    start=tuple(place),
+                    drift=tuple(-0.3 * drift),
+                ),
+            ),
+            (
+                wave,
+                lambda: Wave(
+                    amplitude=0.1 * scale,
+                    wavelength=max(1.0, 4.0 * scale),
+                    direction=rng.normal(size=2),
+                    surface=rng.uniform(1.5, 4.0),
+                    phase=rng.uniform(0.0, 6.0),
+                ),
+            ),
+        ]
+        written, make = kinds[rng.integers(len(kinds) - planar)]
+        return written, make()
+
+    return [one() for _ in range(rng.integers(1, 4))]

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from cases import kern_body, random_law, random_twist
 from eel_model.axes import turn_quaternion, turn_vector
-from flows import FLOWS, formula, in_paper_axes
+from flows import FLOWS, any_flow, formula, in_paper_axes
 from library_state import (
     DENSE,
     Reference,
@@ -21,6 +21,7 @@ from library_state import in_paper_axes as snapshot_in_paper_axes
 from reference import boyer_body
 
 from eel_dynamics import Simulation, Vortex, Wave
+from eel_gaits import straight
 
 STATIONS = np.sort(np.concatenate([np.linspace(0, 1, 15), [0.01, 0.05, 0.2, 0.75, 0.96]]))
 EXACT, KINKS = 1e-9, 1e-5  # as in test_against_reference.py
@@ -88,6 +89,49 @@ def test_any_motion_in_water_that_moves_is_that_of_the_kinetic_energy(name, sett
     assert distance(got.tail_force, fields.tail_force, scale) < tolerance
     reactive = got.fluid_force - got.resistive_force, at(fields.fluid_force - fields.resistive_force)
     assert distance(*(each[inner] for each in reactive), scale) < 10 * tolerance
+
+
+FRICTION = "laminar", "blended", "taylor", "none"  # "printed" jumps, where the reference is exact to 1e-4 alone
+
+
+@pytest.mark.parametrize("index", [*range(16), *(pytest.param(k, marks=pytest.mark.soak) for k in range(16, 400))])
+def test_any_sum_of_flows_near_the_body_acts_as_its_formula(index):
+    """Flows of odd numbers whose middles are within a few widths of the body, in space and in the plane."""
+    rng, planar = np.random.default_rng([index, 5]), index % 3 == 0
+    body = (boyer_body, kern_body)[rng.integers(2)]()
+    settings = {"friction": FRICTION[index % 4]} if index % 5 else {"resistive": False, "current": (0.3, -0.2, 0.0)}
+    position, twist, q, law = rng.normal(size=3) * 0.3, random_twist(rng), random_quaternion(rng), None
+    if planar:
+        turn = rng.uniform(0.0, 6.0)
+        position[2], q = 0.0, np.array([0.0, 0.0, np.sin(turn / 2), np.cos(turn / 2)])
+        twist = np.array(twist) * (0.0, 0.0, 1.0, 1.0, 1.0, 0.0)
+        law = straight(wavelength=rng.uniform(0.5, 2.0), amplitude_0=rng.uniform(-3.0, 3.0), start_periods=0.1)
+    law = random_law(rng, spline=False) if law is None else law.delayed(-0.4)
+    parts = any_flow(rng, planar, turn_vector(position) - (0.4 * body.kinks[-1], 0.0, 0.0))
+    written = [formula(flow) for formula, flow in parts]
+    stations = np.unique(np.concatenate([body.kinks[-1] * STATIONS, body.kinks]))
+    simulation = Simulation(
+        body=library_body(body),
+        scene=library_scene(**settings, planar=planar),
+        accuracy=DENSE,
+        stations=stations,
+        position=turn_vector(position),
+        orientation=turn_quaternion(q),
+        twist=turn_twist(twist),
+        flow=sum((flow for _, flow in parts[1:]), parts[0][1]),
+        law=law,
+    )
+    got = snapshot_in_paper_axes(simulation.observe())
+    u = in_paper_axes(lambda x, t: sum(each(x, t) for each in written))
+    reference, fields, acceleration = reference_at(body, law, 0.0, twist, q, position, settings, u)
+    tolerance = KINKS if settings.get("resistive", True) else EXACT
+    for part in (2, slice(3, 5)) if planar else (slice(0, 3), slice(3, 6)):
+        assert distance(got.head_acceleration[part], acceleration[part]) < 2 * tolerance
+    for name in ("torque", "force"):
+        assert distance(getattr(got, name), reference.space.evaluate(getattr(fields, name), stations)) < 3 * tolerance
+    energy = got.energy
+    assert distance([energy[name] for name in NAMES], [getattr(fields, name) for name in NAMES]) < 2 * tolerance
+    assert distance(energy.kinetic_fluid, fields.kinetic_fluid) < EXACT
 
 
 @pytest.mark.parametrize("name", FLOWS)

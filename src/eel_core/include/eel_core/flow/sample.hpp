@@ -59,12 +59,25 @@ struct Jacobian<Plane, T> {
     {
         return T(0.0);
     }
+    Jacobian& operator+=(const Jacobian& o) { return x += o.x, y += o.y, *this; }
     Jacobian in(const Frame2<double>& frame) const
     {
         const Vector2<T> a = frame.local(x), b = frame.local(y);
         return {frame.cosine * a + frame.sine * b, frame.cosine * b - frame.sine * a};
     }
 };
+
+// The Jacobian of a velocity along `along` with this `gradient`.
+template <Number T>
+Jacobian<Space, T> outer(const Vector3<double>& along, const Vector3<T>& gradient)
+{
+    return {along.x * gradient, along.y * gradient, along.z * gradient};
+}
+template <Number T>
+Jacobian<Plane, T> outer(const Vector2<double>& along, const Vector2<T>& gradient)
+{
+    return {along.x * gradient, along.y * gradient};
+}
 
 template <class M, Number T>
 struct FlowSample {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Flows of the water without the swimmer, in the axes of the paper's world. Each source, at an instant, is a function
-// of the place: a template over the number, so that it serves the nose and the nodes.
+// Flows of the water without the swimmer, in the axes of the paper's world. Each source, at an instant and seen from
+// the head, is a function of the place r about the head, in the head's axes, as what it gives: it turns its own vectors
+// once, not the water's at each place. The function is a template over the number: it serves the nose and the nodes.
 #pragma once
 
 #include <functional>
@@ -16,15 +17,34 @@ namespace eel_core {
 template <Number T>
 using WaterAt = FlowSample<Space, T>;
 
+// From where the water is seen: the head's place [m] in the world, its axes, and the current [m/s]: rates are those at
+// a place that moves with it.
+template <class M>
+struct View {
+    Vector3<double> nose;
+    Frame<M, double> head;
+    Vector3<double> current;
+
+    // A vector of the world, or its part in the plane, in the axes of the head.
+    Vector<M, double> local(const Vector3<double>& v) const
+    {
+        if constexpr (M::planar)
+            return head.local(Vector2{v.x, v.y});
+        else
+            return head.local(v);
+    }
+};
+
 // The same everywhere.
+template <class M>
 struct EverywhereAlike {
-    Vector3<double> u, u_t;
+    Vector<M, double> u, u_t;
 
     template <Number T>
-    WaterAt<T> operator()(const Vector3<T>&) const
+    FlowSample<M, T> operator()(const Vector<M, T>& r) const
     {
-        WaterAt<T> water{};
-        water.u = {T(u.x), T(u.y), T(u.z)}, water.u_t = {T(u_t.x), T(u_t.y), T(u_t.z)};
+        FlowSample<M, T> water{};
+        water.u = 0.0 * r + u, water.u_t = 0.0 * r + u_t;
         return water;
     }
 };
@@ -34,11 +54,13 @@ struct RampedFlow {
     Vector3<double> velocity;
     std::vector<Ramp> ramps;
 
-    EverywhereAlike at(double time) const
+    template <class M>
+    EverywhereAlike<M> at(double time, const View<M>& view) const
     {
         Jet factor{ramps.empty() ? 1.0 : 0.0};
         for (const Ramp& ramp : ramps) ramp.add_to(factor, time);
-        return {factor[0] * velocity, factor[1] * velocity};
+        const Vector<M, double> along = view.local(velocity);
+        return {factor[0] * along, factor[1] * along};
     }
 };
 
@@ -47,7 +69,8 @@ struct SplineFlow {
     std::vector<double> knots;
     std::vector<std::array<Vector3<double>, 4>> pieces;  // by powers of the time since the knot, from the constant on
 
-    EverywhereAlike at(double time) const
+    template <class M>
+    EverywhereAlike<M> at(double time, const View<M>& view) const
     {
         const double within = std::clamp(time, knots.front(), knots.back());
         const auto behind = std::upper_bound(knots.begin() + 1, knots.end() - 1, within);
@@ -55,7 +78,8 @@ struct SplineFlow {
         const double s = within - knots[piece];
         const auto& c = pieces[piece];
         const Vector3<double> rate = c[1] + s * (2.0 * c[2] + 3.0 * s * c[3]);
-        return {c[0] + s * (c[1] + s * (c[2] + s * c[3])), within == time ? rate : Vector3<double>{}};
+        return {view.local(c[0] + s * (c[1] + s * (c[2] + s * c[3]))),
+                view.local(within == time ? rate : Vector3<double>{})};
     }
 };
 
@@ -66,21 +90,30 @@ struct ShearFlow {
     double middle, width;
     bool linear;
 
-    const ShearFlow& at(double) const { return *this; }
-    template <Number T>
-    WaterAt<T> operator()(const Vector3<T>& x) const
-    {
-        const T s = (dot(across, x) - middle) * (1.0 / width);
-        T value = s, slope(1.0);
-        if (!linear) {
-            const T e = exponential(-2.0 * abs(s)), sum = 1.0 + e;
-            value = with_sign_of((1.0 - e) / sum, s), slope = 4.0 * e / (sum * sum);
+    template <class M>
+    struct Now {
+        Vector<M, double> velocity, across;  // the latter by the width
+        double middle, passed;               // of d / width: where d is 0; the current's part per time
+        bool linear;
+
+        template <Number T>
+        FlowSample<M, T> operator()(const Vector<M, T>& r) const
+        {
+            const T s = dot(across, r) - middle;
+            T value = s, slope(1.0);
+            if (!linear) {
+                const T e = exponential(-2.0 * abs(s)), inverse = 1.0 / (1.0 + e);
+                value = with_sign_of((1.0 - e) * inverse, s), slope = 4.0 * e * (inverse * inverse);
+            }
+            return {value * velocity, (passed * slope) * velocity, outer(velocity, slope * across)};
         }
-        WaterAt<T> water{};
-        water.u = value * velocity;
-        const Vector3<T> gradient = (slope * (1.0 / width)) * across;
-        water.g = {velocity.x * gradient, velocity.y * gradient, velocity.z * gradient};
-        return water;
+    };
+    template <class M>
+    Now<M> at(double, const View<M>& view) const
+    {
+        const double inverse = 1.0 / width;
+        return {view.local(velocity), inverse * view.local(across), inverse * (middle - dot(across, view.nose)),
+                inverse * dot(across, view.current), linear};
     }
 };
 
@@ -95,32 +128,45 @@ struct VortexFlow {
     double core;                   // [m], r_c
     Vector3<double> drift;         // [m/s]
 
+    template <class M>
     struct Now {
         const VortexFlow& flow;
-        double time;
+        Vector<M, double> axis_x, axis_y;  // of the world
+        Vector2<double> nose, drift;       // in the world: of the head less the way of the drift; less the current
 
         template <Number T>
-        WaterAt<T> operator()(const Vector3<T>& place) const
+        FlowSample<M, T> operator()(const Vector<M, T>& r) const
         {
             const double by_core = 1.0 / (flow.core * flow.core);
+            const T place_x = dot(axis_x, r) + nose.x, place_y = dot(axis_y, r) + nose.y;
             T u(0.0), v(0.0), shear(0.0), along(0.0), across(0.0);
             for (const Vortex& vortex : flow.vortices) {
-                const T x = place.x - (vortex.x + time * flow.drift.x), y = place.y - (vortex.y + time * flow.drift.y);
+                const T x = place_x - vortex.x, y = place_y - vortex.y;
                 const T square = x * x + y * y;
                 const auto [swirl, slope] = swirl_and_slope(square * by_core);
-                const T turn = vortex.strength * by_core * swirl;
-                const T bend = 2.0 * vortex.strength * by_core * by_core * slope;
+                const T turn = (vortex.strength * by_core) * swirl;
+                const T bend = (2.0 * vortex.strength * by_core * by_core) * slope, bend_y = bend * y;
                 u -= turn * y, v += turn * x;
-                shear += bend * x * y, along += turn + bend * x * x, across += turn + bend * y * y;
+                shear += bend_y * x, along += turn + bend * (x * x), across += turn + bend_y * y;
             }
-            WaterAt<T> water{};
-            water.u = {u, v, T(0.0)};
-            water.g = {{-shear, -across, T(0.0)}, {along, shear, T(0.0)}, {T(0.0), T(0.0), T(0.0)}};
-            water.u_t = -water.g.times(flow.drift);
+            const Vector<M, T> of_u = -(shear * axis_x + across * axis_y), of_v = along * axis_x + shear * axis_y;
+            FlowSample<M, T> water{
+                u * axis_x + v * axis_y,
+                (shear * drift.x + across * drift.y) * axis_x - (along * drift.x + shear * drift.y) * axis_y,
+                outer(axis_x, of_u)};
+            water.g += outer(axis_y, of_v);
             return water;
         }
     };
-    Now at(double time) const { return {*this, time}; }
+    template <class M>
+    Now<M> at(double time, const View<M>& view) const
+    {
+        return {*this,
+                view.local({1.0, 0.0, 0.0}),
+                view.local({0.0, 1.0, 0.0}),
+                {view.nose.x - time * drift.x, view.nose.y - time * drift.y},
+                {drift.x - view.current.x, drift.y - view.current.y}};
+    }
 
     // f = (1 - exp(-s)) / s and its derivative: by the series where s is small, and without the exponential where that
     // is below round-off.
@@ -153,29 +199,37 @@ struct WaveFlow {
     double amplitude, wavenumber, frequency, surface, start;
     Vector3<double> direction;
 
+    template <class M>
     struct Now {
-        const WaveFlow& flow;
-        double phase;
+        Vector<M, double> along, up;  // d and E3
+        double size, wavenumber, phase, depth;  // of the velocity; phase and k times the depth at the head
+        double rate, rise;  // w, less k times the current along d; k times the current along E3
 
         template <Number T>
-        WaterAt<T> operator()(const Vector3<T>& x) const
+        FlowSample<M, T> operator()(const Vector<M, T>& r) const
         {
-            const double k = flow.wavenumber, w = flow.frequency;
-            const Vector3<double>&d = flow.direction, up{0.0, 0.0, 1.0};
-            const auto [s, c] = sine_and_cosine(k * dot(d, x) + phase);
-            const T size = flow.amplitude * w * exponential(k * (x.z - flow.surface)), slope = k * size;
-            WaterAt<T> water{};
-            water.u = (size * c) * d + (size * s) * up;
-            water.u_t = (w * size * s) * d - (w * size * c) * up;
-            const Vector3<T> of_along = (-(slope * s)) * d + (slope * c) * up;
-            water.g = {d.x * of_along, d.y * of_along, (slope * c) * d + (slope * s) * up};
+            const double k = wavenumber;
+            const auto [s, c] = sine_and_cosine(k * dot(along, r) + phase);
+            const T speed = size * exponential(k * dot(up, r) - depth), us = speed * s, uc = speed * c;
+            FlowSample<M, T> water{uc * along + us * up, (rate * us + rise * uc) * along + (rise * us - rate * uc) * up,
+                                   outer(along, (k * uc) * up - (k * us) * along)};
+            water.g += outer(up, (k * uc) * along + (k * us) * up);
             return water;
         }
     };
-    Now at(double time) const
+    template <class M>
+    Now<M> at(double time, const View<M>& view) const
     {
         constexpr double turn = 2.0 * std::numbers::pi;
-        return {*this, std::fmod(start - frequency * time, turn)};
+        const double k = wavenumber;
+        return {view.local(direction),
+                view.local({0.0, 0.0, 1.0}),
+                amplitude * frequency,
+                k,
+                std::fmod(start - frequency * time, turn) + k * dot(direction, view.nose),
+                k * (surface - view.nose.z),
+                frequency - k * dot(direction, view.current),
+                k * view.current.z};
     }
 };
 
@@ -206,13 +260,16 @@ inline void flow_at(const Flow& flow, double time, double* rows, std::size_t cou
         }
         std::visit(
             [&]<class Source>(const Source& each) {
-                if constexpr (!std::same_as<Source, FunctionFlow>) {
-                    const auto& now = each.at(time);
+                const auto add = [&](const auto& now) {
                     for (std::size_t i = 0; i < count; ++i) {
                         const double* const x = rows + columns * i;
                         sum[i] += now(Vector3{x[0], x[1], x[2]});
                     }
-                }
+                };
+                if constexpr (std::same_as<Source, GriddedFlow>)
+                    add(each.at(time));
+                else if constexpr (!std::same_as<Source, FunctionFlow>)
+                    add(each.at(time, View<Space>{{}, {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}, {}}));
             },
             source);
     }

@@ -26,83 +26,30 @@ class FlowValues {
              const Field<Vector<M, double>>& position, std::size_t count)
     {
         const std::size_t blocks = blocks_of(count);
-        if (place_.stride() != position.stride()) {
-            place_ = Field<Vector3<double>>(blocks), in_world_ = Field<WaterAt<double>>(blocks);
-            here_ = Field<FlowSample<M, double>>(blocks);
-        }
-        const auto alone = [&](const auto& each) { return set_alone(each, water, time, nose, head, position); };
-        if (water.flow->sources.size() == 1 && std::visit(alone, water.flow->sources.front())) return;
-        for (std::size_t k = 0; k < blocks; ++k) place_.store(k, placed(nose, head.parent(position[k])));
-        WaterAt<double> at_nose{};
-        bool first = true;
+        if (here_.stride() != position.stride()) here_ = Field<FlowSample<M, double>>(blocks);
+        const View<M> view{nose, head, water.current};
         known_ = true;
         for (const auto& source : water.flow->sources) {
-            std::visit([&](const auto& each) { add(each, time, nose, count, first, at_nose); }, source);
-            first = false;
+            const bool first = &source == &water.flow->sources.front();
+            std::visit([&](const auto& each) { add(each, time, view, position, count, first); }, source);
         }
-        for (std::size_t k = 0; k < blocks; ++k) here_.store(k, turned(in_world_[k], water.current, head));
-        nose_ = turned(at_nose, water.current, head);
         if (known_) outside_.reset();
     }
 
   private:
-    template <Number T>
-    static Vector3<T> placed(const Vector3<double>& nose, const Vector3<T>& r)
-    {
-        return nose + r;
-    }
-    template <Number T>
-    static Vector3<T> placed(const Vector3<double>& nose, const Vector2<T>& r)
-    {
-        return {nose.x + r.x, nose.y + r.y, T(nose.z)};
-    }
-    template <Number T>
-    static FlowSample<M, T> turned(WaterAt<T> s, const Vector3<double>& current, const Frame<M, double>& head)
-    {
-        s.u_t += s.g.times(current);
-        const FlowSample<M, T> part = part_in(M(), s);
-        return {head.local(part.u), head.local(part.u_t), part.g.in(head)};
-    }
-
-    // Sets all at once from the only source; false where that is evaluated point by point.
+    // Adds a source, or sets the values to it.
     template <class Source>
-    bool set_alone(const Source& source, const Water& water, double time, const Vector3<double>& nose,
-                   const Frame<M, double>& head, const Field<Vector<M, double>>& position)
+    void add(const Source& source, double time, const View<M>& view, const Field<Vector<M, double>>& position,
+             std::size_t, bool first)
     {
-        const auto& now = source.at(time);
-        for (std::size_t k = 0; k < here_.stride() / width - 1; ++k)
-            here_.store(k, turned(now(placed(nose, head.parent(position[k]))), water.current, head));
-        nose_ = turned(now(nose), water.current, head);
-        outside_.reset();
-        return true;
+        const auto now = source.at(time, view);
+        put([&](std::size_t k) { return now(position[k]); }, now(Vector<M, double>{}), first);
     }
-    bool set_alone(const GriddedFlow&, const Water&, double, const Vector3<double>&, const Frame<M, double>&,
-                   const Field<Vector<M, double>>&)
-    {
-        return false;
-    }
-    bool set_alone(const FunctionFlow&, const Water&, double, const Vector3<double>&, const Frame<M, double>&,
-                   const Field<Vector<M, double>>&)
-    {
-        return false;
-    }
-
-    template <class Source>
-    void add(const Source& source, double time, const Vector3<double>& nose, std::size_t, bool first,
-             WaterAt<double>& at_nose)
-    {
-        const auto& now = source.at(time);
-        for (std::size_t k = 0; k < place_.stride() / width - 1; ++k) {
-            WaterAt<Lanes> water = now(place_[k]);
-            if (!first) water += in_world_[k];
-            in_world_.store(k, water);
-        }
-        at_nose += now(nose);
-    }
-    void add(const GriddedFlow& source, double time, const Vector3<double>& nose, std::size_t count, bool first,
-             WaterAt<double>& at_nose)
+    void add(const GriddedFlow& source, double time, const View<M>& view, const Field<Vector<M, double>>& position,
+             std::size_t count, bool first)
     {
         const auto now = source.at(time);
+        find_places(view, position);
         const auto at = [&](const Vector3<double>& place) {
             const WaterAt<double> water = now(place);
             if (std::isnan(water.u.x)) {
@@ -112,38 +59,74 @@ class FlowValues {
             }
             return water;
         };
-        add_each([&](std::size_t i) { return at(place_.node(i)); }, count, first);
-        at_nose += at(nose);
+        put_each([&](std::size_t i) { return at(place_.node(i)); }, at(view.nose), view, count, first);
     }
-    void add(const FunctionFlow& source, double time, const Vector3<double>& nose, std::size_t count, bool first,
-             WaterAt<double>& at_nose)
+    void add(const FunctionFlow& source, double time, const View<M>& view, const Field<Vector<M, double>>& position,
+             std::size_t count, bool first)
     {
         constexpr std::size_t columns = FunctionFlow::columns;
+        find_places(view, position);
         rows_.assign(columns * (count + 1), 0.0);
         for (std::size_t i = 0; i <= count; ++i)
-            Components<Vector3<double>>::each(i < count ? place_.node(i) : nose,
+            Components<Vector3<double>>::each(i < count ? place_.node(i) : view.nose,
                                               [&](std::size_t c, double value) { rows_[columns * i + c] = value; });
         source.function(time, rows_);
         const auto row = [&](std::size_t i) {
             return Components<WaterAt<double>>::make([&](std::size_t c) { return rows_[columns * i + 3 + c]; });
         };
-        add_each(row, count, first);
-        at_nose += row(count);
+        put_each(row, row(count), view, count, first);
     }
 
-    // Adds the water that `row` gives at each of the `count` points, one by one; behind the last point as there.
+    // Adds what `block` gives for each block of points, and the water at the nose; or sets the values to them.
+    template <class Block>
+    void put(const Block& block, const FlowSample<M, double>& at_nose, bool first)
+    {
+        for (std::size_t k = 0; k < here_.stride() / width - 1; ++k) {
+            FlowSample<M, Lanes> water = block(k);
+            if (!first) water += here_[k];
+            here_.store(k, water);
+        }
+        if (first)
+            nose_ = at_nose;
+        else
+            nose_ += at_nose;
+    }
+
+    // The same for what `row` gives in the world at each of the `count` points, one by one; behind the last as there.
     template <class Row>
-    void add_each(const Row& row, std::size_t count, bool first)
+    void put_each(const Row& row, const WaterAt<double>& at_nose, const View<M>& view, std::size_t count, bool first)
     {
         for (std::size_t i = 0; i + width < place_.stride(); ++i)
-            Components<WaterAt<double>>::each(row(std::min(i, count - 1)), [&](std::size_t c, double value) {
-                double& sum = in_world_.row(c)[i];
-                sum = first ? value : sum + value;
-            });
+            Components<WaterAt<double>>::each(row(std::min(i, count - 1)),
+                                              [&](std::size_t c, double value) { in_world_.row(c)[i] = value; });
+        put([&](std::size_t k) { return turned(in_world_[k], view); }, turned(at_nose, view), first);
     }
 
-    Field<Vector3<double>> place_;  // [m], in the world
-    Field<WaterAt<double>> in_world_;
+    template <Number T>
+    static FlowSample<M, T> turned(WaterAt<T> s, const View<M>& view)
+    {
+        s.u_t += s.g.times(view.current);
+        const FlowSample<M, T> part = part_in(M(), s);
+        return {view.head.local(part.u), view.head.local(part.u_t), part.g.in(view.head)};
+    }
+
+    // The points in the world.
+    void find_places(const View<M>& view, const Field<Vector<M, double>>& position)
+    {
+        if (place_.stride() != position.stride())
+            place_ = Field<Vector3<double>>(position.stride() / width - 1),
+            in_world_ = Field<WaterAt<double>>(position.stride() / width - 1);
+        for (std::size_t k = 0; k < place_.stride() / width - 1; ++k) {
+            const auto at = view.head.parent(position[k]);
+            if constexpr (M::planar)
+                place_.store(k, {view.nose.x + at.x, view.nose.y + at.y, Lanes(view.nose.z)});
+            else
+                place_.store(k, view.nose + at);
+        }
+    }
+
+    Field<Vector3<double>> place_;     // [m], in the world, of sources that are asked point by point
+    Field<WaterAt<double>> in_world_;  // of such a source
     Field<FlowSample<M, double>> here_;
     FlowSample<M, double> nose_{};
     std::vector<double> rows_;
