@@ -20,7 +20,7 @@ from eel_studies.sweeps import command as sweep_command
 from eel_studies.sweeps.command import main
 from eel_studies.sweeps.sweep_key import key_of
 
-from eel_dynamics import Accuracy, Batch, Body, Fin, RollHold, Run, Scene, simulate
+from eel_dynamics import Accuracy, Batch, Body, Fin, FlowField, RollHold, Run, Scene, Shear, simulate
 from eel_gaits import Law, Term, sampled, straight
 from eel_studies import sweep
 
@@ -499,3 +499,18 @@ def test_fins_and_mass_are_swept(tmp_path):
 def test_a_field_that_fins_do_not_have_is_named(name, numbers, message):
     with pytest.raises(ValueError, match=message):
         sweep({name: [1.0]}, numbers=numbers, **SHORT)
+
+
+def test_a_flow_of_a_function_is_swept_and_known_by_its_code(tmp_path):
+    """In threads one swimmer after the other; results of another function are not taken for its own."""
+    shear, out = Shear(), tmp_path / "flows.nc"
+    whole, half = (FlowField(lambda x, t, k=k: k * shear.sample(x, t).velocity, name=str(k)) for k in (1.0, 0.5))
+    options = {"measure": lambda run: {"far": run.position[-1, 0]}, **SHORT}
+    data = sweep({"flow": [whole, half, shear]}, workers=2, **options)
+    far = [simulate(straight(), flow=flow, **SHORT).position[-1, 0] for flow in (whole, half, shear)]
+    np.testing.assert_array_equal(data.far, far)
+    assert far[0] != far[1] and far[0] == pytest.approx(far[2], abs=1e-6)
+    assert "0x" not in str(data.flow.values)
+    sweep({"flow": [whole]}, out=out, **options)
+    with pytest.raises(ValueError, match="is not of this sweep"):
+        sweep({"flow": [FlowField(half.function, name=whole.name)]}, out=out, **options)

@@ -2,7 +2,7 @@
 """A flow that is a function of the user. It runs in Python: one swimmer at a time."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -42,9 +42,9 @@ class FlowField(Flow):
     velocity in a planar scene.
     """
 
-    function: Field
-    jacobian: Field | None = None
-    rate: Field | None = None
+    function: Field = field(repr=False)
+    jacobian: Field | None = field(default=None, repr=False)
+    rate: Field | None = field(default=None, repr=False)
     name: str = "of a function"
     step: float = 1e-4
     time_step: float = 1e-4

@@ -14,6 +14,8 @@ from eel_dynamics.runs.storage.tables import needed
 from eel_dynamics.runs.swim import Swim
 from eel_model.body.body import DRAGS, MASSES, Body
 from eel_model.body.shapes import NamedHalfAxis
+from eel_model.flow.flow import Flow, parts_of
+from eel_model.flow.functions import FlowField
 from eel_model.flow.plain import plain_of_flow
 from eel_model.robot.actuators import Torque
 from eel_model.robot.robot import Robot
@@ -45,7 +47,7 @@ def key_of(points: list[Swim], how: SwimSettings) -> str:
             bodies[id(point.body)] = _content_of_body(point.body)
         content.update(bodies[id(point.body)])
         content.update(repr((plain_of(point.law), point.scene, point.accuracy)).encode())
-        content.update(repr((plain_of_flow(point.flow), point.fins)).encode())
+        content.update(_content_of_flow(point.flow) + repr(point.fins).encode())
         content.update(_content_of_robot(point.robot, point.body))
         content.update(np.concatenate(point.start).tobytes())
     return content.hexdigest()[:32]
@@ -90,6 +92,16 @@ def _content_of_robot(robot: Robot | None, body: Body) -> bytes:
             content += _content_of_function(f"joint {joint.name} torque", joint.actuator.torque)
             robot = robot.changed(joint.name, actuator=None) if robot is not None else None
     return content + repr(plain_robot(robot, body)).encode()
+
+
+def _content_of_flow(flow: Flow | None) -> bytes:
+    """The flow's numbers, and the functions of a `FlowField`."""
+    content = repr(plain_of_flow(flow)).encode()
+    for part in () if flow is None else parts_of(flow):
+        for name in ("function", "jacobian", "rate") if isinstance(part, FlowField) else ():
+            if (function := getattr(part, name)) is not None:
+                content += _content_of_function(f"flow {name}", function)
+    return content
 
 
 def _content_of_body(body: Body) -> bytes:
