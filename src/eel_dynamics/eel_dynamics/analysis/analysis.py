@@ -124,7 +124,7 @@ class Analysis:
 
     # -- power
 
-    @property
+    @cached_property
     def actuator_power(self) -> float:
         """<P> [W]: mean power of the actuators, -integral of C . dK/dt over the body, braking counted against driving
         (the net power; eq. 26 of Boyer, Porez and Leroyer 2010 for C). From the ledger."""
@@ -152,12 +152,12 @@ class Analysis:
         x = self.run.x
         return float(self._peaks(power_density, lambda density: area(np.maximum(density, 0.0), x)))
 
-    @property
+    @cached_property
     def wake_power(self) -> float:
         """Mean power [W] of the wake, V1(l) T_f(l) of eq. (60): negative where energy is shed."""
         return self.window.rate(self._ledger.wake_work, self._ledger.wake_power)
 
-    @property
+    @cached_property
     def nose_power(self) -> float:
         """Mean power [W] of the load on the nose, its added mass included (section 7.2.1)."""
         return self.window.rate(self._ledger.nose_work, self._ledger.nose_power)

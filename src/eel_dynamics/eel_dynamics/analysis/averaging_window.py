@@ -112,12 +112,18 @@ class AveragingWindow:
         return np.maximum(self.end - self.period * np.arange(count, -1, -1), self.run.time[0])
 
     def rate(self, work: np.ndarray, power: np.ndarray) -> float:
-        """Mean power [W] over the window of `work` (T,) [J], whose derivative is `power` (T,) [W]."""
-        from scipy.interpolate import CubicHermiteSpline
+        """Mean power [W] over the window of `work` (T,) [J], whose derivative is `power` (T,) [W].
 
+        The work at the window's start is that of Hermite's cubic between two samples.
+        """
         first = max(0, int(np.searchsorted(self.run.time, self.start, side="right")) - 1)
-        near = slice(first, first + 2)
-        at_start = CubicHermiteSpline(self.run.time[near], work[near], power[near])(self.start)
+        (before, after), (work_before, work_after), (rate, later) = (
+            each[first : first + 2] for each in (self.run.time, work, power)
+        )
+        length = after - before
+        s = (self.start - before) / length
+        rise = (work_after - work_before) * (3.0 - 2.0 * s) * s**2
+        at_start = work_before + rise + length * s * (1.0 - s) * (rate * (1.0 - s) - later * s)
         return float(work[-1] - at_start) / self.duration
 
     def spline(self, values: np.ndarray):
