@@ -201,9 +201,9 @@ struct WaveFlow {
 
     template <class M>
     struct Now {
-        Vector<M, double> along, up;  // d and E3
+        Vector<M, double> along, up;            // d and E3
         double size, wavenumber, phase, depth;  // of the velocity; phase and k times the depth at the head
-        double rate, rise;  // w, less k times the current along d; k times the current along E3
+        double rate, rise;                      // w, less k times the current along d; k times the current along E3
 
         template <Number T>
         FlowSample<M, T> operator()(const Vector<M, T>& r) const
