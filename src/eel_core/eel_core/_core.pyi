@@ -310,7 +310,9 @@ class BentMarch:
         torque_floor: float,
         ledger: bool,
         current: Buffer,
+        flow: Flow | None,
         smoothly: bool,
+        fin_angles: list[tuple[Buffer, Buffer]] = ...,
     ) -> None:
         """law: of R rows that are imposed and M of the modes. reference (S, R): what the servos follow, by the factors
         of the imposed rows. drive: its factors, by push (C, its rows), are the muscles' forces on the coordinates.
@@ -362,7 +364,7 @@ class BentMarch:
     @property
     def works(self) -> list[float]: ...
     @property
-    def outside(self) -> None: ...
+    def outside(self) -> tuple[float, float, float, float] | None: ...
     @property
     def row(self) -> dict[str, tuple[int, int]]:
         """Where the numbers of an instant lie in a row, from and up to: x, rate, acceleration (C,) each; moment (M,),

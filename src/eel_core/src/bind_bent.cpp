@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 
+#include "bind_fins.hpp"
+#include "bind_flow.hpp"
 #include "bound_march.hpp"
 #include "eel_core/bending/bent_march.hpp"
 
@@ -88,7 +90,8 @@ class PyBentMarch : public BoundMarch<BentMarch> {
     }
     void follow(const std::shared_ptr<const LawOnGrid>& law, const py::object& reference,
                 std::shared_ptr<const LawOnGrid> drive, const py::object& push, std::vector<double> breakpoints,
-                const StepBounds& bounds, double torque_floor, bool ledger, const py::object& current, bool smoothly)
+                const StepBounds& bounds, double torque_floor, bool ledger, const py::object& current,
+                std::shared_ptr<const Flow> flow, bool smoothly, const py::list& fin_angles)
     {
         const InUse in_use(in_use_);
         const Modes& modes = march_.modes();
@@ -100,7 +103,8 @@ class PyBentMarch : public BoundMarch<BentMarch> {
                               bounds,
                               torque_floor,
                               ledger,
-                              vector_from(current, "current")};
+                              water_from(current, std::move(flow))};
+        settings.law.law.fins = angles_from(fin_angles);
         const Numbers servos(reference, "reference"), pushed(push, "push");
         servos.check_size(modes.servos.size() * settings.law.first_mode, "reference");
         settings.law.reference.assign(servos.data(), servos.data() + servos.size());
@@ -124,8 +128,7 @@ class PyBentMarch : public BoundMarch<BentMarch> {
     {
         const Numbers instants(times, "times"), into(whole, "whole", true), works_into(works, "works", true),
             rows_into(rows, "rows", true);
-        const Profiles profiles(instants.size(), march_.swimmer().stations, wrench, load);
-        into.check_size(profiles.begin[Profiles::quantities], "whole");
+        const Profiles profiles = profiles_for(into, instants.size(), wrench, load);
         works_into.check_size(std::tuple_size_v<WorkDone> * instants.size(), "works");
         rows_into.check_size(march_.row().size() * instants.size(), "rows");
         const Driven in_use(*this);
@@ -150,8 +153,7 @@ class PyBentMarch : public BoundMarch<BentMarch> {
     bool observe(const py::object& whole, const py::object& row, bool wrench, bool load)
     {
         const Numbers into(whole, "whole", true), row_into(row, "row", true);
-        const Profiles profiles(1, march_.swimmer().stations, wrench, load);
-        into.check_size(profiles.begin[Profiles::quantities], "whole");
+        const Profiles profiles = profiles_for(into, 1, wrench, load);
         row_into.check_size(march_.row().size(), "row");
         const Driven in_use(*this);
         const py::gil_scoped_release unlocked;
@@ -217,12 +219,14 @@ void bind_bent_marches(py::module_& module)
             "follow",
             [](PyBentMarch& march, const std::shared_ptr<LawOnGrid>& law, const py::object& reference,
                std::shared_ptr<LawOnGrid> drive, const py::object& push, std::vector<double> breakpoints,
-               const StepBounds& bounds, double torque_floor, bool ledger, const py::object& current, bool smoothly) {
+               const StepBounds& bounds, double torque_floor, bool ledger, const py::object& current,
+               std::shared_ptr<Flow> flow, bool smoothly, const py::list& fin_angles) {
                 march.follow(law, reference, std::move(drive), push, std::move(breakpoints), bounds, torque_floor,
-                             ledger, current, smoothly);
+                             ledger, current, std::move(flow), smoothly, fin_angles);
             },
             py::arg("law"), py::arg("reference"), py::arg("drive"), py::arg("push"), py::arg("breakpoints"),
-            py::arg("bounds"), py::arg("torque_floor"), py::arg("ledger"), py::arg("current"), py::arg("smoothly"))
+            py::arg("bounds"), py::arg("torque_floor"), py::arg("ledger"), py::arg("current"), py::arg("flow"),
+            py::arg("smoothly"), py::arg("fin_angles") = py::list())
         .def("start", &PyBentMarch::start, py::arg("position"), py::arg("orientation"), py::arg("twist"), py::arg("x"),
              py::arg("rate"))
         .def("record", &PyBentMarch::record, py::arg("times"), py::arg("first"), py::arg("whole"), py::arg("works"),
@@ -234,7 +238,6 @@ void bind_bent_marches(py::module_& module)
         .def_property_readonly("coordinates",
                                [](const PyBentMarch& march) { return list_of(march.march().coordinates()); })
         .def_property_readonly("rates", [](const PyBentMarch& march) { return list_of(march.march().rates()); })
-        .def_property_readonly("outside", [](const PyBentMarch&) { return py::none(); })
         .def_property_readonly("row", &row_layout);
 }
 

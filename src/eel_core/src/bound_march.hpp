@@ -76,6 +76,13 @@ class BoundMarch {
         return march_.memory();
     }
     double time() const { return march_.time(); }
+    py::object outside() const
+    {
+        const auto found = march_.outside();
+        if (!found) return py::none();
+        const auto [time, x, y, z] = *found;
+        return py::make_tuple(time, 0.0 - x, 0.0 - y, z);
+    }
     py::list state() const { return list_of_state(march_.state()); }
     py::list works() const { return list_of(std::span(march_.works()).first(std::tuple_size_v<WorkDone>)); }
     py::tuple counts() const
@@ -97,6 +104,15 @@ class BoundMarch {
         }
     };
 
+    // Of `samples` instants, which `whole` has room for.
+    Profiles profiles_for(const Numbers& whole, std::size_t samples, bool wrench, bool load) const
+    {
+        const Swimmer& swimmer = march_.swimmer();
+        const Profiles profiles(samples, swimmer.stations, wrench, load, swimmer.fins.size());
+        whole.check_size(profiles.begin[Profiles::quantities], "whole");
+        return profiles;
+    }
+
     Core march_;
     bool has_law_;  // on the present grid
     std::atomic<bool> in_use_{false};
@@ -117,6 +133,7 @@ void bind_what_marches_share(py::class_<Bound>& bound)
         .def_property_readonly("time", &Bound::time)
         .def_property_readonly("state", &Bound::state)
         .def_property_readonly("works", &Bound::works)
+        .def_property_readonly("outside", &Bound::outside)
         .def_property_readonly("counts", &Bound::counts);
 }
 

@@ -167,8 +167,7 @@ class PyMarch : public BoundMarch<March> {
                      bool wrench, bool load, double until)
     {
         const Numbers instants(times, "times"), into(whole, "whole", true), works_into(works, "works", true);
-        const Profiles profiles(instants.size(), march_.swimmer().stations, wrench, load, march_.swimmer().fins.size());
-        into.check_size(profiles.begin[Profiles::quantities], "whole");
+        const Profiles profiles = profiles_for(into, instants.size(), wrench, load);
         works_into.check_size(std::tuple_size_v<WorkDone> * instants.size(), "works");
         const Driven in_use(*this);
         std::size_t done = 0;
@@ -182,18 +181,10 @@ class PyMarch : public BoundMarch<March> {
     bool observe(const py::object& whole, bool wrench, bool load)
     {
         const Numbers into(whole, "whole", true);
-        const Profiles profiles(1, march_.swimmer().stations, wrench, load, march_.swimmer().fins.size());
-        into.check_size(profiles.begin[Profiles::quantities], "whole");
+        const Profiles profiles = profiles_for(into, 1, wrench, load);
         const Driven in_use(*this);
         const py::gil_scoped_release unlocked;
         return march_.observe(Observer(march_.swimmer(), profiles, into.data()), 0);
-    }
-    py::object outside() const
-    {
-        const auto found = march_.outside();
-        if (!found) return py::none();
-        const auto [time, x, y, z] = *found;
-        return py::make_tuple(time, 0.0 - x, 0.0 - y, z);
     }
 
   private:
@@ -346,8 +337,7 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
         .def("start", &PyMarch::start, py::arg("position"), py::arg("orientation"), py::arg("twist"))
         .def("record", &PyMarch::record, py::arg("times"), py::arg("first"), py::arg("whole"), py::arg("works"),
              py::arg("wrench"), py::arg("load"), py::arg("until"))
-        .def("observe", &PyMarch::observe, py::arg("whole"), py::arg("wrench"), py::arg("load"))
-        .def_property_readonly("outside", &PyMarch::outside);
+        .def("observe", &PyMarch::observe, py::arg("whole"), py::arg("wrench"), py::arg("load"));
 
     bind_sampled_marches(module);
     bind_bent_marches(module);

@@ -181,6 +181,7 @@ class BentReference(Reference):
     def whole_matrix(self, K):
         """d2T/d(mu, qdot)2 (6 + M, 6 + M) by polarisation, with armatures and the nose's added mass."""
         rest, size = np.zeros_like(K), 6 + len(self.owner)
+        flow, self.flow = self.flow, None  # it adds terms that are linear
         basis = [(mu, rest) for mu in np.eye(6)] + [(np.zeros(6), shape) for shape in self.shapes]
         energy = lambda mu, rate: sum(self.energies(K, rate, mu))  # noqa: E731
         single = np.array([energy(*each) for each in basis])
@@ -189,17 +190,22 @@ class BentReference(Reference):
             for b in range(a + 1):
                 pair = energy(basis[a][0] + basis[b][0], basis[a][1] + basis[b][1]) - single[a] - single[b]
                 matrix[a, b] = matrix[b, a] = pair
+        self.flow = flow
         matrix[6:, 6:] += np.diag(self.armature)
         matrix[3, 3] += self.nose_mass
         return matrix
 
     def mode_loads(self, K, K_rate, mu):
-        """What drag, weight and wake do on the motion of each mode (M,)."""
+        """What drag, weight, wake and the undisturbed pressure of a flow do on the motion of each mode (M,)."""
         R, r = self.configuration(K)
         eta = self.twists(K, K_rate, mu)
-        of_weight = (np.einsum("xji,xj->xi", R, each) for each in self.weight(R, r))
-        torque, force = (one + other for one, other in zip(self.resistive(eta), of_weight, strict=True))
-        tail_eta = self.at_tail(eta)
+        hung, pushed = self.weight(R, r)
+        if self.flow is not None:
+            pushed = pushed + self.displaced[:, None] * self.flow_acceleration(r)
+        drag = self.resistive(self.through_water(eta, R, r, turning=True))
+        others = (np.einsum("xji,xj->xi", R, each) for each in (hung, pushed))
+        torque, force = (one + other for one, other in zip(drag, others, strict=True))
+        tail_eta = self.at_tail(self.through_water(eta, R, r))
         shed = self.scene.wake * self.tail_added
         wake = tail_eta[3] * shed * tail_eta
         wake[3] -= shed @ tail_eta**2 / 2
@@ -209,6 +215,14 @@ class BentReference(Reference):
             work = self.space.weights @ np.sum(np.concatenate([torque, force], axis=1) * moved, axis=1)
             loads.append(work + wake @ self.at_tail(moved))
         return np.array(loads)
+
+    def fin_rows(self, *motion):
+        """What the fins do on the head's motions and on the modes' (6 + M,), with the accelerations of `motion`."""
+        K, rows = motion[0], np.zeros(6 + len(self.owner))
+        for (fin, _), (place, _, _, force) in zip(self.fins, self.fin_forces(*motion), strict=True):
+            rows[:6] += np.concatenate([np.cross(place, force), force])
+            rows[6:] += [self.fin_velocity(fin, K, shape, np.zeros(6))[1].real @ force for shape in self.shapes]
+        return rows
 
     def bent_accelerations(self, time, mu, q, qdot, th=(), thdot=()):
         """Rates of the head's twist (6,), of qdot (M,) and of thdot (S,)."""
@@ -221,11 +235,22 @@ class BentReference(Reference):
         R, r = self.configuration(K)
         hung, net = self.weight(R, r)
         head += self.space.weights @ np.concatenate([hung + np.cross(r, net), net], axis=1)
+        if self.flow is not None:
+            head += self.flow_force(K, K_rate, mu)
         head = head - self.momentum_rate(K, K_rate, fields[2], mu, still)
+        pose = self.moved(step * np.asarray(mu), step)
         moved = self.mode_momenta(K + step * K_rate, K_rate + step * fields[2], mu.astype(complex)).imag / STEP
+        self.pose = pose
         slope = [sum(self.energies(K + step * shape, K_rate, mu)).imag / STEP for shape in self.shapes]
         modes = np.array(slope) + self.mode_loads(K, K_rate, mu) - Q - moved
-        found = np.linalg.solve(self.whole_matrix(K), np.concatenate([head, modes]))
+        matrix, rows = self.whole_matrix(K), np.concatenate([head, modes])
+        if self.fins:  # their forces are linear in the accelerations
+            of_rest = self.fin_rows(K, K_rate, fields[2], mu, still)
+            rows += of_rest
+            by_rate = [self.fin_rows(K, K_rate, fields[2], mu, unit) for unit in np.eye(6)]
+            by_rate += [self.fin_rows(K, K_rate, fields[2] + shape, mu, still) for shape in self.shapes]
+            matrix -= np.stack(by_rate, axis=1) - of_rest[:, None]
+        found = np.linalg.solve(matrix, rows)
         return found[:6], found[6:], thdd
 
     def bent_motion(self, time, mu, q, qdot, th=(), thdot=()):
@@ -248,7 +273,8 @@ class BentReference(Reference):
             _, quaternion, mu, q, qdot, th, thdot = np.split(state, cuts)
             quaternion = quaternion / np.linalg.norm(quaternion)
             world = rotation(quaternion)
-            self.up = world[2]
+            self.up, self.height = world[2], state[2]
+            self.pose = SimpleNamespace(position=state[:3], axes=world, time=time)
             mu_rate, qddot, thdd = self.bent_accelerations(time, mu, q, qdot, th, thdot)
             vector = quaternion[3] * mu[:3] + np.cross(quaternion[:3], mu[:3])
             turn = [*(vector / 2), -quaternion[:3] @ mu[:3] / 2]

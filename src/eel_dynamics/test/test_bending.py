@@ -19,7 +19,6 @@ from eel_dynamics import (
     Scene,
     Simulation,
     SimulationStopped,
-    Uniform,
     simulate,
     simulate_batch,
 )
@@ -133,11 +132,6 @@ def test_pitch_joints_dive():
     assert greatest(run.position[-1] - imposed.position[-1]) < 0.15 * imposed.path_length
     assert run.position[-1, 2] < -0.05
     assert greatest(run.energy.residual) < 1e-4
-
-
-def test_robot_in_moving_water_is_refused_by_name():
-    with pytest.raises(ValueError, match=r"robot .* flow"):
-        simulate(straight(), 1.0, robot=Robot.named("eight_servos"), flow=Uniform((0.1, 0.0, 0.0)))
 
 
 def test_law_of_a_robot_may_have_no_pitch_joints():

@@ -11,7 +11,6 @@ from cases import falling_law, random_law, random_twist
 from draws import few, numbers, quaternions, scenes, swimmers, twists
 from eel_model.axes import turn_quaternion, turn_vector
 from eel_model.inertia import straight_inertia
-from eel_model.robot.robot import Robot
 from eel_model.section_data import nose_of
 from flows import FLOWS, formula
 from flows import in_paper_axes as in_paper_axes_of_flow
@@ -272,10 +271,6 @@ def test_a_run_with_fins_is_saved_copied_and_simulated_again(tmp_path):
         ),
         (lambda: Simulation(fins=row_of(*[0.1 * k for k in range(4)], time_constant=0.1)), "fins must have 3 servos"),
         (lambda: Simulation(fins=row_of(0.1), scene=Scene(planar=True)), "fins need a scene in space, got planar"),
-        (
-            lambda: simulate(straight(), robot=Robot.named("eight_servos"), fins=row_of(0.1)),
-            "robot cannot have fins yet",
-        ),
     ],
 )
 def test_bad_input_names_the_argument(make, message):

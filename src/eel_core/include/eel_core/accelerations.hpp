@@ -120,16 +120,23 @@ void find_shape_accelerations(const Swimmer& swimmer, const LawOnGrid& law, Work
     swimmer.grid.from_nose.integrate(work.integrand, work.linear_acceleration, Components<Angular<M, Lanes>>::count);
 }
 
+// What the water does on the nose [N] beside its added mass times the acceleration.
+template <class M>
+double water_on_nose(const Swimmer& swimmer, const Workspace<M>& work)
+{
+    const double drag = nose_drag(swimmer, work.nose_through_water().x);
+    return work.flowing ? drag + swimmer.nose_mass * work.flow.nose().acceleration().x : drag;
+}
+
 // Acceleration of the head and of the sections, and the density of the balance: eq. (60) in accelerations. `work` holds
 // the true velocities, the loads that go with them and the factored inertia.
 template <class M>
 void find_accelerations(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
 {
     find_shape_accelerations(swimmer, law, work);
-    double water_on_nose = nose_drag(swimmer, work.nose_through_water().x);
-    if (work.flowing) water_on_nose += swimmer.nose_mass * work.flow.nose().acceleration().x;
+    const double on_nose = water_on_nose(swimmer, work);
     auto left = work.tail + work.drag - set_inertial_density(swimmer, work);
-    left.linear.x += water_on_nose;
+    left.linear.x += on_nose;
     Wrench<M, double> of_flow{};
     if (work.flowing) of_flow = total_wrench_of_flow(swimmer, work), left = left - of_flow;
     if (swimmer.weighs()) left += work.weight;
@@ -147,7 +154,7 @@ void find_accelerations(const Swimmer& swimmer, const LawOnGrid& law, Workspace<
     if (swimmer.weighs()) take_weight(swimmer, work);
     if constexpr (!M::planar)
         if (!work.fins.empty()) work.balance = work.balance - wrench_of_fins(swimmer, work);
-    work.nose_force = water_on_nose - swimmer.nose_mass * work.head_acceleration.linear.x;
+    work.nose_force = on_nose - swimmer.nose_mass * work.head_acceleration.linear.x;
 }
 
 }  // namespace eel_core

@@ -76,16 +76,11 @@ void find_internal_wrench(const Swimmer& swimmer, const LawOnGrid& law, Workspac
     integrate_balance(swimmer, work);
 }
 
-// Powers [W] of actuators, wake, nose, drag, flow and fins, in the motion that `work` holds.
+// Powers [W] of all but the actuators, after the accelerations.
 template <class M>
-Powers find_powers(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
+Powers powers_of_loads(const Swimmer& swimmer, const Workspace<M>& work)
 {
-    find_internal_wrench(swimmer, law, work);
-    Powers powers{actuator_power(swimmer, work),
-                  work.tail_speed * work.tail_energy,
-                  work.nose_force * work.twist.linear.x,
-                  work.drag_power,
-                  0.0,
+    Powers powers{0.0, work.tail_speed * work.tail_energy, work.nose_force * work.twist.linear.x, work.drag_power, 0.0,
                   0.0};
     if (work.flowing) {
         powers[1] += dot(work.tail.linear, work.flow.node(swimmer.grid.nodes - 1).u);
@@ -93,8 +88,19 @@ Powers find_powers(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& w
         powers[4] = flow_power(swimmer, work);
     }
     if constexpr (!M::planar)
-        if (!work.fins.empty())
-            powers[0] += actuator_power_of_fins(swimmer, work), powers[5] = fin_power(swimmer, work);
+        if (!work.fins.empty()) powers[5] = fin_power(swimmer, work);
+    return powers;
+}
+
+// Powers [W] of actuators, wake, nose, drag, flow and fins, in the motion that `work` holds.
+template <class M>
+Powers find_powers(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
+{
+    find_internal_wrench(swimmer, law, work);
+    Powers powers = powers_of_loads(swimmer, work);
+    powers[0] = actuator_power(swimmer, work);
+    if constexpr (!M::planar)
+        if (!work.fins.empty()) powers[0] += actuator_power_of_fins(swimmer, work);
     return powers;
 }
 

@@ -12,6 +12,7 @@ from eel_model.body.body import Body
 from eel_model.fins.fins import checked_fins
 from eel_model.flow.flow import Flow
 from eel_model.initial_state import InitialState, check_planar, checked_quaternion
+from eel_model.robot.compiled import mode_table
 from eel_model.robot.robot import Robot, checked_robot
 from eel_model.scene import Scene
 
@@ -22,7 +23,6 @@ from eel_dynamics.simulation.simulation_setup import (
     SimulationSetup,
     check_flow,
     check_planar_law,
-    check_possible,
     checked_stations,
 )
 
@@ -67,7 +67,7 @@ def swimmers_of(
     ):
         initial = InitialState(*state)
         _check_swimmer(index, law, scene, flow, initial)
-        robot, own = _checked_robot_and_fins(index, robot, own, body, scene, flow)
+        robot, own = _checked_robot_and_fins(index, robot, own, body, scene)
         setup = SimulationSetup(body, scene, accuracy, x[body.length], initial, most_evaluations=most, flow=flow)
         setup = replace(setup, robot=robot, fins=own)
         swimmers.append((law, setup))
@@ -108,11 +108,11 @@ def _rows(name: str, values, check) -> list[np.ndarray]:
     return [check(f"{name}[{index}]", row) for index, row in enumerate(np.atleast_1d(array))]
 
 
-def _checked_robot_and_fins(index: int, robot: Robot | None, fins, body: Body, scene: Scene, flow: Flow | None):
+def _checked_robot_and_fins(index: int, robot: Robot | None, fins, body: Body, scene: Scene):
     try:
         robot, fins = checked_robot(robot), checked_fins(fins, body, scene)
         if robot is not None:
-            check_possible(robot, body, scene, flow, fins)
+            mode_table(robot, body, bool(scene.planar))
     except ValueError as error:
         raise ValueError(f"swimmer {index}: {error}") from None
     return robot, fins

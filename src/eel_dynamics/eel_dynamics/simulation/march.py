@@ -151,22 +151,19 @@ class March:
     def _hand_over_law(self, smoothly: bool = False):
         """Continue under the follower's law. The next step begins anew, unless the motion goes on `smoothly`."""
         self.law_on_grid, self._bounds = self.follower.law_on_grid, self._step_bounds()
-        setup, breakpoints = self.setup, self.follower.breakpoints
-        if setup.flow is not None:
-            breakpoints = sorted({*breakpoints, *setup.flow.breakpoints})
-        if setup.fins:
-            breakpoints = sorted({*breakpoints, *knots_of(setup.fins)})
-        ledger, flow = bool(setup.scene.ledger), setup.core_flow
-        self.core.follow(
-            self.law_on_grid,
-            breakpoints,
-            self._bounds,
-            ledger,
-            setup.current,
-            flow,
-            smoothly,
-            given_angles(setup.fins, self._commands),
-        )
+        ledger, water = bool(self.setup.scene.ledger), self._water(smoothly)
+        self.core.follow(self.law_on_grid, self._breakpoints, self._bounds, ledger, *water)
+
+    @property
+    def _breakpoints(self) -> list[float]:
+        """Times [s] at which a derivative of shape, flow or fins jumps."""
+        setup = self.setup
+        flow = () if setup.flow is None else setup.flow.breakpoints
+        return sorted({*self.follower.breakpoints, *flow, *knots_of(setup.fins)})
+
+    def _water(self, smoothly: bool) -> tuple:
+        """Current and flow, whether the motion goes on `smoothly`, and what the fins' servos are given."""
+        return self.setup.current, self.setup.core_flow, smoothly, given_angles(self.setup.fins, self._commands)
 
     def _step_bounds(self) -> eel_core.StepBounds:
         setup, follower, here = self.setup, self.follower, self.discretisation

@@ -51,17 +51,6 @@ def check_flow(flow: Flow | None, scene: Scene, start: InitialState) -> None:
         raise ValueError(f"flow surface must be above the head, at z = {start.position[2]:g} m, got {flow!r}")
 
 
-def check_possible(robot: Robot, body: Body, scene: Scene, flow: Flow | None, fins: tuple[Fin, ...]) -> None:
-    """`ValueError` for a `robot` that does not fit the body, or with physics that bodies with modes do not have yet."""
-    if flow is not None:
-        raise ValueError(f"robot cannot swim in water that moves by itself yet: take flow=None, got {flow!r}")
-    if fins:
-        raise ValueError(f"robot cannot have fins yet: take fins=None, got {len(fins)} fins")
-    if body.offset:
-        raise ValueError("robot cannot have its mass off the axis yet: take a body with centre_of_mass_offset=0")
-    mode_table(robot, body, bool(scene.planar))
-
-
 @dataclass(frozen=True)
 class SimulationSetup:
     """The part of a simulation that neither a march nor a reset changes. `of` checks the arguments."""
@@ -103,7 +92,7 @@ class SimulationSetup:
         check_flow(flow, scene, start)
         fins = checked_fins(fins, body, scene)
         if robot is not None:
-            check_possible(robot, body, scene, flow, fins)
+            mode_table(robot, body, bool(scene.planar))
         most_evaluations = positive("most_evaluations", most_evaluations, "per simulated second")
         transition = positive("default_transition", default_transition, "s")
         return SimulationSetup(body, scene, accuracy, x, start, transition, most_evaluations, flow, robot, fins)
@@ -137,7 +126,8 @@ class SimulationSetup:
         if self.flow is not None:
             needs = needs._replace(waves=max(needs.waves, self.body.length / self.flow.shortest_wave))
         wanted = GridSettings.of(self.settings, needs)
-        edges = edges_of(self.body, self.fins) if self.modes is None else self.modes.edges
+        of_modes = () if self.modes is None else self.modes.edges
+        edges = tuple(sorted({*of_modes, *edges_of(self.body, self.fins, of_modes)}))
         return wanted._replace(edges=edges) if edges else wanted
 
     @cached_property

@@ -195,10 +195,11 @@ def servos_of(fins: tuple[Fin, ...]) -> list[tuple]:
     return list(dict.fromkeys(fin.servo for fin in fins))
 
 
-def edges_of(body: Body, fins: tuple[Fin, ...]) -> tuple[float, ...]:
-    """X [m] at which panels must end for the fins: no kink of the body is closer than `APART`."""
+def edges_of(body: Body, fins: tuple[Fin, ...], known: tuple[float, ...] = ()) -> tuple[float, ...]:
+    """X [m] at which panels must end for the fins: no kink of the body, or end `known`, is closer than `APART`."""
     stations = {fin.station for fin in fins}
-    near = [x for x in stations if min(abs(x - kink) for kink in body.panel_ends) < APART * body.length]
+    ends = (*body.panel_ends, *known)
+    near = [x for x in stations if min(abs(x - end) for end in ends) < APART * body.length]
     return tuple(sorted(stations - set(near)))
 
 

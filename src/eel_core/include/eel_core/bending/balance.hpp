@@ -7,7 +7,9 @@
 //     pidot_m = dT/dq_m + omega_m(l) . C_t + v_m(l) . N_t + integral (omega_m . c + v_m . n) dX - Q_m
 //     dT/dq_m = - integral B_m . R^T (omega x S_C + v x S_N) dX
 //
-// with the momentum (S_C, S_N) of the part behind a section, about it. The accelerations solve M a = h.
+// with the momentum (S_C, S_N) of the part behind a section, about it. The accelerations solve M a = h. In water that
+// moves by itself the momenta are those of the motion through it, the velocities in dT/dq_m the true ones, and (c, n)
+// has (U x p, rho_f A a_u - g^T p) besides. Fins act on their sections, as in fins.hpp.
 #pragma once
 
 #include "eel_core/bending/columns.hpp"
@@ -31,6 +33,7 @@ class BentBody {
           modes_(&modes),
           load_(swimmer.grid.blocks),
           mode_load_(modes.modes),
+          added_(modes.modes),
           solution_(head + modes.coordinates)
     {
         const std::size_t n = modes.coordinates;
@@ -56,8 +59,9 @@ class BentBody {
     }
 
     // The shape at the coordinates x, and M. False where M is not positive definite.
-    bool configure_at(const BentLaw& law, double time, const State& y, const double* x)
+    bool configure_at(const BentLaw& law, const Water& water, double time, const State& y, const double* x)
     {
+        law_ = &law.law, time_ = time, state_ = y;
         work.factor.resize(law.law.tables->rows());
         for (std::size_t m = 0; m < modes_->modes; ++m) work.factor[law.first_mode + m] = {x[m], 0.0, 0.0};
         configure(*swimmer_, law.law, time, work);
@@ -65,6 +69,9 @@ class BentBody {
         set_pushing(*modes_, law, time, drive_, forces.pushing);
         work.head = head_frame(y, M());
         work.momentum = momentum_in_head(y, work.head);
+        set_flow(*swimmer_, water, time, Vector3{y[0], y[1], y[2]}, work);
+        if constexpr (!M::planar)
+            if (!work.fins.empty()) place_fins(*swimmer_, law.law, water, time, y, work);
         columns.set(*swimmer_, *modes_, law, work);
         factored_ = columns.mass;
         singular = factored_.factor();
@@ -82,7 +89,7 @@ class BentBody {
     {
         const auto whole = components_of(work.momentum);
         for (std::size_t i = 0; i < solution_.size(); ++i)
-            solution_[i] = (i < head ? whole[i] : momenta[i - head]) - columns.momentum[i];
+            solution_[i] = (i < head ? whole[i] : momenta[i - head]) - columns.at_rest[i];
         factored_.solve(solution_.data());
         std::copy_n(solution_.begin() + head, rate.size(), rate.begin());
     }
@@ -98,9 +105,13 @@ class BentBody {
                 work.velocity.store(k, work.velocity[k] + rate[m] * own.velocity[k]);
             }
         }
+        if (work.flowing) set_flow_load(*swimmer_, work);
         find_loads(*swimmer_, work);
         if (swimmer_->weighs()) set_weight(*swimmer_, 0.0, work);  // its energy is that of what is observed
+        if constexpr (!M::planar)
+            if (!work.fins.empty()) find_fin_loads(*swimmer_, *law_, time_, state_, work);
         set_mode_loads();
+        if (work.flowing || !work.fins.empty()) set_added_loads();
         set_forces(*modes_, target, x, rate.data(), forces);
     }
 
@@ -110,7 +121,7 @@ class BentBody {
         if (rates != rate.data()) std::copy_n(rates, rate.size(), rate.begin());
         auto left = components_of(work.momentum);
         for (std::size_t i = 0; i < head; ++i) {
-            left[i] -= columns.momentum[i];
+            left[i] -= columns.at_rest[i];
             for (std::size_t m = 0; m < modes_->modes; ++m) left[i] -= columns.mass.at(head + m, i) * rate[m];
         }
         work.inertia.factor();
@@ -126,7 +137,7 @@ class BentBody {
         std::vector<double> all(sum.begin(), sum.end());
         all.insert(all.end(), rates, rates + rate.size());
         for (std::size_t i = 0; i < all.size(); ++i) {
-            double row = columns.momentum[i];
+            double row = columns.at_rest[i];
             for (std::size_t j = 0; j < all.size(); ++j) row += columns.mass.at(i, j) * all[j];
             if (i < head)
                 sum[i] = row;
@@ -142,9 +153,12 @@ class BentBody {
         put_velocity(work.twist, work.head, current, y, head_rate);
         by_loads_ = momentum_rate_from_loads(*swimmer_, work);
         put_momentum(by_loads_, work.head, head_rate);
+        for (std::size_t k = state_size; k < state_space; ++k) head_rate[k] = work.servo_rate[k];
         set_momentum_behind();
         for (std::size_t m = 0; m < modes_->modes; ++m)
             momentum_rate[m] = gradient_of_energy(law, m) + mode_load_[m] - forces.total[m];
+        if (work.flowing || !work.fins.empty())
+            for (std::size_t m = 0; m < modes_->modes; ++m) momentum_rate[m] += added_[m];
         for (std::size_t i = modes_->modes; i < modes_->coordinates; ++i) momentum_rate[i] = -forces.total[i];
     }
 
@@ -155,9 +169,17 @@ class BentBody {
         for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k)
             work.curvature_rate.store(k, law.law.combine_both(law.law.tables->node, work.factor, 1, k));
         find_shape_accelerations(*swimmer_, law.law, work);
+        const double on_nose = water_on_nose(*swimmer_, work);
         auto left = work.tail + work.drag - set_inertial_density(*swimmer_, work);
-        left.linear.x += nose_drag(*swimmer_, work.nose_through_water().x);
+        left.linear.x += on_nose;
+        if (work.flowing) {
+            const Wrench<M, double> of_flow = total_wrench_of_flow(*swimmer_, work);
+            add_wrench_of_flow(*swimmer_, of_flow, work);
+            left = left - of_flow;
+        }
         if (swimmer_->weighs()) left += work.weight;
+        if constexpr (!M::planar)
+            if (!work.fins.empty()) left += wrench_of_fins(*swimmer_, work);
         for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {  // about the sections, weighed
             Wrench<M, Lanes> taken = work.density[k];
             taken.angular = taken.angular - cross(work.position[k], taken.linear);
@@ -169,7 +191,8 @@ class BentBody {
         for (std::size_t i = 0; i < head; ++i) solution_[i] = of_head[i], by_momenta[i] = by_loads[i];
         for (std::size_t i = 0; i < n; ++i) {
             solution_[head + i] = -forces.total[i];
-            if (i < modes_->modes) solution_[head + i] += mode_load_[i] - columns.work_of(i, load_);
+            if (i < modes_->modes)
+                solution_[head + i] += mode_load_[i] - columns.work_of(i, load_) + work_of_fins(i, of_force);
             by_momenta[head + i] = momentum_rate[i];
         }
         factored_.solve(solution_.data());
@@ -179,12 +202,15 @@ class BentBody {
             acceleration[i] = solution_[head + i];
             drift[i] = acceleration[i] - by_momenta[head + i];
         }
+        work.nose_force = on_nose - swimmer_->nose_mass * work.head_acceleration.linear.x;
+        if constexpr (!M::planar)
+            if (!work.fins.empty()) accelerate_fins();
     }
 
     // Power of what imposes the change of shape [W], - integral C . Kdot_imposed, after the accelerations.
     double imposed_power() const
     {
-        double power = -imposed_load_;
+        double power = -imposed_load_ - imposed_fins_;
         Lanes sum(0.0);
         for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {
             const Wrench<M, Lanes> taken = load_[k];
@@ -197,10 +223,9 @@ class BentBody {
     // Of motors and of what imposes a change of shape, wake, nose, drag, flow [W], after the accelerations.
     Powers powers() const
     {
-        const double v1 = work.twist.linear.x;
-        const double nose_force = nose_drag(*swimmer_, v1) - swimmer_->nose_mass * work.head_acceleration.linear.x;
-        return {forces.motor_power + imposed_power(), work.tail_speed * work.tail_energy, nose_force * v1,
-                work.drag_power, 0.0};
+        Powers powers = powers_of_loads(*swimmer_, work);
+        powers[0] = forces.motor_power + imposed_power();
+        return powers;
     }
 
   private:
@@ -242,20 +267,69 @@ class BentBody {
             total(sum) + dot(work.shape_omega.node(tail), torque) + dot(work.shape_velocity.node(tail), force);
     }
 
-    // The momentum from the nose to each node, to `work.integral`.
+    // What the flow and the fins add to the rates of the modes' momenta.
+    EEL_CORE_APART void set_added_loads()
+    {
+        std::ranges::fill(added_, 0.0);
+        if (work.flowing) {
+            for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) load_.store(k, load_of_flow(*swimmer_, work, k));
+            for (std::size_t m = 0; m < modes_->modes; ++m) added_[m] = columns.work_of(m, load_);
+        }
+        for (std::size_t m = 0; m < modes_->modes; ++m)
+            added_[m] += work_of_fins(m, [](const FinMotion& now) { return now.load; });
+    }
+
+    static Wrench<Space, double> of_force(const FinMotion& now) { return {cross(now.arm, now.whole), now.whole}; }
+
+    // Work of what `wrench` gives of each fin, about its section, on the motion of a mode; 0 without fins.
+    template <class OfFin>
+    double work_of_fins(std::size_t m, OfFin wrench) const
+    {
+        double sum = 0.0;
+        if constexpr (!M::planar)
+            for (std::size_t i = 0; i < swimmer_->fins.size(); ++i)
+                sum += columns.work_at(swimmer_->fins[i].node, m, wrench(work.fins[i]));
+        return sum;
+    }
+
+    // Gives the fins' forces the accelerations that were found, and keeps the work of those without on the imposed
+    // change of shape.
+    EEL_CORE_APART void accelerate_fins()
+    {
+        imposed_fins_ = 0.0;
+        for (std::size_t i = 0; i < swimmer_->fins.size(); ++i) {
+            FinMotion& now = work.fins[i];
+            const std::size_t node = swimmer_->fins[i].node;
+            const Wrench<Space, double> wrench = of_force(now);
+            imposed_fins_ +=
+                dot(work.shape_omega.node(node), wrench.angular) + dot(work.shape_velocity.node(node), wrench.linear);
+            const Twist<Space, double>& of_head = work.head_acceleration;
+            Vector3<double> gained = of_head.linear + cross(of_head.angular, now.position);
+            for (std::size_t m = 0; m < modes_->modes; ++m) gained += acceleration[m] * columns.at(now, node, m);
+            now.whole = now.whole - swimmer_->fins[i].added_mass * dot(now.normal, gained) * now.normal;
+        }
+    }
+
+    // The momentum from the nose to each node, to `work.integral`; then what turns with the modes, to `integrand`.
     void set_momentum_behind()
     {
         for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {
             const auto section = swimmer_->sections[k];
             const auto frame = work.frame[k];
-            const Vector<M, Lanes> linear = frame.parent(section.linear_momentum(frame.local(work.velocity[k])));
-            const Angular<M, Lanes> angular = frame.parent(section.angular_momentum(frame.local(work.omega[k])));
+            auto [angular, linear] = momentum_of_sections<M>(*swimmer_, section, swimmer_->sections.lever[k], frame,
+                                                             work.omega[k], work.velocity[k]);
+            if (work.flowing) linear = linear - frame.parent(section.water_momentum(frame.local(work.flow[k].u)));
             work.density.store(k, {angular + cross(work.position[k], linear), linear});
         }
         swimmer_->grid.from_nose.integrate(work.density, work.integral);
-        const Momentum<M, double> whole = work.integral.node(swimmer_->grid.nodes - 1);
+        Momentum<M, double> whole = work.integral.node(swimmer_->grid.nodes - 1);
+        if constexpr (!M::planar)
+            for (const FinMotion& fin : work.fins) whole += at_fin(fin, fin.momentum);
         for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {
-            const Momentum<M, Lanes> ahead = work.integral[k];
+            Momentum<M, Lanes> ahead = work.integral[k];
+            if constexpr (!M::planar)
+                if (!work.fins.empty())
+                    ahead += fins_ahead(*swimmer_, work, k, &Fin::node_behind, &FinMotion::momentum);
             const Vector<M, Lanes> linear = whole.linear - ahead.linear, velocity = work.velocity[k];
             const Angular<M, Lanes> angular = (whole.angular - ahead.angular) - cross(work.position[k], linear);
             const Angular<M, Lanes> turned = cross(work.omega[k], angular) + cross(velocity, linear);
@@ -285,10 +359,13 @@ class BentBody {
     const Modes* modes_;
     Definite factored_;
     Field<Wrench<M, double>> load_;  // about the sections, weighed by their length, in the axes of the head
-    std::vector<double> mode_load_, solution_;
+    std::vector<double> mode_load_, added_, solution_;  // `added_`: in the rates of momenta alone
     std::vector<Jet> drive_;
     Wrench<M, double> by_loads_{};
-    double imposed_load_ = 0.0;
+    double imposed_load_ = 0.0, imposed_fins_ = 0.0;
+    const LawOnGrid* law_ = nullptr;  // of the instant, as the next two
+    double time_ = 0.0;
+    State state_{};
 };
 
 }  // namespace eel_core

@@ -2,12 +2,8 @@
 // A swimmer with modes on its way: as `March`, with the coordinates, their rates, and what drives them besides.
 #pragma once
 
-#include <memory>
-#include <optional>
-#include <variant>
-
 #include "eel_core/bending/rosenbrock.hpp"
-#include "eel_core/march/march.hpp"
+#include "eel_core/march/marching.hpp"
 
 namespace eel_core {
 
@@ -26,29 +22,19 @@ struct CoordinateRow {
     std::size_t size() const { return single() + singles; }
 };
 
-class BentMarch {
+class BentMarch : public Marching<BentMarch, BentStepper> {
   public:
-    BentMarch(std::shared_ptr<const Swimmer> swimmer, std::shared_ptr<const Modes> modes, bool planar)
-        : swimmer_(std::move(swimmer)),
+    BentMarch(const std::shared_ptr<const Swimmer>& swimmer, std::shared_ptr<const Modes> modes, bool planar)
+        : Marching(swimmer, made(*swimmer, *modes, planar)),
           modes_(std::move(modes)),
-          stepper_(made(*swimmer_, *modes_, planar)),
-          here_(*swimmer_),
           x_(modes_->coordinates),
           rate_(modes_->coordinates)
     {
-        state_[6] = 1.0;
     }
 
-    double time() const { return time_; }
-    const State& state() const { return state_; }
     const std::vector<double>& coordinates() const { return x_; }
     const std::vector<double>& rates() const { return rate_; }
     const BentPowers& works() const { return works_; }
-    Counts counts() const
-    {
-        return std::visit([](const auto& stepper) { return stepper.counts(); }, stepper_);
-    }
-    const Swimmer& swimmer() const { return *swimmer_; }
     const Modes& modes() const { return *modes_; }
     // As `March::memory`, without the law.
     std::size_t memory() const
@@ -59,15 +45,10 @@ class BentMarch {
     CoordinateRow row() const { return {modes_->coordinates, modes_->modes, modes_->servos.size()}; }
 
     // Goes on in another grid, with the same coordinates at the same rates; the next step begins anew.
-    void change(std::shared_ptr<const Swimmer> swimmer, std::shared_ptr<const Modes> modes, bool planar)
+    void change(const std::shared_ptr<const Swimmer>& swimmer, std::shared_ptr<const Modes> modes, bool planar)
     {
-        Steppers next = made(*swimmer, *modes, planar);
-        std::visit([&](auto& stepper) { stepper.take_over(std::get<std::decay_t<decltype(stepper)>>(stepper_)); },
-                   next);
-        stepper_ = std::move(next);
-        swimmer_ = std::move(swimmer), modes_ = std::move(modes);
-        here_ = StationWork(*swimmer_);
-        observing_.reset();
+        Marching::change(swimmer, made(*swimmer, *modes, planar));
+        modes_ = std::move(modes);
     }
 
     // As `March::follow`. Commands hold.
@@ -95,21 +76,11 @@ class BentMarch {
     double start(const Vector3<double>& position, const Quaternion<double>& orientation,
                  const Twist<Space, double>& twist, std::vector<double> x, std::vector<double> rate)
     {
-        time_ = 0.0, works_ = {}, x_ = std::move(x), rate_ = std::move(rate);
+        stand_at_start(), works_ = {}, x_ = std::move(x), rate_ = std::move(rate);
         const double energy = set_state(position, orientation, twist);
         std::visit([&](auto& stepper) { stepper.forget(state_, settings_.bounds.spare_steps); }, stepper_);
         begin();
         return energy;
-    }
-
-    // The head's twist relative to the water, in the present state. Throws where the inertia is not positive definite.
-    Twist<Space, double> twist()
-    {
-        Workspace<Space>& work = workspace();
-        set_shape(nullptr, work);
-        if (!find_head_motion(*swimmer_, settings_.law.law, water(), time_, state_, work))
-            throw std::domain_error("inertia is not positive definite");
-        return work.twist;
     }
 
     // Puts the head elsewhere, with the momenta of its twist relative to the water and the present rates of the
@@ -117,32 +88,18 @@ class BentMarch {
     double set_state(const Vector3<double>& position, const Quaternion<double>& orientation,
                      const Twist<Space, double>& twist)
     {
-        state_ = {position.x, position.y, position.z, orientation.x, orientation.y, orientation.z, orientation.w};
+        put_pose(position, orientation);
         return set_twist(twist);
     }
     double set_twist(const Twist<Space, double>& twist)
     {
-        Workspace<Space>& work = workspace();
-        set_shape(nullptr, work);
-        configure(*swimmer_, settings_.law.law, time_, work);
-        work.head = head_frame(state_, Space());
-        put_momentum(momentum_of(*swimmer_, twist, work), work.head, state_);
-        set_velocities(*swimmer_, twist, work);
-        if (swimmer_->weighs()) set_weight(*swimmer_, height_in(water(), time_, state_), work);
-        const auto [body, fluid, potential] = energies_of(*swimmer_, work);
+        const double energy = put_twist(twist);
         begin();
         std::visit([&](auto& stepper) { find_instant(stepper); }, stepper_);
-        return body + fluid + potential + elastic_ + rotors();
+        return energy + elastic_ + rotors();
     }
 
-    void set_slice(std::int64_t nodes) { slice_ = nodes; }
-
-    // As `March::advance`.
-    Status advance(double time)
-    {
-        Slice slice{slice_};
-        return advance(time, slice);
-    }
+    using Marching::advance;
 
     // As `March::record`; `rows`: the coordinates' of each instant.
     Status record(std::span<const double> times, std::size_t first, double until, const Profiles& profiles,
@@ -187,7 +144,7 @@ class BentMarch {
         return std::visit(
             [&](auto& stepper) -> std::optional<std::size_t> {
                 using Body = std::decay_t<decltype(stepper.body())>;
-                if (stepper.body().configure_at(settings_.law, time_, state_, x_.data())) return {};
+                if (stepper.body().configure_at(settings_.law, settings_.water, time_, state_, x_.data())) return {};
                 const std::size_t at = stepper.body().singular;
                 return at < Body::head ? 0 : at - Body::head;
             },
@@ -195,15 +152,21 @@ class BentMarch {
     }
 
   private:
-    using Steppers = std::variant<BentStepper<Space>, BentStepper<Plane>>;
+    friend Marching;
+
+    // With the factors of the present shape.
+    const LawOnGrid& law_on_grid(Workspace<Space>& work) const
+    {
+        set_shape(nullptr, work);
+        return settings_.law.law;
+    }
+    const Water& water() const { return settings_.water; }
 
     static Steppers made(const Swimmer& swimmer, const Modes& modes, bool planar)
     {
         if (planar) return BentStepper<Plane>(swimmer, modes);
         return BentStepper<Space>(swimmer, modes);
     }
-
-    Water water() const { return {settings_.current, nullptr}; }
 
     double rotors() const
     {
@@ -224,7 +187,7 @@ class BentMarch {
     bool find_instant(auto& stepper)
     {
         auto& body = stepper.body();
-        if (!body.configure_at(settings_.law, time_, state_, x_.data())) return false;
+        if (!body.configure_at(settings_.law, settings_.water, time_, state_, x_.data())) return false;
         body.move_by_rates(rate_.data(), x_.data());
         elastic_ = body.forces.elastic;
         return true;
@@ -234,7 +197,7 @@ class BentMarch {
     {
         if (!find_instant(stepper)) return false;
         auto& body = stepper.body();
-        body.find_rates(settings_.law, settings_.current, state_);
+        body.find_rates(settings_.law, settings_.water.current, state_);
         body.find_accelerations_and_drift(settings_.law);
         actuators = body.powers()[0];
         const CoordinateRow at = row();
@@ -261,7 +224,7 @@ class BentMarch {
         std::visit(
             [&](auto& stepper) {
                 BentState y{state_, std::vector<double>(x_.size()), x_};
-                if (stepper.body().configure_at(settings_.law, time_, state_, x_.data())) {
+                if (stepper.body().configure_at(settings_.law, settings_.water, time_, state_, x_.data())) {
                     stepper.body().move_by_rates(rate_.data(), x_.data());
                     stepper.body().momenta_of(stepper.body().work.twist, rate_.data(), y.momentum.data());
                 }
@@ -270,15 +233,7 @@ class BentMarch {
             stepper_);
     }
 
-    Status advance(double time, Slice& slice)
-    {
-        try {
-            return march_to(time, slice);
-        } catch (...) {  // of a torque that is a function
-            begin_ = true;
-            throw;
-        }
-    }
+    void begin_later() { begin_ = true; }
 
     Status march_to(double time, Slice& slice)
     {
@@ -297,26 +252,9 @@ class BentMarch {
             stepper_);
     }
 
-    // Of space, for what is observed: the stepper's own, unless that is for the plane.
-    Workspace<Space>& workspace()
-    {
-        if (auto* const stepper = std::get_if<BentStepper<Space>>(&stepper_)) return stepper->body().work;
-        if (!observing_) observing_.emplace(*swimmer_);
-        return *observing_;
-    }
-
-    static constexpr double first_step = 0.02;  // of the longest
-
-    std::shared_ptr<const Swimmer> swimmer_;
     std::shared_ptr<const Modes> modes_;
     BentSettings settings_;
-    Steppers stepper_;
-    StationWork here_;
-    std::optional<Workspace<Space>> observing_;
-    std::int64_t slice_ = Slice{}.left;
     bool begin_ = false;  // is due
-    double time_ = 0.0;   // [s]
-    State state_{};
     std::vector<double> x_, rate_;
     double elastic_ = 0.0;  // [J], when last found
     BentPowers works_{};

@@ -4,7 +4,8 @@
 //     omega_m' = R B_m      v_m' = omega_m x t1
 //
 // in the axes of the head, zero at the nose and ahead of the support. Behind it a column is the motion of a rigid body.
-// M_ab = integral (omega_a . R J R^T omega_b + v_a . R M R^T v_b) dX, with the nose's m_o and the coordinates' inertia.
+// M_ab = integral (omega_a . s_b + v_a . p_b) dX with the momentum (s, p) of a column, of sections and of fins' added
+// masses m_a y_a y_b, y = e_n . (v + omega x x_f); and the nose's m_o and the coordinates' inertia.
 #pragma once
 
 #include "eel_core/algorithm.hpp"
@@ -21,6 +22,23 @@ struct Column {
     Field<Vector<M, double>> velocity;
     Field<Wrench<M, double>> momentum;  // of the sections, about each and weighed by its length
 };
+
+// Momentum of body and water of a block of sections, about each and in the axes of the head; from its angular velocity
+// and its velocity. `section` and `lever` may be weighed.
+template <class M>
+Momentum<M, Lanes> momentum_of_sections(const Swimmer& swimmer, const Section<Lanes>& section, Lanes lever,
+                                        const Frame<M, Lanes>& frame, const Angular<M, Lanes>& omega,
+                                        const Vector<M, Lanes>& velocity)
+{
+    Momentum<M, Lanes> sum{frame.parent(section.angular_momentum(frame.local(omega))),
+                           frame.parent(section.linear_momentum(frame.local(velocity)))};
+    if constexpr (!M::planar)
+        if (swimmer.offset) {
+            const Vector3<Lanes> moment = mass_moment(lever, frame.axis3);
+            sum += {cross(moment, velocity), cross(omega, moment)};
+        }
+    return sum;
+}
 
 template <class M>
 class Columns {
@@ -41,6 +59,7 @@ class Columns {
     std::vector<Column<M>> column;
     Definite mass;                 // of head and coordinates
     std::vector<double> momentum;  // of the imposed change of shape alone, in the direction of each of them
+    std::vector<double> at_rest;   // the same, less that of the water's own motion: where head and coordinates rest
 
     // B_m of a block.
     static Lanes shape(const BentLaw& law, std::size_t m, std::size_t k)
@@ -68,6 +87,10 @@ class Columns {
             double& own = mass.at(head + i, head + i);
             own = (i < modes.modes ? own : 0.0) + modes.inertia[i];
         }
+        if constexpr (!M::planar)
+            if (!work.fins.empty()) add_fins(swimmer, work);
+        at_rest = momentum;
+        if (work.flowing) take_flow(swimmer, work);
     }
 
     // sum of a column's fields times these, of blocks: integral (omega_m . c + v_m . n), where (c, n) are weighed,
@@ -83,7 +106,50 @@ class Columns {
         return total(sum);
     }
 
+    // Motion of a column at the centre of pressure of a fin.
+    Vector3<double> at(const FinMotion& fin, std::size_t node, std::size_t m) const
+    {
+        return column[m].velocity.node(node) + cross(column[m].omega.node(node), fin.arm);
+    }
+    // A wrench on the section of a `node`, about it, times the column's motion there.
+    double work_at(std::size_t node, std::size_t m, const Wrench<M, double>& wrench) const
+    {
+        return dot(column[m].omega.node(node), wrench.angular) + dot(column[m].velocity.node(node), wrench.linear);
+    }
+
   private:
+    // Added masses of the fins; the head's own part is in its inertia.
+    EEL_CORE_APART void add_fins(const Swimmer& swimmer, const Workspace<Space>& work)
+    {
+        std::vector<double> y(column.size());
+        for (std::size_t i = 0; i < swimmer.fins.size(); ++i) {
+            const FinMotion& now = work.fins[i];
+            const std::size_t node = swimmer.fins[i].node;
+            const auto row = components_of(at_fin(now, now.normal));
+            const double imposed =
+                dot(now.normal, work.shape_velocity.node(node) + cross(work.shape_omega.node(node), now.arm));
+            for (std::size_t m = 0; m < y.size(); ++m) {
+                y[m] = dot(now.normal, at(now, node, m));
+                const double share = swimmer.fins[i].added_mass * y[m];
+                for (std::size_t j = 0; j < head; ++j) mass.at(head + m, j) += share * row[j];
+                for (std::size_t j = 0; j <= m; ++j) mass.at(head + m, head + j) += share * y[j];
+                momentum[head + m] += share * imposed;
+            }
+        }
+    }
+
+    EEL_CORE_APART void take_flow(const Swimmer& swimmer, Workspace<M>& work)
+    {
+        const auto whole = components_of(momentum_of_flow(swimmer, work));
+        for (std::size_t i = 0; i < head; ++i) at_rest[i] -= whole[i];
+        for (std::size_t k = 0; k < blocks_; ++k) {
+            const auto section = swimmer.sections[k].weighed(swimmer.grid.weight[k]);
+            const auto frame = work.frame[k];
+            work.integrand.store(k, {{}, frame.parent(section.water_momentum(frame.local(work.flow[k].u)))});
+        }
+        for (std::size_t m = 0; m < column.size(); ++m) at_rest[head + m] -= work_of(m, work.integrand);
+    }
+
     void set_column(const Swimmer& swimmer, const Modes& modes, const BentLaw& law, std::size_t m, Workspace<M>& work)
     {
         Column<M>& own = column[m];
@@ -128,8 +194,9 @@ class Columns {
         for (std::size_t k = own.first_block; k < blocks_; ++k) {
             const auto section = swimmer.sections[k].weighed(swimmer.grid.weight[k]);
             const auto frame = work.frame[k];
-            const Vector<M, Lanes> linear = frame.parent(section.linear_momentum(frame.local(own.velocity[k])));
-            const Angular<M, Lanes> angular = frame.parent(section.angular_momentum(frame.local(own.omega[k])));
+            const auto [angular, linear] =
+                momentum_of_sections<M>(swimmer, section, swimmer.grid.weight[k] * swimmer.sections.lever[k], frame,
+                                        own.omega[k], own.velocity[k]);
             own.momentum.store(k, {angular, linear});
             whole += {angular + cross(work.position[k], linear), linear};
             imposed += dot(work.shape_omega[k], angular) + dot(work.shape_velocity[k], linear);

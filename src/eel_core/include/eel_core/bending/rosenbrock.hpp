@@ -26,7 +26,7 @@ struct BentSettings {
     StepBounds bounds;
     double torque_floor = 0.0;  // [N m], below which torques count as none
     bool ledger = true;
-    Vector3<double> current{};  // [m/s]
+    Water water{};
 };
 
 inline constexpr std::size_t bent_works = std::tuple_size_v<Powers> + 1;
@@ -81,6 +81,8 @@ class BentStepper {
 
     BentBody<M>& body() { return body_; }
     const BentBody<M>& body() const { return body_; }
+    Workspace<M>& work() { return body_.work; }
+    const Workspace<M>& work() const { return body_.work; }
     const Counts& counts() const { return counts_; }
     std::size_t hardest() const { return hardest_; }  // coordinate with the greatest error in the last step
     double end_time() const { return here_.time; }
@@ -91,7 +93,8 @@ class BentStepper {
         scale_ = {}, torque_scale_ = 0.0, counts_ = {}, budget_ = spare_steps, proposed_ = 0.0;
         scale_.include(y);
     }
-    void take_over(const BentStepper& other)
+    template <class Other>
+    void take_over(const BentStepper<Other>& other)
     {
         scale_ = other.scale_, torque_scale_ = other.torque_scale_, counts_ = other.counts_, budget_ = other.budget_,
         proposed_ = other.proposed_;
@@ -133,6 +136,9 @@ class BentStepper {
     }
 
   private:
+    template <class>
+    friend class BentStepper;
+
     // Integral up to theta of the parabola through powers at 0, 1/2 and 1.
     static double work_until(double theta, double a, double b, double c)
     {
@@ -169,9 +175,9 @@ class BentStepper {
     bool evaluate(const BentSettings& settings, double time, const BentState& y)
     {
         ++counts_.evaluations;
-        if (!body_.configure_at(settings.law, time, y.head, y.x.data())) return false;
+        if (!body_.configure_at(settings.law, settings.water, time, y.head, y.x.data())) return false;
         body_.move_by_momenta(y.momentum.data(), y.x.data());
-        body_.find_rates(settings.law, settings.current, y.head);
+        body_.find_rates(settings.law, settings.water.current, y.head);
         return true;
     }
 
@@ -189,7 +195,7 @@ class BentStepper {
     bool find_point(const BentSettings& settings, BentPoint<M>& point, bool smoothed)
     {
         ++counts_.evaluations;
-        if (!body_.configure_at(settings.law, point.time, point.y.head, point.y.x.data())) return false;
+        if (!body_.configure_at(settings.law, settings.water, point.time, point.y.head, point.y.x.data())) return false;
         body_.find_rates_of(point.y.momentum.data());
         if (smoothed && smooth_rates(point)) {
             body_.move_by_rates(body_.rate.data(), point.y.x.data());
@@ -197,7 +203,7 @@ class BentStepper {
         } else {
             body_.move(point.y.x.data());
         }
-        body_.find_rates(settings.law, settings.current, point.y.head);
+        body_.find_rates(settings.law, settings.water.current, point.y.head);
         body_.find_accelerations_and_drift(settings.law);
         point.head_rate = body_.head_rate, point.momentum_rate = body_.momentum_rate, point.rate = body_.rate;
         point.acceleration = body_.acceleration, point.drift = body_.drift, point.head = body_.work.head;
@@ -414,9 +420,9 @@ class BentStepper {
         std::vector<double> x, rate;
         interpolate(0.5, head, x, rate);
         ++counts_.evaluations;
-        if (!body_.configure_at(settings.law, time, head, x.data())) return Status::singular;
+        if (!body_.configure_at(settings.law, settings.water, time, head, x.data())) return Status::singular;
         body_.move_by_rates(rate.data(), x.data());
-        body_.find_rates(settings.law, settings.current, head);
+        body_.find_rates(settings.law, settings.water.current, head);
         body_.find_accelerations_and_drift(settings.law);
         middle_ = all_powers();
         for (std::size_t k = 0; k < bent_works; ++k)

@@ -133,8 +133,11 @@ EEL_CORE_APART inline void find_fin_loads(const Swimmer& swimmer, const LawOnGri
         const double through = dot(now.normal, now.velocity);
         const Vector3<double> x =
             fin.added_mass * ((dot(q, now.velocity) + dot(now.normal, now.water_rate)) * now.normal + through * q);
-        work.fin_load += at_fin(now, now.force + x);
-        work.fin_load.angular += cross(now.velocity, fin.added_mass * through * now.normal);
+        now.momentum = fin.added_mass * through * now.normal;
+        const Vector3<double> force = now.force + x, torque = cross(now.velocity, now.momentum);
+        now.load = {cross(now.arm, force) + torque, force};
+        work.fin_load += at_fin(now, force);
+        work.fin_load.angular += torque;
     }
 }
 
@@ -156,16 +159,17 @@ EEL_CORE_APART inline Wrench<Space, double> wrench_of_fins(const Swimmer& swimme
     return sum;
 }
 
-// The wrench of the fins that lie ahead of the points of a block, or at them, about the head; `behind`: what a fin
-// knows of the points.
+// The wrench of the fins that lie ahead of the points of a block, or at them, about the head, or their momentum;
+// `behind`: what a fin knows of the points.
 inline Wrench<Space, Lanes> fins_ahead(const Swimmer& swimmer, const Workspace<Space>& work, std::size_t block,
-                                       std::size_t Fin::* behind)
+                                       std::size_t Fin::* behind,
+                                       Vector3<double> FinMotion::* vector = &FinMotion::whole)
 {
     Wrench<Space, Lanes> sum{};
     for (std::size_t i = 0; i < swimmer.fins.size(); ++i) {
         const std::size_t first = swimmer.fins[i].*behind, start = width * block;
         const Lanes here = select(Mask::below(first > start ? first - start : 0), 0.0, 1.0);
-        const Wrench<Space, double> wrench = at_fin(work.fins[i], work.fins[i].whole);
+        const Wrench<Space, double> wrench = at_fin(work.fins[i], work.fins[i].*vector);
         sum += {{here * wrench.angular.x, here * wrench.angular.y, here * wrench.angular.z},
                 {here * wrench.linear.x, here * wrench.linear.y, here * wrench.linear.z}};
     }

@@ -66,26 +66,32 @@ EEL_CORE_APART std::pair<Wrench<M, double>, double> total_of_gradient(const Swim
     return {total_of(sum), total(power)};
 }
 
-// Velocities through the water, and the flow's part of the load on the momentum: per length rho_f A a_u - g^T p, with
-// the torque U x p besides; m_o a_u at the nose.
+// The flow's part of the load on the momentum of a block, about the sections and weighed by their length:
+// rho_f A a_u - g^T p, with the torque U x p besides.
+template <class M>
+Wrench<M, Lanes> load_of_flow(const Swimmer& swimmer, const Workspace<M>& work, std::size_t k)
+{
+    const auto section = swimmer.sections[k].weighed(swimmer.grid.weight[k]);
+    const Lanes displaced = swimmer.grid.weight[k] * swimmer.sections.displaced[k];
+    const auto frame = work.frame[k];
+    const FlowSample<M, Lanes> water = work.flow[k];
+    const Vector<M, Lanes> p = frame.parent(section.water_momentum(frame.local(work.relative[k])));
+    if (!swimmer.flow_gradient) return {cross(water.u, p), displaced * water.u_t};
+    return {cross(water.u, p), displaced * water.acceleration() - water.g.transposed_times(p)};
+}
+
+// Velocities through the water, and the flow's part of the load on the momentum; m_o a_u at the nose.
 template <class M>
 EEL_CORE_APART void set_flow_load(const Swimmer& swimmer, Workspace<M>& work)
 {
     if (work.relative.stride() == 0) work.relative = Field<Vector<M, double>>(swimmer.grid.blocks);
     Wrench<M, Lanes> sum{};
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-        const auto section = swimmer.sections[k].weighed(swimmer.grid.weight[k]);
-        const Lanes displaced = swimmer.grid.weight[k] * swimmer.sections.displaced[k];
-        const auto frame = work.frame[k];
-        const FlowSample<M, Lanes> water = work.flow[k];
-        const Vector<M, Lanes> w = work.velocity[k] - water.u;
-        work.relative.store(k, w);
-        const Vector<M, Lanes> p = frame.parent(section.water_momentum(frame.local(w)));
-        const Vector<M, Lanes> force = displaced * water.acceleration() - water.g.transposed_times(p);
-        sum += {cross(work.position[k], force) + cross(water.u, p), force};
+        work.relative.store(k, work.velocity[k] - work.flow[k].u);
+        const Wrench<M, Lanes> load = load_of_flow(swimmer, work, k);
+        sum += {cross(work.position[k], load.linear) + load.angular, load.linear};
     }
     work.flow_load = plus_axial<M>(total_of(sum), swimmer.nose_mass * work.flow.nose().acceleration().x);
-    if (!swimmer.flow_gradient) work.flow_load = work.flow_load - total_of_gradient(swimmer, work).first;
 }
 
 // The wrench about the head that the flow adds to the balance, beside that of a motion through water at rest, of a

@@ -2,34 +2,21 @@
 // A swimmer on its way: its state, what drives it, the steps it takes, and what is seen of it.
 #pragma once
 
-#include <memory>
-#include <optional>
-#include <variant>
-
-#include "eel_core/march/observe.hpp"
-#include "eel_core/steppers/stepper.hpp"
+#include "eel_core/march/marching.hpp"
 
 namespace eel_core {
 
 using HeadMotion = std::array<double, 13>;  // see `March::head`
 
 // A copy goes on by itself: state, steps and work space are its own; swimmer and law, which never change, are shared.
-class March {
+class March : public Marching<March, Stepper> {
   public:
-    March(std::shared_ptr<const Swimmer> swimmer, const Method& method, bool planar)
-        : swimmer_(std::move(swimmer)), stepper_(made(*swimmer_, method, planar)), here_(*swimmer_)
+    March(const std::shared_ptr<const Swimmer>& swimmer, const Method& method, bool planar)
+        : Marching(swimmer, made(*swimmer, method, planar))
     {
-        state_[6] = 1.0;
     }
 
-    double time() const { return time_; }
-    const State& state() const { return state_; }
     const WorkDone& works() const { return works_; }
-    Counts counts() const
-    {
-        return std::visit([](const auto& stepper) { return stepper.counts(); }, stepper_);
-    }
-    const Swimmer& swimmer() const { return *swimmer_; }
     // Bytes that an evaluation reads and writes: work space, weights of the integral, rows of the law.
     std::size_t memory() const
     {
@@ -40,15 +27,9 @@ class March {
     }
 
     // Goes on in another grid or by another method; the next step begins anew. The state keeps its momentum.
-    void change(std::shared_ptr<const Swimmer> swimmer, const Method& method, bool planar)
+    void change(const std::shared_ptr<const Swimmer>& swimmer, const Method& method, bool planar)
     {
-        Steppers next = made(*swimmer, method, planar);
-        std::visit([&](auto& stepper) { std::visit([&](const auto& last) { stepper.take_over(last); }, stepper_); },
-                   next);
-        stepper_ = std::move(next);
-        swimmer_ = std::move(swimmer);
-        here_ = StationWork(*swimmer_);
-        observing_.reset();
+        Marching::change(swimmer, made(*swimmer, method, planar));
         begin();
     }
 
@@ -64,38 +45,19 @@ class March {
     double start(const Vector3<double>& position, const Quaternion<double>& orientation,
                  const Twist<Space, double>& twist)
     {
-        time_ = 0.0, works_ = {}, state_ = {};
-        for (const FinServo& servo : swimmer_->servos)
-            if (servo.time_constant > 0.0) state_[servo.slot] = servo.initial;
+        stand_at_start(), works_ = {};
         const double energy = set_state(position, orientation, twist);
         std::visit([&](auto& stepper) { stepper.forget(state_, settings_.bounds.spare_steps); }, stepper_);
         begin();
         return energy;
     }
 
-    // The head's twist relative to the water, in the present state. Throws where the inertia is not positive definite.
-    Twist<Space, double> twist()
-    {
-        Workspace<Space>& work = workspace();
-        if (!find_head_motion(*swimmer_, settings_.law, settings_.water, time_, state_, work))
-            throw std::domain_error("inertia is not positive definite");
-        return work.twist;
-    }
-
-    // Time [s] and place [m] in the world outside the grid of the flow, where the last evaluation was there.
-    std::optional<std::array<double, 4>> outside() const
-    {
-        const auto found = std::visit([](const auto& stepper) { return stepper.work().flow.outside(); }, stepper_);
-        if (found) return found;
-        return observing_ && observing_->flow.outside() ? observing_->flow.outside() : here_.flow.outside();
-    }
-
     // Position [m], orientation x y z w and twist over ground [rad/s, m/s] of the head in the present state; none where
     // the inertia is not positive definite.
     std::optional<HeadMotion> head()
     {
-        Workspace<Space>& work = workspace();
-        if (!find_head_motion(*swimmer_, settings_.law, settings_.water, time_, state_, work)) return {};
+        if (!find_head()) return {};
+        const Workspace<Space>& work = workspace();
         HeadMotion head;
         std::copy_n(state_.begin(), 7, head.begin());
         put(work.twist.angular, head.data() + 7);
@@ -108,9 +70,7 @@ class March {
     double set_state(const Vector3<double>& position, const Quaternion<double>& orientation,
                      const Twist<Space, double>& twist)
     {
-        State next{position.x, position.y, position.z, orientation.x, orientation.y, orientation.z, orientation.w};
-        std::copy(state_.begin() + state_size, state_.end(), next.begin() + state_size);  // of the fins
-        state_ = next;
+        put_pose(position, orientation);
         return set_twist(twist);
     }
 
@@ -118,29 +78,12 @@ class March {
     // energy [J].
     double set_twist(const Twist<Space, double>& twist)
     {
-        Workspace<Space>& work = workspace();
-        configure(*swimmer_, settings_.law, time_, work);
-        work.head = head_frame(state_, Space());
-        set_flow(*swimmer_, settings_.water, time_, Vector3{state_[0], state_[1], state_[2]}, work);
-        if (!work.fins.empty()) place_fins(*swimmer_, settings_.law, settings_.water, time_, state_, work);
-        put_momentum(momentum_of(*swimmer_, twist, work), work.head, state_);
-        set_velocities(*swimmer_, twist, work);
-        if (work.flowing) set_flow_load(*swimmer_, work);
-        if (swimmer_->weighs()) set_weight(*swimmer_, height_in(settings_.water, time_, state_), work);
+        const double energy = put_twist(twist);
         begin();
-        const auto [body, water, potential] = energies_of(*swimmer_, work);
-        return body + water + potential;
+        return energy;
     }
 
-    // Nodes that are evaluated before a march comes back unfinished.
-    void set_slice(std::int64_t nodes) { slice_ = nodes; }
-
-    // Marches to `time` [s]. Unless it gets there, the present is the end of the last step (unfinished), or unchanged.
-    Status advance(double time)
-    {
-        Slice slice{slice_};
-        return advance(time, slice);
-    }
+    using Marching::advance;
 
     // Marches through the instants [s], from number `first` on and up to `until` [s], and observes each. `done`: how
     // many are complete.
@@ -166,7 +109,10 @@ class March {
     }
 
   private:
-    using Steppers = std::variant<Stepper<Space>, Stepper<Plane>>;
+    friend Marching;
+
+    const LawOnGrid& law_on_grid(Workspace<Space>&) const { return settings_.law; }
+    const Water& water() const { return settings_.water; }
 
     static Steppers made(const Swimmer& swimmer, const Method& method, bool planar)
     {
@@ -180,15 +126,7 @@ class March {
         std::visit([&](auto& stepper) { stepper.begin(time_, state_, works_, first_length); }, stepper_);
     }
 
-    Status advance(double time, Slice& slice)
-    {
-        try {
-            return march_to(time, slice);
-        } catch (...) {  // of a flow that is a function
-            begin();
-            throw;
-        }
-    }
+    void begin_later() { begin(); }
 
     Status march_to(double time, Slice& slice)
     {
@@ -206,24 +144,7 @@ class March {
             stepper_);
     }
 
-    // Of space, for what is observed: the stepper's own, unless that is for the plane.
-    Workspace<Space>& workspace()
-    {
-        if (auto* const stepper = std::get_if<Stepper<Space>>(&stepper_)) return stepper->work();
-        if (!observing_) observing_.emplace(*swimmer_);
-        return *observing_;
-    }
-
-    static constexpr double first_step = 0.02;  // of the longest
-
-    std::shared_ptr<const Swimmer> swimmer_;
     MarchSettings settings_;
-    Steppers stepper_;
-    StationWork here_;
-    std::optional<Workspace<Space>> observing_;
-    std::int64_t slice_ = Slice{}.left;
-    double time_ = 0.0;  // [s]
-    State state_{};
     WorkDone works_{};
 };
 

@@ -56,6 +56,8 @@ struct FinMotion {
     Vector3<double> normal{}, chord{};         // e_n; e_c, from the trailing to the leading edge
     Vector3<double> velocity{}, water_rate{};  // [m/s], [m/s^2]
     Vector3<double> force{}, whole{};          // [N], of lift and drag; with that of the added mass
+    Vector3<double> momentum{};                // [kg m/s], of the added mass
+    Wrench<Space, double> load{};              // about the section: its part of the rate of the momentum
 };
 
 }  // namespace eel_core

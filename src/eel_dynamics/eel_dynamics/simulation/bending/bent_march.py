@@ -28,7 +28,7 @@ class BentMarch(March):
     def _discretise(self, settings: GridSettings) -> Discretisation:
         setup, table = self.setup, self.setup.modes
         assert table is not None
-        here = discretise(setup.body, setup.scene, settings, setup.x.tobytes(), table.points.tobytes())
+        here = discretise(setup.body, setup.scene, settings, setup.x.tobytes(), table.points.tobytes(), setup.fins)
         self.robot = RobotTables.of(table, here.grid, here.tabulation)
         return here
 
@@ -61,12 +61,11 @@ class BentMarch(March):
             self._reference,
             self.robot.drive,
             self.robot.push,
-            self.follower.breakpoints,
+            self._breakpoints,
             self._bounds,
             floor,
             bool(setup.scene.ledger),
-            setup.current,
-            smoothly,
+            *self._water(smoothly),
         )
 
     def _stopped(self, status: int) -> SimulationStopped:
