@@ -99,6 +99,24 @@ def test_robot_at_rest_stays_at_rest_exactly(name):
     )
 
 
+def test_robot_starts_in_the_pose_that_is_given():
+    """At rest, in the joint's own sign, the motor behind a spring too; springs then bring it back."""
+    servo = Servo(kp=5.0, kd=0.1, rotor_inertia=2e-4, series_stiffness=20.0)
+    robot = Robot(
+        [
+            Joint(0.3, "-yaw", stiffness=1.0, damping=0.1, initial_angle=0.2),
+            Joint(0.5, actuator=servo, initial_angle=-0.3),
+            Joint(0.7, actuator=Servo(kp=5.0, kd=0.1)),
+        ]
+    )
+    run = simulate(Law(name="none"), 4.0, robot=robot, accuracy=1e-3, estimate=False)
+    assert run.joint_angle[0] == pytest.approx([0.2, -0.3, 0.0]) and not run.joint_rate[0].any()
+    assert run.motor_angle[0, 1] == pytest.approx(-0.3) and run.energy.elastic[0] == pytest.approx(0.02)
+    assert greatest(run.joint_angle[-1]) < 0.02 and greatest(run.energy.residual) < 2e-4
+    with pytest.raises(ValueError, match=r"initial_angle must lie within limits \(-0.1, 0.1\) rad, got 0.2 rad"):
+        Joint(0.3, limits=(-0.1, 0.1), initial_angle=0.2)
+
+
 def test_planar_scene_gives_what_space_gives():
     plane, space = (
         simulate(straight(), 2.0, robot=Robot.named("series_elastic"), scene=Scene(planar=planar), estimate=False)

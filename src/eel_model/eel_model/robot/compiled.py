@@ -80,6 +80,7 @@ class ModeTable:
     stiffness: np.ndarray  # (M, M) N m/rad, or N m^4 over a continuous part
     damping: np.ndarray  # (M, M) N m s/rad, or N m^4 s
     rest: np.ndarray  # (M,) rad, or rad/m
+    initial: np.ndarray  # (M,) rad, of q at the start; NaN where it is not given
     limits: np.ndarray  # (M, 2) rad, of q, infinite where there are none
     stop_stiffness: np.ndarray  # (M,) N m/rad
     stop_damping: np.ndarray  # (M,) N m s/rad
@@ -127,7 +128,7 @@ def mode_table(robot: Robot, body: Body, planar: bool = False) -> ModeTable:
     firsts = np.concatenate(([0], np.cumsum(counts))).astype(int)
     columns = {
         name: np.concatenate([np.asarray(each[name]) for each in modes]) if modes else np.empty(0)
-        for name in ("start", "end", "sign", "rest", "stop_stiffness", "stop_damping", "armature")
+        for name in ("start", "end", "sign", "rest", "initial", "stop_stiffness", "stop_damping", "armature")
     }
     total = int(firsts[-1])
     stiffness, damping = np.zeros((total, total)), np.zeros((total, total))
@@ -250,6 +251,7 @@ def _modes(part: Any, support: tuple[float, float]) -> dict[str, Any]:
             "stiffness": [[part.stiffness]],
             "damping": [[part.damping + (servo.friction if servo else 0.0)]],
             "rest": [sign * part.rest_angle],
+            "initial": [np.nan if part.initial_angle is None else sign * part.initial_angle],
             "limits": [sorted((sign * low, sign * high))],
             "stop_stiffness": [part.stop_stiffness],
             "stop_damping": [part.stop_damping],
@@ -271,6 +273,7 @@ def _modes(part: Any, support: tuple[float, float]) -> dict[str, Any]:
         "stiffness": symmetric["bending_stiffness"],
         "damping": symmetric["damping"],
         "rest": np.zeros(count),
+        "initial": np.full(count, np.nan),
         "limits": [(-np.inf, np.inf)] * count,
         "stop_stiffness": np.zeros(count),
         "stop_damping": np.zeros(count),

@@ -46,12 +46,18 @@ class Joint(Part):
     name: str = quantity("", "", "in messages, commands and tables; empty: joint_1, joint_2, ...", plain=True)
     stop_stiffness: float = quantity(100.0, "N m/rad", "of the hard stops", 0.0, exclusive=True)
     stop_damping: float = quantity(0.1, "N m s/rad", "of the hard stops", 0.0)
+    initial_angle: float | None = quantity(
+        None, "rad", "at the start, at rest; None: the servo's reference, or where the spring rests"
+    )
 
     def __post_init__(self) -> None:
         super().__post_init__()
         checked_axis(self.what, self.axis)
         if self.limits is not None:
             object.__setattr__(self, "limits", checked_range("joint limits", self.limits, "rad"))
+        start = self.initial_angle
+        if start is not None and self.limits is not None and not self.limits[0] <= start <= self.limits[1]:
+            raise ValueError(f"joint initial_angle must lie within limits {self.limits} rad, got {start:g} rad")
         if self.actuator is not None:
             checked_instance("joint actuator", self.actuator, (Servo, Torque))
         if not isinstance(self.name, str) or len(self.name) > LONGEST_NAME:

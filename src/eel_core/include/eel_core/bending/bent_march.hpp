@@ -54,6 +54,7 @@ class BentMarch : public Marching<BentMarch, BentStepper> {
     // As `March::follow`. Commands hold.
     void follow(BentSettings settings, bool smoothly)
     {
+        if (!smoothly) end_step();
         settings.law.commands = std::move(settings_.law.commands);
         settings_ = std::move(settings);
         if (!smoothly) begin();
@@ -62,13 +63,14 @@ class BentMarch : public Marching<BentMarch, BentStepper> {
     // Has a servo do so from now on, whatever the law; the next step begins anew.
     void command(std::size_t servo, Command::Kind kind, double value)
     {
+        end_step();
         std::vector<Command>& commands = settings_.law.commands;
         commands.resize(modes_->servos.size());
         const Command& last = commands[servo];
         const bool by_angle = last.kind == Command::angle || last.kind == Command::rate;
         const double from = by_angle ? target_of(last, time_).reference[0] : x_[modes_->servos[servo].coordinate];
         commands[servo] = {kind, value, time_, from};
-        begin();
+        begin_ = true;
     }
 
     // Stands at the start, at time 0, with these coordinates and rates and the momenta of the head's twist relative to
@@ -234,6 +236,18 @@ class BentMarch : public Marching<BentMarch, BentStepper> {
     }
 
     void begin_later() { begin_ = true; }
+
+    // Has the last step end at present, where something is about to change.
+    void end_step()
+    {
+        if (begin_) return;
+        begin_ = true;  // also where this fails
+        std::visit(
+            [&](auto& stepper) {
+                if (stepper.end_at(settings_, time_)) stepper.state_at(time_, state_, x_, rate_, works_);
+            },
+            stepper_);
+    }
 
     Status march_to(double time, Slice& slice)
     {

@@ -121,6 +121,25 @@ class BentStepper {
         return Status::marched;
     }
 
+    // Has the last step end at `time` [s] within it: it is taken again. Whether it was. What lies between the ends of
+    // steps is less exact than they are, and no motion should begin there.
+    bool end_at(BentSettings& settings, double time)
+    {
+        const double tiny = 1e-12 * std::max(1.0, std::abs(time));
+        if (anew_ || time < before_.time + tiny || time > here_.time - tiny) return false;
+        std::swap(before_, here_);
+        works_ = works_before_;
+        std::rotate(ends_.begin(), ends_.begin() + 1, ends_.end());
+        known_ends_ -= known_ends_ > 0 ? 1 : 0;
+        const auto place = std::upper_bound(settings.breakpoints.begin(), settings.breakpoints.end(), time);
+        const auto index = place - settings.breakpoints.begin();
+        settings.breakpoints.insert(place, time);
+        Slice all{std::numeric_limits<std::int64_t>::max()};
+        const Status status = march(settings, time, all);
+        settings.breakpoints.erase(settings.breakpoints.begin() + index);
+        return status == Status::marched;
+    }
+
     // Head, coordinates, their rates and the works at `time` [s] within the step.
     void state_at(double time, State& head, std::vector<double>& x, std::vector<double>& rate, BentPowers& works) const
     {
@@ -251,8 +270,8 @@ class BentStepper {
     {
         if (known_ends_ > 0 && before_.damping != damping_of_ends_) known_ends_ = 0;
         damping_of_ends_ = before_.damping;
-        known_ends_ = std::min<std::size_t>(known_ends_ + 1, 3);
-        std::swap(ends_[0], ends_[1]);
+        known_ends_ = std::min(known_ends_ + 1, ends_.size());
+        std::rotate(ends_.begin(), ends_.end() - 1, ends_.end());
         ends_[0].time = before_.time, ends_[0].x = before_.y.x;
     }
 
@@ -439,7 +458,7 @@ class BentStepper {
         double time = 0.0;
         std::vector<double> x;
     };
-    std::array<End, 2> ends_;  // of the steps before the last, the latest first
+    std::array<End, 3> ends_;  // of the steps before the last, the latest first
     std::size_t known_ends_ = 0;
     std::vector<double> damping_of_ends_;  // linear in the rates, of the forces there
     Definite matrix_;                      // of the last step, factored

@@ -36,12 +36,14 @@ class BentMarch(March):
         return eel_core.BentMarch(self.discretisation.swimmer, self.robot.modes, bool(self.setup.scene.planar))
 
     def _start(self, *state) -> float:
-        rest, factors = self.robot.on_grid.rest.copy(), np.array(self.law_on_grid.factors(0.0))
-        rate = np.zeros(len(rest))
-        driven = zip(self.robot.on_grid.servos, self.robot.on_grid.servo_modes, self._reference, strict=True)
-        for (coordinate, *_), mode, row in driven:
-            rest[[coordinate, mode]], rate[[coordinate, mode]] = factors[:2, : len(row)] @ row
-        return float(self.core.start(*state, rest, rate))
+        on_grid, factors = self.robot.on_grid, np.array(self.law_on_grid.factors(0.0))
+        first, given = on_grid.rest.copy(), on_grid.table.initial
+        rate = np.zeros(len(first))
+        first[: len(given)] = np.where(np.isnan(given), first[: len(given)], given)
+        for (coordinate, *_), mode, row in zip(on_grid.servos, on_grid.servo_modes, self._reference, strict=True):
+            there = factors[:2, : len(row)] @ row if np.isnan(given[mode]) else (given[mode], 0.0)
+            first[[coordinate, mode]], rate[[coordinate, mode]] = there
+        return float(self.core.start(*state, first, rate))
 
     def _step_bounds(self) -> eel_core.StepBounds:
         bounds = super()._step_bounds()
