@@ -6,7 +6,7 @@ from copy import deepcopy
 import numpy as np
 import pytest
 
-from eel_dynamics import Joint, Robot, Scene, Servo, Simulation, Torque
+from eel_dynamics import Accuracy, Joint, Robot, Scene, Servo, Simulation, Torque
 from eel_gaits import Law, straight
 
 PLANE = Scene(planar=True)
@@ -116,6 +116,23 @@ def test_the_error_is_measured_under_commands_too():
     simulation.command("joint_1", position=0.4)
     simulation.advance(1.0)
     assert 0.0 < simulation.error_estimate.position < 1e-3
+
+
+def test_the_error_under_steps_of_commands_is_not_underrated():
+    """The joints' panels make grids of few settings alike: the companion has another one all the same."""
+    runs = []
+    for accuracy in (1e-3, Accuracy(name="exact", resolution=50.0, tolerance=1e-7)):
+        simulation, torques = swimming(Robot.named("eight_servos"), accuracy=accuracy, measure_error=True), []
+        for k in range(50):
+            for joint in simulation.robot.joints:
+                up = np.sin(2.0 * np.pi * (0.02 * k - joint.position)) > 0.0
+                simulation.command(joint.name, position=0.006 * k * (1.0 if up else -1.0))
+            simulation.advance(0.02 * (k + 1))
+            torques.append(simulation.observe(load=False).torque)
+        runs.append((simulation, np.array(torques)))
+    (measured, torque), (_, exact) = runs
+    apart, size = (np.linalg.norm(each, axis=2).max() for each in (torque - exact, exact))
+    assert measured.error_estimate.torque > apart / size > 2e-4
 
 
 @pytest.mark.fault(

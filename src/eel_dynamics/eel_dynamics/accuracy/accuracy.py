@@ -54,6 +54,7 @@ ORDERS = {"adams": (1, 2, 3, 4, 5, 6), "dormand_prince": (5,), "classical": (4,)
 FINEST_TOLERANCE = 1e-13  # below, round-off
 LONGEST_STEP = 0.1  # of the shortest time over which the shape changes. The works are integrals over it
 ANY = 30.0  # resolution until the scene is known
+OTHER_GRIDS = 4  # times that points are added until the grid is another one: the panels of a robot are many
 FURTHER_POINTS = 9.0  # more points per length, which make any grid finer: the last eight nodes are always filled
 WAVES_POWER = 0.85  # points grow with this power of the number of waves on the body
 SPARED = 8.0  # points per length that grow with the waves too, of those that the panels have to spare

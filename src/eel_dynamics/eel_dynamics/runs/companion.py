@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from eel_gaits.sources.sampled_law import SampledLaw
 
-from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.accuracy import OTHER_GRIDS, Accuracy
 from eel_dynamics.accuracy.error_estimate import SMALL, ErrorEstimate, growth_rate_of, least_torque
 from eel_dynamics.analysis.peaks import torque_size
 from eel_dynamics.simulation.stopping import SimulationStopped
@@ -130,8 +130,11 @@ def _finished(request, accuracy: Accuracy, nodes: int | None = None):
     """
     try:
         simulation = request.simulation(accuracy)
-        if len(simulation.grid.x) == nodes:
-            simulation = request.simulation(accuracy.with_other_points())
+        for _ in range(OTHER_GRIDS):
+            if len(simulation.grid.x) != nodes:
+                break
+            accuracy = accuracy.with_other_points()
+            simulation = request.simulation(accuracy)
         swim = request.swim(simulation)
     except (SimulationStopped, ValueError):
         return None

@@ -15,6 +15,7 @@ import numpy as np
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 
+from eel_dynamics.accuracy.accuracy import OTHER_GRIDS
 from eel_dynamics.accuracy.error_estimate import (
     LEAST_SAMPLES,
     SMALL,
@@ -54,6 +55,7 @@ class ErrorMeter:
         self._apart = np.zeros(4)  # as in `HeadErrors`: m, rad, m/s, rad/s
         self._torque: float | None = None  # N m, the greatest since then
         self._distances: deque = deque(maxlen=REMEMBERED)  # (time [s], distance of the heads [m])
+        self.due = False  # whether the next instant is to be compared, as torques have jumped
         self.begin_again(march)
 
     def restart(self, march: March):
@@ -70,8 +72,11 @@ class ErrorMeter:
         try:
             settings = march.setup.settings.coarser()
             self._companion = march.copy_with(replace(march.setup, accuracy=settings))
-            if self._has_same_grid(march):
-                self._companion = march.copy_with(replace(march.setup, accuracy=settings.with_other_points()))
+            for _ in range(OTHER_GRIDS):
+                if not self._has_same_grid(march):
+                    break
+                settings = settings.with_other_points()
+                self._companion = march.copy_with(replace(march.setup, accuracy=settings))
         except FAILURES:
             self._companion = None
 
@@ -115,7 +120,7 @@ class ErrorMeter:
 
     def advanced(self, march: March, interrupted: Callable[[], bool] | None):
         """Compare the two, where that is due."""
-        if march.time - self._compared_at >= COMPARED_EVERY * (1.0 - ROUND_OFF):
+        if self.due or march.time - self._compared_at >= COMPARED_EVERY * (1.0 - ROUND_OFF):
             self.compare(march, interrupted)
 
     def compare(self, march: March, interrupted: Callable[[], bool] | None = None):
@@ -123,7 +128,7 @@ class ErrorMeter:
         self.catch_up(march, interrupted)
         if self._companion is None or self._companion.time < march.time:
             return
-        self._compared_at = march.time
+        self._compared_at, self.due = march.time, False
         try:
             this, other = march.observe(load=False), self._companion.observe(load=False)
         except SimulationStopped:
@@ -140,7 +145,8 @@ class ErrorMeter:
         if self._last_position is not None:
             self._path += float(np.linalg.norm(this.position - self._last_position))
         self._last_position, self._apart = this.position, np.maximum(self._apart, apart)
-        self._distances.append((this.time, float(apart[0])))
+        if not self._distances or this.time - self._distances[-1][0] >= COMPARED_EVERY * (1.0 - ROUND_OFF):
+            self._distances.append((this.time, float(apart[0])))
         if this.torque is not None:
             size, differs = np.linalg.norm((this.torque, this.torque - other.torque), axis=2).max(axis=1)
             self._torque, self._torque_distance = max(self._torque or 0.0, size), max(self._torque_distance, differs)

@@ -295,6 +295,8 @@ class Simulation:
         kind, name, value = wanted[0] if wanted else ("law", "", 0.0)
         value = number(f"{name} of joint {shown(joint)}", value)
         self._on_both(lambda march: march.command(joint, kind, value))
+        if self._meter is not None:
+            self._meter.due = True
 
     def _on_both(self, action: Callable[[March], object]) -> None:
         """Do it to the march and, where the error is measured, to its companion, at the same time."""
