@@ -17,6 +17,7 @@ from lockstep import lockstep
 from measuring import REPEATS
 from nodes import nodes, visualiser
 from other_simulators import peers
+from robots import robots
 from swims import batch, falling_gait, gym, start, ticks
 
 FIGURES = {
@@ -32,6 +33,7 @@ FIGURES = {
     "nodes": nodes,
     "lockstep": lockstep,
     "gym": gym,
+    "robots": robots,
 }
 OPTIONAL = {"peers": peers, "paper_scheme": paper_scheme}  # on request: they install other people's packages
 

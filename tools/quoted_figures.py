@@ -195,6 +195,17 @@ def gym() -> str:
     return _labelled("gym", ("what", "measured"), labels)
 
 
+def robots() -> str:
+    """docs/howto/bending.md: times real time of robots, at a delivered 1e-3 and at the target 1e-3."""
+    report = Report("robots")
+    found: dict[str, list[str]] = {}
+    form = r"(?:plane|space), (.*), target \S+ +(\S+) times real time, error (\S+),"
+    for label, times, error in (row for line in report.lines for row in re.findall(form, line)):
+        found.setdefault(label, []).append(f"{float(times):.0f} ({error})")
+    head = ("robot", "plane, delivered 1e-3", "plane, target 1e-3", "space, delivered 1e-3", "space, target 1e-3")
+    return _from(report, head, [(label, *cells) for label, cells in found.items()], f" (`{report.command}`)")
+
+
 def _labelled(figure: str, head: Sequence[str], labels: Sequence[str]) -> str:
     """A row for each of the `labels` of a report's `figure`."""
     report = Report(figure)
@@ -211,6 +222,7 @@ BLOCKS: dict[str, dict[str, Callable[[], str]]] = {
     "docs/explanation/trust.md": {"checks": checks},
     "docs/howto/controllers.md": {"lockstep": lockstep},
     "docs/howto/learning.md": {"gym": gym},
+    "docs/howto/bending.md": {"robots": robots},
     "docs/explanation/integrators.md": {"integrators": integrators},
 }
 

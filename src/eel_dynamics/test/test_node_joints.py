@@ -200,7 +200,10 @@ def test_motors_at_their_limits_are_named_with_how_long(start, client, tmp_path)
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("robot:=ten_servos",), "robot must be one of eight_servos, series_elastic, passive_tail, a file"),
+        (
+            ("robot:=ten_servos",),
+            "robot must be one of eight_servos, sixteen_servos, series_elastic, passive_tail, a file",
+        ),
         (("robot:=none.yaml",), "robot file 'none.yaml': there is no such file"),
         (("robot:=eight_servos", "yaw_joints:=3"), "yaw_joints and pitch_joints must be 0 with a robot"),
         (

@@ -34,4 +34,7 @@ def test_the_command_simulate_takes_a_robot(capsys):
     assert main(words) == 0
     assert "motors              greatest torque" in capsys.readouterr().out
     assert main(["straight", "--robot", "ten_servos"]) == 2
-    assert "robot must be one of eight_servos, series_elastic, passive_tail, a file" in capsys.readouterr().err
+    assert (
+        "robot must be one of eight_servos, sixteen_servos, series_elastic, passive_tail, a file"
+        in capsys.readouterr().err
+    )

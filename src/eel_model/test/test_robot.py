@@ -79,7 +79,10 @@ def servo(**fields):
             lambda: Robot([Joint(0.3)]).changed("neck", width=0.1),
             "part must be one of joint_1, joints, servos, tails, muscles, got 'neck'",
         ),
-        (lambda: Robot.named("ten_servos"), "robot must be one of eight_servos, series_elastic, passive_tail, a file"),
+        (
+            lambda: Robot.named("ten_servos"),
+            "robot must be one of eight_servos, sixteen_servos, series_elastic, passive_tail, a file",
+        ),
     ],
 )
 def test_what_a_part_cannot_be_is_refused_by_field_and_value(make, told):

@@ -10,8 +10,8 @@ from eel_dynamics.runs.swim import Swim
 from eel_studies.motors.command import main
 from eel_studies.motors.motor_figures import comparison, motor_swim, references
 
-from eel_dynamics import Accuracy, Body, Joint, PassiveTail, Robot, Scene, Servo
-from eel_gaits import straight
+from eel_dynamics import Accuracy, Body, Joint, PassiveTail, Robot, Scene, Servo, simulate
+from eel_gaits import falling, straight
 
 SERVOS = Robot.named("eight_servos")
 SWIM = Swim(straight(), Body.boyer2010(), Scene(planar=True), Accuracy.of("draft"), duration=8.0)
@@ -93,6 +93,33 @@ def test_the_command_prints_a_row_for_each_joint_and_writes_the_table(capsys, tm
     assert told[0].startswith("torque_limit") and told[-1].split()[0] == "none"
 
 
+def test_a_second_number_gives_a_curve_each_and_a_picture(capsys, tmp_path):
+    """A tail swims fastest at a stiffness that goes with the square of the frequency."""
+    words = ["passive_tail", "straight", "--scene", "planar=true", "--scene", "friction=none", "--accuracy", "1e-2"]
+    words += ["--duration", "6", "--vary", "bending_stiffness=0.1,0.3,1.2,4.8", "--vary", "period=0.5,1"]
+    assert main([*words, "--out", str(tmp_path / "tails.png"), "--out", str(tmp_path / "tails.csv")]) == 0
+    rows = [line.split(",") for line in (tmp_path / "tails.csv").read_text().splitlines()]
+    assert rows[0][:3] == ["period", "bending_stiffness", "speed [m/s]"] and len(rows) == 9
+    best = {period: max((float(row[2]), row[1]) for row in rows[1:] if row[0] == period)[1] for period in ("0.5", "1")}
+    assert best == {"0.5": "1.2", "1": "0.3"}
+    assert (tmp_path / "tails.png").stat().st_size > 5000
+    assert main([*words, "--vary", "density_ratio=1,2"]) == 2
+    assert "--vary must be given 2 times at most, got 3" in capsys.readouterr().err
+
+
+def test_motors_are_asked_to_swim_as_a_run_did(capsys, tmp_path):
+    """The falling gait bends in pitch too: sixteen servos follow what a saved run of it swam."""
+    imposed = simulate(falling(), 4.0, accuracy="draft", estimate=False)
+    imposed.save(tmp_path / "swim.nc")
+    words = ["sixteen_servos", str(tmp_path / "swim.nc"), "--accuracy", "draft", "--vary", "torque_limit=0.1,1"]
+    assert main(words) == 0
+    told = capsys.readouterr().out.splitlines()
+    assert "the imposed swim takes at most" in told[0] and "N m in pitch of 8 joints an axis" in told[0]
+    weak, strong = (float(line.split()[2]) for line in told[-2:])
+    assert strong < 10.0 < 3.0 * strong + 10.0 < weak
+    assert main(["eight_servos", str(tmp_path / "none.nc")]) == 2
+
+
 @pytest.mark.fault(
     "parameters", "eel motors with a field that no part has, or values that are none", "status 2, one line"
 )
@@ -102,7 +129,7 @@ def test_the_command_prints_a_row_for_each_joint_and_writes_the_table(capsys, tm
         (["eight_servos", "--vary", "stifness=1"], "no part of the robot has 'stifness'"),
         (["eight_servos", "--vary", "kp=1,x"], "--vary must be FIELD=NUMBER,NUMBER,..."),
         (["eight_servos", "--vary", "kp=-1"], "servo kp must be >= 0 N m/rad, got -1"),
-        (["ten_servos"], "robot must be one of eight_servos, series_elastic, passive_tail, a file"),
+        (["ten_servos"], "robot must be one of eight_servos, sixteen_servos, series_elastic, passive_tail, a file"),
         (["none.urdf"], "there is no such file"),
     ],
 )

@@ -50,6 +50,15 @@ def series_elastic() -> list[Any]:
     return _chain(replace(XM430_W210, series_stiffness=SPRING))
 
 
+def sixteen_servos() -> list[Any]:
+    """Eight universal joints: a joint in yaw and one in pitch at each place of `eight_servos`, with the same servos."""
+    return [
+        replace(joint, axis=axis, name=f"{axis}_{index}")
+        for index, joint in enumerate(_chain(XM430_W210), start=1)
+        for axis in ("yaw", "pitch")
+    ]
+
+
 def passive_tail() -> list[Any]:
     """The law imposed on the front, up to 0.6 m, and a passive tail of 0.3 N m^2 behind it."""
     return [PassiveTail(0.6, TAIL_STIFFNESS, TAIL_DAMPING)]
@@ -59,5 +68,5 @@ def _chain(servo: Servo) -> list[Any]:
     return [Joint(round(FIRST + SPACING * index, 6), actuator=servo) for index in range(COUNT)]
 
 
-READY = {make.__name__: make for make in (eight_servos, series_elastic, passive_tail)}
+READY = {make.__name__: make for make in (eight_servos, sixteen_servos, series_elastic, passive_tail)}
 """Functions that return the parts of a robot, by its name."""

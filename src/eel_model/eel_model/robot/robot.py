@@ -107,6 +107,11 @@ class Robot:
         parts = (_changed(each, changes) if yes else each for each, yes in zip(self.parts, meant, strict=True))
         return Robot(parts, name=self.name, body=self.body, notes=self.notes)
 
+    def has(self, name: str) -> bool:
+        """Whether a part, or its actuator, has the field that `name` ends with, as of `with_numbers`."""
+        owners = (each for part in self.parts for each in _with_actuator(part))
+        return any(item.name == name.rpartition(".")[2] for each in owners for item in fields(each))
+
     def with_numbers(self, numbers: Mapping[str, Any]) -> "Robot":
         """The same robot with these `numbers`: FIELD of all parts that have it, or PART.FIELD as of `changed`.
 
@@ -127,7 +132,7 @@ class Robot:
 
     @staticmethod
     def named(name: str) -> "Robot":
-        """The ready robot called `name`: eight_servos, series_elastic or passive_tail. `ValueError` for another."""
+        """The ready robot called `name`, one of `READY`. `ValueError` for another."""
         if name not in READY:
             raise ValueError(not_one_of("robot", name, (*READY, "a file")))
         return Robot(READY[name](), name=name)

@@ -3,10 +3,14 @@
 
 eel motors eight_servos straight --scene planar=true
 eel motors my_robot.urdf straight --servo kp=20 kd=0.5
-eel motors eight_servos straight --vary torque_limit=0.3,0.5,1,3
+eel motors eight_servos straight --vary torque_limit=0.3,0.5,1,3 --out limits.png
+eel motors passive_tail straight --vary bending_stiffness=0.1,0.3,1 --vary period=0.5,1,2 --out tails.png
+eel motors sixteen_servos swim.nc --vary torque_limit=0.3,0.4,0.5        # asked to swim as a run or a bag did
 """
 
 import argparse
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,14 +18,23 @@ from eel_base.command.command_line import Parser
 from eel_base.command.run_command import checked_out, run_command
 from eel_base.files.output_file import written_as
 from eel_base.wording import shown
-from eel_dynamics.commands.options import named_texts
+from eel_dynamics.commands.options import add_options, add_repeated, named_texts, scene_of
+from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.swim import Swim
+from eel_gaits.laws.law import Law
 from eel_model.robot.actuators import Servo
 from eel_model.robot.robot import Robot
 
-from eel_studies.motors.motor_figures import comparison, motor_swim
+from eel_studies.motors.drawing import FORMATS, draw_comparisons
+from eel_studies.motors.motor_figures import Comparison, comparison, motor_swim, with_number
 from eel_studies.scene_options import add_scene_options, swim_from
+from eel_studies.table import Table
 
 NAME = "eel motors"
+RECORDED = ".nc", ".mcap", ".db3"
+DEMAND = 8  # joints an axis, of what an imposed swim takes
+MOST_VARIED = 2
+Varied = tuple[str, Sequence[float | None]]
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -30,22 +43,64 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _motors(options: argparse.Namespace) -> int:
-    out = None if options.out is None else checked_out(NAME, options.out, (".csv",))
-    robot, swim = _robot(options), swim_from(options.swim or "straight", options)
+    outs = [checked_out(NAME, out, (".csv", *FORMATS)) for out in options.out]
+    if len(options.vary) > MOST_VARIED:
+        raise ValueError(f"--vary must be given {MOST_VARIED} times at most, got {len(options.vary)}")
+    robot, swim = _robot(options), _swim(options)
     for note in robot.notes:
         print(f"{options.robot}: {note}")
     if options.vary:
-        (field, text), *_ = named_texts("--vary", [options.vary])
-        table = comparison(robot, swim, field, _values(field, text)).table()
+        pairs = [(name, _values(name, text)) for name, text in named_texts("--vary", options.vary)]
+        found = _compared(robot, swim, *pairs)
+        first, tables = found[0].table(), [each.table().rows for each in found]
+        table = Table(first.head, [row for rows in tables for row in rows], left=())
         print(table.text())
+    elif any(out.suffix != ".csv" for out in outs):
+        raise ValueError("--out must end in .csv where nothing is varied")
     else:
         figures = motor_swim(robot, swim)
         table = figures.table()
         print(table.text(), figures.about(), sep="\n\n")
-    if out is not None:
-        table.write_csv(Path(out))
+    for out in outs:
+        if out.suffix == ".csv":
+            table.write_csv(Path(out))
+        else:
+            draw_comparisons(found, Path(out))
         print(f"written to {written_as(out)}")
     return 0
+
+
+def _compared(robot: Robot, swim: Swim, first: Varied, second: Varied | None = None) -> list[Comparison]:
+    """The figures over the values of the `first` name, for each of the values of the `second`."""
+    if second is None:
+        return [comparison(robot, swim, *first)]
+    name, values = second
+    pairs = [(value, with_number(robot, swim, name, value)) for value in values]
+    return [replace(comparison(*each, *first), named=f"{name}={_word(value)}") for value, each in pairs]
+
+
+def _word(value: float | None) -> str:
+    return "none" if value is None else f"{value:g}"
+
+
+def _swim(options: argparse.Namespace) -> Swim:
+    """The swim of a scene or a gait; of a run or a bag its law, body and duration, and what an imposed swim takes."""
+    name = options.swim or "straight"
+    if Path(name).suffix not in RECORDED and not Path(name).is_dir():
+        return swim_from(name, options)
+    run = Run.load(name) if Path(name).suffix == ".nc" else Run.from_bag(name)
+    if not isinstance(run.law, Law) or not run.law.terms:
+        raise ValueError(f"{shown(name)}: it holds no law of terms that servos could follow")
+    if run.robot is None and run.torque is not None:
+        demand = run.actuators(DEMAND)
+        axes = {axis: float(getattr(demand, axis).peak["torque"].max()) for axis in ("yaw", "pitch")}
+        told = ", ".join(f"{torque:.3g} N m in {axis}" for axis, torque in axes.items())
+        print(f"{name}: the imposed swim takes at most {told} of {DEMAND} joints an axis\n")
+    base = swim_from(None, options)
+    body = run.body if options.body is None else base.body
+    scene = scene_of(options.scene, run.scene)
+    duration = float(run.time[-1]) if options.duration is None else base.duration
+    return base._replace(law=run.law, gait=None, body=body, scene=scene, duration=duration)
 
 
 def _robot(options: argparse.Namespace) -> Robot:
@@ -79,8 +134,8 @@ def _parser() -> Parser:
         metavar="NAME=NUMBER",
         help="gains and limits of the servos (fields of Servo); a URDF does not have gains",
     )
-    parser.add_argument(
-        "--vary", metavar="FIELD=V1,V2,...", help="field of joints, servos or tails, and its values; none: without"
-    )
-    parser.add_argument("-o", "--out", metavar="FILE.csv", help="where to write the table")
+    about = "field of joints, servos or tails (robot.PART.FIELD of one), or a number of the gait, and its values"
+    about += "; none: without. A second one gives a curve for each of its values"
+    add_repeated(parser, "--vary", "FIELD=V1,V2,...", about)
+    add_options(parser, "--out")
     return parser

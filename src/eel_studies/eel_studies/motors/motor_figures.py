@@ -5,11 +5,12 @@ The steady part is the second half of the swim, in whole periods of the law. A s
 reference, the law's bend over the part of the body that its joint stands for.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
+from eel_base.wording import shown
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.swim import Swim
 from eel_gaits.laws.law import Law
@@ -17,7 +18,10 @@ from eel_model.robot.actuators import at_limit
 from eel_model.robot.compiled import HINGE, mode_table
 from eel_model.robot.robot import Robot
 
+from eel_studies.points import ROBOT
 from eel_studies.table import Table
+from eel_studies.varied import varied
+from eel_studies.workers import in_threads
 
 SAMPLES = 100  # in a period
 STATIONS = 5  # enough for what is read of a run
@@ -165,24 +169,34 @@ def motor_swim(robot: Robot, swim: Swim) -> MotorFigures:
     return motor_figures(swim.run(robot=robot, body=body, sample_period=(period or 1.0) / SAMPLES, stations=STATIONS))
 
 
-def varied(robot: Robot, field: str, values: Sequence[float | None]) -> Iterable[Robot]:
-    """The robot with these `values` of a `field` of its joints, servos or tails."""
-    changes: Iterable[dict[str, Any]] = ({field: value} for value in values)
-    return (robot.changed(**each) for each in changes)
+def with_number(robot: Robot, swim: Swim, name: str, value: float | None) -> tuple[Robot, Swim]:
+    """The same with another number: a field of the robot where it has it (`Robot.with_numbers`), else one of the swim
+    (`studies.varied`)."""
+    own = name.removeprefix(ROBOT)
+    if name.startswith(ROBOT) or robot.has(own):
+        return robot.with_numbers({own: value}), swim
+    if value is None:
+        raise ValueError(f"{name} must be a number, got none")
+    try:
+        return robot, varied(swim, {name: value})
+    except (ValueError, TypeError) as error:
+        raise ValueError(f"no part of the robot has {shown(name)}, nor has the swim: {error}") from None
 
 
 def comparison(robot: Robot, swim: Swim, field: str, values: Sequence[float | None]) -> "Comparison":
-    """The figures for each of the `values` of a `field`."""
-    return Comparison(field, tuple(values), tuple(motor_swim(each, swim) for each in varied(robot, field, values)))
+    """The figures of a `robot` that swims a `swim`, for each of the `values` of a `field` of one of them."""
+    changed = [with_number(robot, swim, field, value) for value in values]
+    return Comparison(field, tuple(values), tuple(in_threads(lambda each: motor_swim(*each), changed)))
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """Figures over the `values` of a `field` of a robot."""
+    """Figures over the `values` of a `field` of a robot or its swim. named: what else was changed, in words."""
 
     field: str
     values: tuple[float | None, ...]
     figures: tuple[MotorFigures, ...]
+    named: str = ""
 
     def __iter__(self) -> Iterator[tuple[float | None, MotorFigures]]:
         return zip(self.values, self.figures, strict=True)
@@ -190,6 +204,7 @@ class Comparison:
     def table(self) -> Table:
         """A row for each value."""
         head = (
+            *((self.named.partition("=")[0],) if self.named else ()),
             self.field,
             "speed [m/s]",
             "tracking error",
@@ -204,6 +219,7 @@ class Comparison:
     def _row(self, value: float | None, figures: MotorFigures) -> tuple[str, ...]:
         joints = figures.joints
         return (
+            *((self.named.partition("=")[2],) if self.named else ()),
             "none" if value is None else f"{value:g}",
             f"{figures.speed:.4g}",
             "" if np.isnan(figures.tracking_error) else f"{100.0 * figures.tracking_error:.3g} %",
