@@ -13,13 +13,14 @@ from eel_dynamics.ros.messages import SampleMessages, body_message, diagnostic_a
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
 from eel_dynamics.runs.exchange.recorded_run import fields_of_messages
+from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_gaits.ros.messages import law_to_message
 from eel_viz.bags.definitions import definition, type_hash
 from rclpy.serialization import serialize_message
 from rosbags.rosbag2 import StoragePlugin, Writer
 
-from eel_dynamics import Body, Fin, RollHold, Run, Scene, Shear, simulate
+from eel_dynamics import Body, Fin, Robot, RollHold, Run, Scene, Shear, simulate
 from eel_gaits import falling, straight
 
 PROFILES = ("backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force")
@@ -53,18 +54,36 @@ def write_bag(folder, run, *, left_out=(), space="", runs=1, laws=1, origin=0, f
         told = diagnostic_array(0.0, "/dynamics", 0, "swimming", {"law": run.law.name, "accuracy": run.accuracy.name})
         add("/diagnostics", GLOBAL["/diagnostics"], serialize_message(told))
         water = {"water_at": lambda place: run.scene.current, "flow": None}
-        swimmer = SimpleNamespace(x=run.x, scene=run.scene, head_errors=None, robot=None, fins=run.fins, **water)
+        swimmer = SimpleNamespace(x=run.x, scene=run.scene, head_errors=None, robot=run.robot, fins=run.fins, **water)
         sample = SampleMessages(swimmer, DynamicsParameters())
         shown = (*PROFILES, "fin_angle", "fin_force") if run.fins else PROFILES
         whole = [*[(0, 7)] * waiting, *((k, k) for k in range(first, len(run.time)))]
         for stamp, k in whole * runs:
             sample.set_time(round(run.time[stamp] * 1e9))
             energy = SimpleNamespace(**{name: run.energy[name][k] for name in run.energy.keys()})  # noqa: SIM118
-            snapshot = SimpleNamespace(energy=energy, **{name: getattr(run, name)[k] for name in shown})
+            joints = {name: getattr(run, name)[k] for name in JOINT_ARRAYS if run.robot is not None}
+            snapshot = SimpleNamespace(energy=energy, joints=joints, **{name: getattr(run, name)[k] for name in shown})
             for topic in sample.kinds:
                 if topic in OWN and topic != "swim_state":
                     add(f"{space}/{topic}", OWN[topic], sample.fill(topic, snapshot))
     return folder
+
+
+def test_a_robot_s_run_has_the_motion_of_its_joints(tmp_path):
+    robot = Robot.named("eight_servos")
+    run = simulate(straight(), 0.5, robot=robot, sample_period=0.02, load=True, accuracy=1e-2, estimate=False)
+    bag = write_bag(tmp_path / "bag", run)
+    again = Run.from_bag(bag, scene=run.scene, robot="eight_servos")
+    assert again.robot == robot and again.mode_amplitude is None
+    for name in ("joint_angle", "joint_rate", "joint_torque", "motor_angle", "motor_torque", "motor_power"):
+        assert np.array_equal(getattr(again, name), getattr(run, name)), name
+    assert Run.from_bag(bag, scene=run.scene).joint_angle is None
+    again.save(tmp_path / "again.nc")
+    assert np.array_equal(Run.load(tmp_path / "again.nc").joint_angle, run.joint_angle)
+    with pytest.raises(ValueError, match="joint_states must have the robot's joints, got none of yaw_1, pitch_1"):
+        Run.from_bag(bag, robot=robot.changed("joint_1", name="yaw_1").changed("joint_2", name="pitch_1"))
+    with pytest.raises(ValueError, match="no message on joint_states, which a run of a robot needs"):
+        Run.from_bag(write_bag(tmp_path / "bare", run, left_out=("joint_states",)), robot=robot)
 
 
 def test_it_is_the_run_that_was_published(run, tmp_path):

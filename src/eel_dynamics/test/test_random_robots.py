@@ -8,6 +8,7 @@ from random_robots import drawn
 from eel_dynamics import Accuracy, SimulationStopped, simulate
 
 FAST, ALL = 60, 5000
+EXACT = Accuracy(name="exact", resolution=120.0, tolerance=1e-7)  # at 36 the torque of some is off by a hundredth
 
 
 def swum(seed: int, accuracy, estimate: bool = True):
@@ -36,7 +37,7 @@ def test_random_robots_run_or_are_refused_with_the_part_to_blame(seeds):
 @pytest.mark.parametrize("seeds", [(2, 7, 19, 21), pytest.param(range(100), marks=pytest.mark.soak)])
 def test_error_of_random_robots_is_within_the_target_or_told(seeds):
     for seed in seeds:
-        run, exact = swum(seed, 1e-3), swum(seed, Accuracy(name="exact", resolution=36.0, tolerance=1e-8), False)
+        run, exact = swum(seed, 1e-3), swum(seed, EXACT, False)
         position = np.linalg.norm(run.position - exact.position, axis=1).max() / max(exact.path_length, 1.0)
         apart = np.linalg.norm(run.torque - exact.torque, axis=2).max() / np.linalg.norm(exact.torque, axis=2).max()
         assert max(position, apart) < 1e-3 or run.error_estimate.worst > 1e-3, (seed, position, apart)

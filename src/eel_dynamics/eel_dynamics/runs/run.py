@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from eel_base.cell import cell_of
 from eel_model.body.body import Body
+from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
 
 from eel_dynamics.analysis.actuators import Actuators, actuators_of
@@ -135,15 +136,17 @@ class Run(RunData):
         *,
         body: Body | None = None,
         scene: Scene | None = None,
+        robot: Robot | str | None = None,
     ) -> "Run":
         """The run of the swimmer that a bag holds, from the topics of the dynamics node.
 
         namespace: the swimmer's; None: that of the only one. body, scene: those of the node; by default the body of the
-        topic `body`, and `Scene()`, as no topic tells the scene, nor flow and fins. Topics that the bag lacks leave
-        their fields None; the head's acceleration and the centre of mass come from splines. `steps`, `evaluations` and
-        `nodes` are 0. `ValueError` in one line where the bag holds no run; `ImportError` without the package eel_viz.
+        topic `body`, and `Scene()`, as no topic tells the scene, nor flow and fins. robot: that of the node, or its
+        name or file; the run then has the motion of its joints. Topics that the bag lacks leave their fields None; the
+        head's acceleration and the centre of mass come from splines. `steps`, `evaluations` and `nodes` are 0.
+        `ValueError` in one line where the bag holds no run; `ImportError` without the package eel_viz.
         """
-        return Run(**fields_of_bag(path, namespace, body, scene))
+        return Run(**fields_of_bag(path, namespace, body, scene, robot))
 
     def to_xarray(self) -> Any:
         """An `xarray.Dataset` of all arrays with dimensions and units. Its attributes are those of a file of `save`.

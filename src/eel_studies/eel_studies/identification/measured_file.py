@@ -16,7 +16,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from eel_base.attitude import heading
 from eel_base.wording import shown
-from eel_dynamics.runs.exchange.eel_viz_functions import joints_of_bag
 from eel_dynamics.runs.run import Run
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.tables import Table, read_table
@@ -59,7 +58,9 @@ def read_measured(
     if Path(path).suffix in TABLES:
         table = read_table(path)
         return MeasuredFile([_angles_of_table(table, robot)] if angles else _of_table(table, station))
-    run = Run.load(path) if Path(path).suffix == ".nc" else Run.from_bag(path, namespace)
+    run = (
+        Run.load(path) if Path(path).suffix == ".nc" else Run.from_bag(path, namespace, robot=robot if angles else None)
+    )
     if not isinstance(run.law, Law) or not run.law.terms:
         raise ValueError(f"{shown(path)}: it holds no law of terms, whose swim could be simulated")
     if run.time[0] == 0.0 and np.abs(run.orientation[0, :2]).max() > LEVEL:
@@ -74,9 +75,9 @@ def read_measured(
     numbers = {f"initial.{name}": value for name, value in twist.items() if value}
     scene = replace(run.scene, internal_wrench=False, ledger=False) if Path(path).suffix == ".nc" else None
     if angles:
-        robot = robot if run.robot is None else run.robot
-        time, found = (run.time, run.joint_angle) if run.joint_angle is not None else _angles_of_bag(path, robot)
-        measured = _named(path, MeasuredAngles, time, found, numbers)
+        if run.joint_angle is None:
+            raise ValueError(f"{shown(path)}: it holds no joints: --robot must be given with a bag, or --path")
+        measured = _named(path, MeasuredAngles, run.time, run.joint_angle, numbers)
     else:
         measured = _named(path, MeasuredPath, run.time, _tracked(path, run, station), station, numbers)
     return MeasuredFile([measured], run.law, run.body, scene, run.robot)
@@ -97,15 +98,6 @@ def _angles_of_table(table: Table, robot: Robot | None) -> MeasuredAngles:
     angles = np.stack([table.columns[name] for name in names], axis=1)
     made: MeasuredAngles = _named(str(table.path), MeasuredAngles, table.columns["time"], angles)
     return made
-
-
-def _angles_of_bag(path: str, robot: Robot | None) -> tuple[np.ndarray, np.ndarray]:
-    wanted = _names_of(robot)
-    time, angles, names = joints_of_bag()(path)
-    missing = [name for name in wanted if name not in names]
-    if missing:
-        raise ValueError(f"{shown(path)}: its joint states must have the robot's joints, got none of {missing[0]}")
-    return time, angles[:, [names.index(name) for name in wanted]]
 
 
 def _of_table(table: Table, station: float) -> list[Any]:

@@ -23,6 +23,7 @@ from eel_model.body.body import Body, checked_body
 from eel_model.body.grid import Grid
 from eel_model.body.moments import with_moments
 from eel_model.body.panels import panels_of
+from eel_model.robot.robot import Robot, checked_robot, robot_of
 from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
@@ -32,37 +33,47 @@ from eel_dynamics.simulation.energy import WORKS, EnergyLedger
 
 NEEDED = ("head_pose", "head_twist", "backbone", "curvature")
 FURTHER = ("internal_wrench", "hydrodynamic_load", "energy", "fin_states")
+OF_JOINTS = ("joint_states", "motor_states")
 ENDS = ("tail_force", "nose_force", "wake_momentum_rate")
 FEWEST = 4  # samples, for splines through them
 AXIS_OF_NUMBER = {column + 1: name for name, column in SECTION_COLUMN.items()}  # as in CurvatureTerm
 
 
-def fields_of_bag(path, namespace: str | None, body: Body | None, scene: Scene | None) -> dict:
+def fields_of_bag(
+    path, namespace: str | None, body: Body | None, scene: Scene | None, robot: Robot | str | None = None
+) -> dict:
     """The fields of `Run.from_bag`, whose arguments these are. `ValueError` and `ImportError` as there."""
     if body is not None:
         checked_body(body)
     if scene is not None:
         checked_instance("scene", scene, Scene)
+    found = checked_robot(robot_of(robot) if isinstance(robot, str) else robot)
     messages = messages_of_bag()
     try:
         with reading(""):
-            return fields_of_messages(messages(path, namespace), body, scene)
+            return fields_of_messages(messages(path, namespace), body, scene, found)
     except ValueError as error:
         named = "" if shown(os.fspath(path)) in str(error) else f"bag {shown(os.fspath(path))} holds no run: "
         raise ValueError(one_line(f"{named}{error}")) from None
 
 
-def fields_of_messages(messages: Iterable[tuple[str, object]], body: Body | None, scene: Scene | None) -> dict:
+def fields_of_messages(
+    messages: Iterable[tuple[str, object]], body: Body | None, scene: Scene | None, robot: Robot | None = None
+) -> dict:
     """The fields of the `Run` that `messages` (topic and message) tell of.
 
-    body, scene: what the messages do not tell; None for the body of the topic `body`, and for `Scene()`. `ValueError`
-    where topics are missing.
+    body, scene, robot: what the messages do not tell; None for the body of the topic `body`, `Scene()` and no robot.
+    `ValueError` where topics are missing.
     """
     once, samples = _collected(messages)
     missing = [topic for topic in NEEDED if not samples[topic]]
     if missing:
         raise ValueError(f"there is no message on {', '.join(missing)}, which a run needs")
     further = [topic for topic in FURTHER if samples[topic]]
+    if robot is not None and robot.joints:
+        further += [topic for topic in OF_JOINTS if samples[topic]]
+        if OF_JOINTS[0] not in further:
+            raise ValueError(f"there is no message on {OF_JOINTS[0]}, which a run of a robot needs")
     stamps = sorted(set.intersection(*(set(samples[topic]) for topic in (*NEEDED, *further))))
     if len(stamps) < FEWEST:
         raise ValueError(f"there must be {FEWEST} instants or more with a message on each topic, got {len(stamps)}")
@@ -72,7 +83,7 @@ def fields_of_messages(messages: Iterable[tuple[str, object]], body: Body | None
     )
     found: dict[str, Any] = {"time": 1e-9 * np.array(stamps), "law": _law(once), "scene": scene}
     found["accuracy"] = _accuracy(once, scene)
-    found |= _motion(rows, found["time"])
+    found |= _motion(rows, found["time"]) | ({} if robot is None else _joints(rows, robot))
     found["body"] = _body(once, scene) if body is None else body
     found["center_of_mass"] = _center_of_mass(found["body"], found["x"], found["backbone"])
     found |= dict.fromkeys(("closure_torque", "closure_force")) | dict.fromkeys(("steps", "evaluations", "nodes"), 0)
@@ -87,7 +98,7 @@ def _collected(messages) -> tuple[dict, dict]:
     Of several of one stamp, as a node sends them that waits at its start, the last counts.
     """
     once: dict[str, Any] = {"curvature_law": []}
-    samples: dict[str, dict[int, Any]] = {topic: {} for topic in (*NEEDED, *FURTHER)}
+    samples: dict[str, dict[int, Any]] = {topic: {} for topic in (*NEEDED, *FURTHER, *OF_JOINTS)}
     for topic, message in messages:
         if topic == "curvature_law":
             once[topic].append(message)
@@ -101,6 +112,29 @@ def _collected(messages) -> tuple[dict, dict]:
         else:
             once[topic] = message
     return once, samples
+
+
+def _joints(rows: dict, robot: Robot) -> dict:
+    """The joints' arrays. No message tells the angle of a motor behind a series spring, nor how tails bend."""
+    found: dict[str, Any] = {"robot": robot}
+    if not robot.joints:
+        return found
+    names = [joint.name for joint in robot.joints]
+    columns = []
+    for message in rows["joint_states"]:
+        missing = [name for name in names if name not in message.name]
+        if missing:
+            raise ValueError(f"joint_states must have the robot's joints, got none of {', '.join(missing)}")
+        columns.append([list(message.name).index(name) for name in names])
+    for name, field in (("joint_angle", "position"), ("joint_rate", "velocity"), ("joint_torque", "effort")):
+        messages = zip(rows["joint_states"], columns, strict=True)
+        found[name] = np.array([np.array(getattr(message, field))[column] for message, column in messages])
+    if "motor_states" in rows:  # in the order of the robot's joints
+        for name, field in (("motor_torque", "torque"), ("motor_power", "power")):
+            found[name] = np.array([getattr(message, field) for message in rows["motor_states"]], dtype=float)
+    if all(servo is None or servo.series_stiffness is None for servo in robot.servos):
+        found["motor_angle"] = found["joint_angle"]
+    return found
 
 
 def _motion(rows: dict, time: np.ndarray) -> dict:
