@@ -4,11 +4,16 @@
 import math
 import re
 
+import numpy as np
+import pytest
 from diagnostic_msgs.msg import DiagnosticArray
+from eel_base.attitude import heading, roll
+from eel_studies.roll_hold.study import PAIR
 from geometry_msgs.msg import Point, Pose, PoseStamped
 from nav_msgs.msg import Path
 from rcl_interfaces.srv import SetParameters
 from rclpy.parameter import Parameter
+from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 from swim_client import LATCHED, LIMIT, SwimClient
 
@@ -70,4 +75,25 @@ def test_a_short_course_is_swum_and_goals_that_do_not_fit_are_refused(start, fre
     assert re.search(r"INFO.* way point 2 of 2 reached", pilot.output()), pilot.output()
     assert "ERROR" not in pilot.output(), pilot.output()
     assert re.search(r"exceeds torque_limit 0.05 N m at X = \S+ m, t = \S+ s", dynamics.output()), dynamics.output()
+    swim.close()
+
+
+def test_fins_in_place_of_a_keel_hold_the_roll_of_a_piloted_swim(start, fresh_domain):
+    """A course with a turn and a dive; the fins follow the roll, and both nodes end without a word of error."""
+    swim = SwimClient(domain=fresh_domain, topics=("head_pose",))
+    swim.listen("fin_states", JointState)
+    pilot = start("pilot", "--ros-args", "-p", "lead:=0.02", "-p", "heading:=0.8", "-p", "depth:=0.3")
+    swim.until(lambda: swim.node.count_publishers("curvature_samples"), "the pilot")
+    pace = ("real_time_factor:=0", "-p", "rate:=50", "-p", "duration:=30", "-p", "subscriber_timeout:=60")
+    dynamics = start("dynamics", "--ros-args", "-p", f"fins:={PAIR}", "-p", *pace, "-p", "internal_wrench:=false")
+    assert dynamics.wait(2 * LIMIT) == 0 and "ERROR" not in dynamics.output(), dynamics.output()
+    swim.until(lambda: len(swim.received["head_pose"]) > 1500, "the last pose")
+    last = [pose.pose for pose in swim.received["head_pose"][-50:]]  # a period
+    assert np.mean([pose.position.z for pose in last]) == pytest.approx(-0.3, abs=0.03)
+    quaternions = [(q.x, q.y, q.z, q.w) for q in (pose.orientation for pose in last)]
+    assert np.mean([heading(q) for q in quaternions]) == pytest.approx(0.8, abs=0.05)
+    assert np.abs([roll(q) for q in quaternions]).max() < 0.02
+    angles = np.array([state.position for state in swim.received["fin_states"]])
+    assert np.array_equal(angles[:, 0], -angles[:, 1]) and 0.05 < np.abs(angles).max() < 0.6
+    assert np.abs(angles[-50:]).max() < 0.05 and "ERROR" not in pilot.output(), pilot.output()
     swim.close()

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """How well the pilot swims: random courses, held courses and stations. `make pilot` writes the table of
-docs/howto/pilot.md and its picture; `--courses N` swims fewer than 100 of each, `--water N` other than 12.
+docs/howto/pilot.md and its picture; `--courses N`, `--fins N` swim fewer than 100 of each, `--water N` other than 12.
 """
 
 import argparse
 import math
 import sys
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from multiprocessing import get_context
@@ -14,14 +15,20 @@ from pathlib import Path
 import numpy as np
 from eel_base.files import markdown
 from eel_gaits.pilot.settings import PilotSettings
+from eel_model.fins.text import fins_from_text
 from eel_studies.pictures import BLUE, ORANGE, write_picture
 from eel_studies.pilot.courses import figures_of, random_path, swim_path
 from eel_studies.pilot.moving_water import figures_in
+from eel_studies.roll_hold.study import PAIR
 from matplotlib.patches import Circle
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE, PICTURE = ROOT / "docs/howto/pilot.md", ROOT / "docs/images/pilot.png"
-HEIGHTS = (0.0, 0.002, 0.005)  # m, metacentric heights
+KEELS = {  # column of the table: what `figures_of` takes
+    "no keel": {},
+    **{f"metacentric height {height} mm": {"metacentric_height": 1e-3 * height} for height in (2, 5)},
+}
+FINS = {"fins in place of the keel": {"fins": fins_from_text(PAIR)}}
 SHOWN = 4  # seed of the course in the picture
 
 
@@ -47,10 +54,10 @@ QUANTITIES = (  # of a task: values; what is counted as good, with its limit; wh
 )
 
 
-def table(courses: int, processes: int) -> str:
-    """The figures of so many `courses`, held courses and stations at each metacentric height, as Markdown."""
+def table(swimmers: dict, courses: int, processes: int) -> str:
+    """The figures of so many `courses`, held courses and stations of each of the `swimmers`, as Markdown."""
     with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
-        found = [list(pool.map(partial(figures_of, metacentric_height=height), range(courses))) for height in HEIGHTS]
+        found = [list(pool.map(partial(figures_of, **each), range(courses))) for each in swimmers.values()]
     cells = []
     for values_of, counted, told in QUANTITIES:
         values = [np.array([value for each in tasks for value in values_of(each)]) for tasks in found]
@@ -58,9 +65,8 @@ def table(courses: int, processes: int) -> str:
             cells.append([counted[0], *(f"{np.sum(each < counted[1])} of {len(each)}" for each in values)])
         spread = (f"{np.median(each):.2g}, {np.max(each):.2g}" for each in values)
         cells.append([told.format("median and greatest"), *spread])
-    heads = ["no keel", *(f"metacentric height {1e3 * height:g} mm" for height in HEIGHTS[1:])]
     told = f"{courses} random tasks of each kind, seeds 0 to {courses - 1}."
-    return f"{told}\n\n{markdown.table(['', *heads], cells)}"
+    return f"{told}\n\n{markdown.table(['', *swimmers], cells)}"
 
 
 WATER = (  # figures of WaterFigures: name, factor of the unit
@@ -111,15 +117,20 @@ def main() -> int:
     """Swim, and write the page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--courses", type=int, default=100)
+    parser.add_argument("--fins", type=int, default=100, help="tasks of each kind with fins")
     parser.add_argument("--water", type=int, default=12, help="tasks of each kind in water that moves")
     parser.add_argument("--processes", type=int, default=2)
     options = parser.parse_args()
     page = PAGE.read_text(encoding="utf-8")
-    for part in ("pilot", "water"):
+    for part in ("pilot", "fins", "water"):
         markdown.with_part(page, part, "")  # refused before the swims
     if options.courses:
         draw(PICTURE)
-    parts = {"pilot": (table, options.courses), "water": (water_table, options.water)}
+    parts: dict[str, tuple[Callable[[int, int], str], int]] = {
+        "pilot": (partial(table, KEELS), options.courses),
+        "fins": (partial(table, FINS), options.fins),
+        "water": (water_table, options.water),
+    }
     for part, (made, count) in parts.items():
         if count:  # 0: as it was
             text = made(count, options.processes)

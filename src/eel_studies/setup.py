@@ -43,6 +43,7 @@ setup(
             "optimise = eel_studies.optimisation.command",
             "identify = eel_studies.identification.command",
             "steering = eel_studies.steering.command",
+            "roll-hold = eel_studies.roll_hold.command",
             "motors = eel_studies.motors.command",
             "drafting = eel_studies.drafting.command",
             "terms = eel_studies.scene_terms.command",

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from eel_dynamics import Accuracy, Body, Fin, Gust, RollHold, Scene, Shear, Uniform
+from eel_dynamics import Accuracy, Body, Fin, Gust, RollHold, Scene, Shear, Uniform, VortexStreet, Wave
 from eel_gaits import Law, Ramp, Term, falling, straight
 
 SUDDEN = 0.1  # s, when ramps of a microsecond begin
@@ -157,20 +157,34 @@ def finned(length, rng):
     return found
 
 
+def moving_water(length):
+    """Still water, and flows on the scale of a body of `length` [m]."""
+    return (
+        None,
+        Gust(velocity=(0.1 * length, -0.2 * length, 0.1 * length)),
+        Shear(velocity=(0.2 * length, 0.0, 0.0), across=(0.0, 1.0, 2.0), width=length),
+        VortexStreet(circulation=0.2 * length**2, core=0.3 * length, spacing=1.5 * length, width=0.5 * length, count=6),
+        Wave(amplitude=0.05 * length, wavelength=5.0 * length, surface=2.0 * length),
+    )
+
+
 def with_weight_and_fins(count, seed):
     """Arguments of `simulate` of `count` swimmers that weigh, have fins, or both, in still or moving water; every
-    eighth is planar: neutral, without fins."""
+    eighth is planar: neutral, without fins. The gait is in full swing from the start on."""
     rng = np.random.default_rng(seed)
-    flows = [None, None, Gust(velocity=(0.1, -0.2, 0.1)), Shear(velocity=(0.2, 0.0, 0.0), across=(0.0, 1.0, 2.0))]
     for index in range(count):
         body = shapes(2, rng)[index % 2]
         planar, period = index % 8 == 7, float(rng.uniform(0.6, 2.0))
         size = rng.uniform(0.2, 1.5) / body.length
         axes = ("yaw",) if planar or index % 2 else ("yaw", "pitch")
         wave = {"wavelength": body.length * rng.uniform(0.6, 2.0), "period": period}
-        law = Law(*(Term(axis=axis, amplitude=(size,), envelope=(Ramp(0.0, period, 1.0),), **wave) for axis in axes))
+        start = -period * rng.uniform(1.0, 2.0)
+        ramps = (Ramp(start, start + period, 1.0),)
+        law = Law(
+            *(Term(axis=axis, amplitude=(size,), phase=rng.uniform(0.0, 6.0), envelope=ramps, **wave) for axis in axes)
+        )
         heavy, steered = not planar and index % 3 != 1, not planar and index % 3 != 0
-        water = Uniform((0.1, 0.1, 0.0)) if planar else flows[index % 4]
+        water = Uniform((0.1, 0.1, 0.0)) if planar else moving_water(body.length)[index % 5]
         speed = body.length * rng.uniform(0.2, 0.8)
         yield {
             "law": law,

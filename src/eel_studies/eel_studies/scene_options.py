@@ -11,6 +11,7 @@ from eel_dynamics.runs.scene_file import SUFFIXES, load_scene
 from eel_dynamics.runs.swim import Swim
 from eel_gaits.gaits.settings import Settings
 from eel_model.body.body import Body
+from eel_model.fins.text import fins_from_text
 from eel_model.scene import Scene
 
 ABOUT = "a .yaml file (docs/howto/scenes.md), or a gait by name"
@@ -20,7 +21,7 @@ def add_scene_options(parser: Parser, several: bool = False) -> None:
     """Add the options of `swim_from` to the `parser` of a command. several: it takes more than one scene."""
     parser.add_argument("swim", nargs="*" if several else "?", metavar="SCENE", help=f"{ABOUT} (falling)")
     defaults = {"body": (None, "the scene's"), "accuracy": (None, "the scene's"), "duration": (None, "the scene's")}
-    add_options(parser, "--set", "--scene", "--body", "--duration", "--accuracy", **defaults)
+    add_options(parser, "--set", "--scene", "--body", "--fins", "--duration", "--accuracy", **defaults)
 
 
 def swim_from(name: str | None, options: argparse.Namespace) -> Swim:
@@ -33,6 +34,8 @@ def swim_from(name: str | None, options: argparse.Namespace) -> Swim:
     numbers = set_numbers(options.set)
     swim = swim._replace(scene=scene_of(options.scene, swim.scene))
     swim = swim.with_gait(**numbers) if numbers else swim
+    if options.fins:
+        swim = swim._replace(fins=fins_from_text(options.fins))
     if options.body is not None:
         file = options.body if Path(options.body).suffix else ""
         swim = swim._replace(body=body_of(options.body), body_file=file)

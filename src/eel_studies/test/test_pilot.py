@@ -7,9 +7,12 @@ import numpy as np
 import pytest
 from eel_gaits.pilot.goals import Path, course, station
 from eel_gaits.pilot.pilot import News, Pilot
+from eel_gaits.pilot.regulator import Gains
 from eel_gaits.pilot.settings import PilotSettings
+from eel_model.fins.text import fins_from_text
 from eel_studies.pilot.closed_loop import swim_with
 from eel_studies.pilot.courses import figures_of, motion_alone, random_path, swim_path
+from eel_studies.roll_hold.study import PAIR
 
 LIMITS = PilotSettings().limits
 
@@ -35,6 +38,19 @@ def test_a_held_course_settles_in_heading_depth_and_roll():
     assert voyage.roll[last] == pytest.approx(0.0, abs=0.02)
 
 
+def test_fins_hold_the_roll_of_a_pilot_that_cannot():
+    """Without the swirl by which it holds its roll the pilot rolls over; a pair of fins takes its place."""
+    rolls = []
+    for fins in (None, fins_from_text(PAIR)):
+        pilot = Pilot(gains=Gains(greatest_swirl=0.0))
+        pilot.follow(course(0.6, 0.3, 0.6, LIMITS))
+        voyage = swim_with(pilot, 24.0, fins=fins, twist=(-0.2, -0.1, 0.0, 0.3, 0.0, 0.0))
+        rolls.append(np.abs(voyage.roll[voyage.time > 22.0]).max())
+    assert rolls[0] > 0.5 and rolls[1] < 0.02
+    assert voyage.heading[-1] == pytest.approx(0.6, abs=0.02)
+    assert voyage.position[-1, 2] == pytest.approx(-0.3, abs=0.05)
+
+
 def test_a_station_in_a_current_of_half_the_swimmers_speed_is_kept():
     pilot = Pilot()
     pilot.follow(station((2.0, 0.5, 0.0), 0.6, LIMITS))
@@ -45,8 +61,9 @@ def test_a_station_in_a_current_of_half_the_swimmers_speed_is_kept():
 
 @pytest.mark.soak
 @pytest.mark.timeout(3 * 3600)
-def test_a_hundred_random_courses():
-    found = [figures_of(seed) for seed in range(100)]
+@pytest.mark.parametrize("fins", [None, fins_from_text(PAIR)], ids=["no fins", "fins that hold the roll"])
+def test_a_hundred_random_courses(fins):
+    found = [figures_of(seed, fins) for seed in range(100)]
     misses = np.concatenate([each.misses for each in found])
     assert np.mean(misses < 0.25) > 0.97
     assert np.mean([each.depth < 0.02 for each in found]) > 0.9

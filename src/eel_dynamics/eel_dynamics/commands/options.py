@@ -178,7 +178,7 @@ OPTIONS = {  # what argparse takes
     "--fins": {
         "default": "",
         "metavar": "FINS",
-        "help": "pair, left or right with numbers, as 'pair station=0.2 area=0.001 aspect_ratio=2.5 k_p=2 k_d=0.15 "
+        "help": "pair, left or right with numbers, as 'pair station=0.5 area=0.0015 aspect_ratio=2.5 k_p=4 k_d=0.5 "
         "time_constant=0.05', several with ' + ' between: docs/howto/fins.md",
     },
     "--body": {"default": "boyer2010", "help": f"{', '.join(NAMED)}, or a .csv or .npz file of half-axes"},

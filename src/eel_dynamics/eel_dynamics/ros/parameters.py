@@ -83,7 +83,7 @@ class DynamicsParameters(Quantities):
     fins: str = quantity(
         "",
         "",
-        "fins: pair, left or right with numbers (pair station=0.2 area=0.001 aspect_ratio=2.5 k_p=2 k_d=0.15 "
+        "fins: pair, left or right with numbers (pair station=0.5 area=0.0015 aspect_ratio=2.5 k_p=4 k_d=0.5 "
         "time_constant=0.05), several with ' + ' between; angle=commanded follows fin_command; empty: none",
         **LATER,
     )

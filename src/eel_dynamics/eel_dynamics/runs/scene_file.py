@@ -11,7 +11,7 @@ Its words are the names of the nodes' parameters, below `/**: ros__parameters:` 
     duration: 10.0            # s; of the library "settled" too
     initial_linear_velocity: [0.3, 0, 0]
     flow: shear velocity=0.1,0,0 width=0.5    # several are joined by " + "
-    fins: pair station=0.2 area=0.001 aspect_ratio=2.5    # likewise
+    fins: pair station=0.5 area=0.0015 aspect_ratio=2.5   # likewise
     robot: eight_servos       # or a file, whose body is that of the scene unless there is another
 
 A further word is a line of `WORDS`.

@@ -137,6 +137,11 @@ class Fin:
         return 0.9 * 2.0 * math.pi * ratio / (math.sqrt(ratio**2 + 4.0) + 1.8)
 
     @property
+    def sign(self) -> float:
+        """Of its angle by its servo's."""
+        return -1.0 if isinstance(self.angle, RollHold) and self.side == "left" else 1.0
+
+    @property
     def servo(self) -> tuple:
         """What turns it: fins that are equal in this have one servo."""
         own: Any = self.name if self.angle == COMMANDED else None
@@ -213,7 +218,6 @@ def core_fins(body: Body, scene: Scene, grid, x: np.ndarray, fins: tuple[Fin, ..
     for fin in fins:
         centre = fin.root(body) + 4.0 * fin.span / (3.0 * math.pi) * fin.axis
         reactive = scene.fluid_density * fin.added_mass if scene.reactive and scene.added_inertia else 0.0
-        held = isinstance(fin.angle, RollHold) and fin.side == "left"
         rows.append(
             (
                 node[fin.station],
@@ -226,7 +230,7 @@ def core_fins(body: Body, scene: Scene, grid, x: np.ndarray, fins: tuple[Fin, ..
                 fin.friction_drag,
                 reactive * 0.25 * math.pi * fin.chord**2 * fin.span,
                 servos.index(fin.servo),
-                -1.0 if held else 1.0,
+                fin.sign,
                 int(np.searchsorted(x, fin.station - near)),
             )
         )

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fins as texts, for commands and nodes: pair, left or right, with numbers; several are joined by " + ".
 
-pair station=0.2 area=0.001 aspect_ratio=2.5 k_p=2 k_d=0.15 time_constant=0.05
+pair station=0.5 area=0.0015 aspect_ratio=2.5 k_p=4 k_d=0.5 time_constant=0.05
 left station=0.5 area=0.0005 aspect_ratio=3 angle=commanded time_constant=0.1
 
 k_p and k_d make a `RollHold` of the angle. angle=commanded: the topic fin_command gives it.

@@ -51,27 +51,31 @@ def random_path(rng: np.random.Generator, settings: PilotSettings) -> Path:
             continue
 
 
-def swim_path(goal: Path, **scene: Any) -> tuple[Pilot, Voyage]:
-    """Swim a path, in at most three times the time that its legs take. scene: fields of `Scene`."""
+def swim_path(goal: Path, fins: Any = None, **scene: Any) -> tuple[Pilot, Voyage]:
+    """Swim a path, in at most three times the time that its legs take; the rest as in `figures_of`."""
     pilot = pilot_for(**scene)
     pilot.follow(goal)
     legs = np.linalg.norm(np.diff(goal.points, axis=0, prepend=np.zeros((1, 3))), axis=1)
     longest = 3.0 * float(np.sum(legs)) / goal.speed + 20.0
     return pilot, swim_with(
-        pilot, longest, scene=motion_alone(**scene), until=lambda pilot: isinstance(pilot.goal, Station)
+        pilot,
+        longest,
+        scene=motion_alone(**scene),
+        fins=fins,
+        until=lambda pilot: isinstance(pilot.goal, Station),
     )
 
 
-def figures_of(seed: int, **scene: Any) -> Figures:
-    """The figures of the tasks that the `seed` draws. scene: fields of `Scene` for all of them."""
+def figures_of(seed: int, fins: Any = None, **scene: Any) -> Figures:
+    """The figures of the tasks that the `seed` draws. fins: as in `Simulation`; scene: fields of `Scene` for all."""
     rng = np.random.default_rng(seed)
     settings = PilotSettings()
-    pilot, swum = swim_path(random_path(rng, settings), **scene)
+    pilot, swum = swim_path(random_path(rng, settings), fins, **scene)
     misses = [miss / settings.length for miss in swum.misses]
     misses += [math.inf] * (POINTS - len(misses))
     pilot.follow(course(rng.uniform(-1.5, 1.5), rng.uniform(-1.0, 1.0), rng.uniform(*SPEED), settings.limits))
     pilot.news.clear()
-    held = swim_with(pilot, STRAIGHT, scene=motion_alone(**scene))
+    held = swim_with(pilot, STRAIGHT, scene=motion_alone(**scene), fins=fins)
     last = held.time >= held.time[-1] - LAST_PART
     off = np.abs(np.remainder(held.heading - held.wanted_heading + math.pi, 2.0 * math.pi) - math.pi)
     speed, towards = SHARE_OF_SPEED * settings.cruise_speed, rng.uniform(-math.pi, math.pi)
@@ -79,7 +83,7 @@ def figures_of(seed: int, **scene: Any) -> Figures:
     spot = np.array((rng.uniform(2.0, 5.0), rng.uniform(-2.0, 2.0), rng.uniform(-0.5, 0.5)))
     pilot = pilot_for(**scene)
     pilot.follow(station(spot, rng.uniform(*SPEED), settings.limits))
-    stayed = swim_with(pilot, STATION, scene=motion_alone(current=current, **scene))
+    stayed = swim_with(pilot, STATION, scene=motion_alone(current=current, **scene), fins=fins)
     at_end = stayed.time >= stayed.time[-1] - LAST_PART
     return Figures(
         misses=tuple(misses),

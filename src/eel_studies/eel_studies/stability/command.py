@@ -46,7 +46,7 @@ def _study(options: argparse.Namespace) -> int:
 
 
 def _map(options: argparse.Namespace) -> int:
-    axes = [_axis(name, text) for name, text in named_texts("--over", options.over)]
+    axes = [axis_from(name, text) for name, text in named_texts("--over", options.over)]
     if len(axes) != 2:
         raise ValueError(f"--over must be given for two numbers of the scene, got {len(axes)}")
     if options.study:
@@ -68,7 +68,7 @@ def _map(options: argparse.Namespace) -> int:
     return 0
 
 
-def _axis(name: str, text: str) -> Axis:
+def axis_from(name: str, text: str) -> Axis:
     """The axis that NAME=LOW:HIGH gives, which are above 0: the map is logarithmic."""
     try:
         low, high = map(float, text.split(":"))

@@ -2,9 +2,9 @@
 """Linearisation of a swim over one period of its gait: `periodic_linearisation`.
 
     found = periodic_linearisation(straight(), scene=Scene(metacentric_height=0.01))
-    found.multipliers            # (9,) eigenvalues: a disturbance of a mode is so many times as large a period later
+    found.multipliers            # (n,) eigenvalues: a disturbance of a mode is so many times as large a period later
     found.growth                 # the greatest, but for those that are 1 as no heading is special
-    found.controllability()      # (9,) of each mode, by bends in yaw and pitch; 0: no bend moves it
+    found.controllability()      # (n,) of each mode, by bends in yaw and pitch; 0: no bend moves it
 
 The matrices are central differences of swims over one period, from the settled motion.
 """
@@ -21,6 +21,7 @@ from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.steered_law import BENDS
 from eel_gaits.laws.term import Term
 from eel_model.body.body import Body, checked_body
+from eel_model.fins.fins import Fin
 from eel_model.scene import Scene
 
 from eel_studies.steering.period_map import Motion, PeriodMap, rotation, turned_by
@@ -43,7 +44,8 @@ class PeriodicLinearisation:
     period, z up. roll_rate ... heave: the twist (Omega, V) [rad/s, m/s] in the head's axes. Position is left out:
     nothing depends on it. Inputs [rad/m]: bends, uniform along the body, that are added to the gait. They come and go
     within the period, by the ramp f_r of eq. (64). "left_bend" is constant between, positive to the left;
-    "left_bend_cos" and "left_bend_sin" beat with the gait. "up_bend" and its like bend upwards.
+    "left_bend_cos" and "left_bend_sin" beat with the gait. "up_bend" and its like bend upwards. Fins'
+    servos are further states, n in all: `states` names them.
     """
 
     law: Law  #: t = 0 is the start of a period after all ramps
@@ -54,9 +56,12 @@ class PeriodicLinearisation:
     end: Motion
     defect: float  #: rad, and relative to the twist: by how much it does not repeat
     rise: float  #: part of the period, in which a bend comes, and goes again
-    monodromy: np.ndarray  #: (9, 9) states at the end by states at the start
-    input_matrix: np.ndarray  #: (9, 6) states at the end by inputs
+    monodromy: np.ndarray  #: (n, n) states at the end by states at the start
+    input_matrix: np.ndarray  #: (n, 6) states at the end by inputs
     error: float  #: greatest change of a multiplier with coarser settings; NaN without an estimate
+    fins: tuple[Fin, ...] = ()
+    upright: bool = False  #: whether weight, or fins that hold the roll, tell one attitude from another
+    servos: tuple[int, ...] = ()  #: of each servo with a state the number of its first fin
 
     def __repr__(self) -> str:
         return f"PeriodicLinearisation({shown(self.law.name)}, {self.scene!r}, growth {self.growth:.4g} a period)"
@@ -64,7 +69,7 @@ class PeriodicLinearisation:
     @property
     def states(self) -> tuple[str, ...]:
         """Names of the states."""
-        return STATES
+        return *STATES, *(f"fin {self.fins[first].name}" for first in self.servos)
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -79,17 +84,17 @@ class PeriodicLinearisation:
 
     @property
     def multipliers(self) -> np.ndarray:
-        """(9,) complex: eigenvalues of the monodromy matrix, the greatest first."""
+        """(n,) complex: eigenvalues of the monodromy matrix, the greatest first."""
         return self._eigen[0]
 
     @property
     def modes(self) -> np.ndarray:
-        """(9, 9) complex: the motion of each multiplier in a column."""
+        """(n, n) complex: the motion of each multiplier in a column."""
         return self._eigen[1]
 
     @cached_property
     def participation(self) -> np.ndarray:
-        """(9, 9) share of each state (row) in each mode (column), of magnitudes that add up to 1.
+        """(n, n) share of each state (row) in each mode (column), of magnitudes that add up to 1.
 
         Left times right eigenvector, entry by entry: it does not depend on units.
         """
@@ -99,12 +104,12 @@ class PeriodicLinearisation:
     def motion_of(self, mode: int) -> str:
         """The states that take part in a `mode` by a tenth or more, the greatest share first."""
         share = self.participation[:, mode]
-        return ", ".join(STATES[k] for k in np.argsort(-share) if share[k] >= 0.1)
+        return ", ".join(self.states[k] for k in np.argsort(-share) if share[k] >= 0.1)
 
     @cached_property
     def neutral(self) -> np.ndarray:
-        """(9,) bool: modes of magnitude 1, as no heading is special, and without a righting moment no attitude."""
-        free = [STATES.index("heading")] if self.scene.metacentric_height else [0, 1, 2]
+        """(n,) bool: modes of magnitude 1, as no heading is special, and where nothing is `upright` no attitude."""
+        free = [STATES.index("heading")] if self.upright else [0, 1, 2]
         return np.asarray(self.participation[free].sum(axis=0) > 0.5)
 
     @property
@@ -113,7 +118,7 @@ class PeriodicLinearisation:
         return float(np.abs(self.multipliers[~self.neutral]).max())
 
     def controllability(self, inputs: tuple[str, ...] = INPUTS) -> np.ndarray:
-        """(9,) how firmly the `inputs` hold each mode; 0: no bend of these moves it, whatever the controller.
+        """(n,) how firmly the `inputs` hold each mode; 0: no bend of these moves it, whatever the controller.
 
         The least singular value of [A - multiplier, B] (Popov, Belevitch and Hautus), with time in periods and length
         in body lengths, so that a bend is the angle [rad] between head and tail. `ValueError` for an unknown input.
@@ -122,8 +127,9 @@ class PeriodicLinearisation:
         scale, length = self._scale, self.body.length
         a = self.monodromy * scale[:, None] / scale
         b = self.input_matrix[:, columns] * scale[:, None] / length
+        one = np.eye(len(a))
         return np.array(
-            [np.linalg.svd(np.hstack([a - each * np.eye(9), b]), compute_uv=False)[-1] for each in self.multipliers]
+            [np.linalg.svd(np.hstack([a - each * one, b]), compute_uv=False)[-1] for each in self.multipliers]
         )
 
     def kick(self, mode: int, state: str = "roll") -> np.ndarray:
@@ -133,7 +139,7 @@ class PeriodicLinearisation:
         return np.asarray(pair * (left @ self.input_matrix) * self.modes[row, mode])
 
     def feedback(self, bend: float = 1.0) -> np.ndarray:
-        """(6, 9) gain of the linear-quadratic regulator: inputs [rad/m] = - gain @ states, once a period.
+        """(6, n) gain of the linear-quadratic regulator: inputs [rad/m] = - gain @ states, once a period.
 
         States count with time in periods and length in body lengths; an input of `bend` [rad/m] counts as much as a
         state of 1. `ValueError` where the inputs do not hold a mode that grows.
@@ -158,7 +164,7 @@ class PeriodicLinearisation:
     @property
     def _scale(self) -> np.ndarray:
         length = self.body.length
-        return np.repeat((1.0, self.period, self.period / length), 3)
+        return np.append(np.repeat((1.0, self.period, self.period / length), 3), np.ones(len(self.servos)))
 
 
 def periodic_linearisation(
@@ -170,16 +176,18 @@ def periodic_linearisation(
     steps: int = STEPS,
     resolution: float = RESOLUTION,
     estimate: bool = True,
+    fins: Any = None,
 ) -> PeriodicLinearisation:
     """Linearise the settled swim of `law` over one period of the gait, after all of its ramps.
 
     A law may have several settled motions. This is the one to which a swim from rest has come near after some periods;
     a law of yaw alone swims in the plane.
 
-    body, scene: as in `simulate`; a current is left out, it carries all alike. rise: part of the period in which a bend
-    comes, and goes again, up to a half. steps: of the march in a period; resolution: points along the body. estimate:
-    do it again with coarser settings, for the error. The matrices are central differences. `ValueError` names what does
-    not fit, a law that does not repeat, or one whose motion does not settle.
+    body, scene, fins: as in `simulate`; a current is left out, it carries all alike, and no fin may follow a table.
+    rise: part of the period in which a bend comes, and goes again, up to a half. steps: of the march in a period;
+    resolution: points along the body. estimate: do it again with coarser settings, for the error. The matrices are
+    central differences. `ValueError` names what does not fit, a law that does not repeat, or one whose motion does not
+    settle.
     """
     checked_instance("law", law, Law)
     body = checked_body(body)
@@ -189,43 +197,45 @@ def periodic_linearisation(
     rise = number("rise", rise)
     if not 0.0 < rise <= 0.5:
         raise ValueError(f"rise must be > 0 and at most 0.5 of the period, got {rise:g}")
-    found = _linearised(PeriodMap(law, body, scene, steps, resolution), scene, rise)
+    found = _linearised(PeriodMap(law, body, scene, steps, resolution, fins), scene, rise)
     if not estimate:
         return found
-    coarser = PeriodMap(law, body, scene, round(COARSER * steps), COARSER * resolution)
+    coarser = PeriodMap(law, body, scene, round(COARSER * steps), COARSER * resolution, fins)
     other = _linearised(coarser, scene, rise)
     return replace(found, error=_apart(found.multipliers, other.multipliers))
 
 
 def _linearised(one: PeriodMap, scene: Scene, rise: float) -> PeriodicLinearisation:
     start, end, defect = one.settled()
-    length, nothing = one.body.length, np.zeros((len(INPUTS), len(STATES)))
-    steps = STEP * np.repeat((1.0, 1.0 / one.period, length / one.period), 3)
+    length, count = one.body.length, len(STATES) + len(one.servos)
+    steps = STEP * np.append(np.repeat((1.0, 1.0 / one.period, length / one.period), 3), np.ones(len(one.servos)))
     bends = [_bend(name, STEP / length, one.period, rise) for name in INPUTS]
 
     def differences(changes: np.ndarray, above: list[Law], below: list[Law]) -> np.ndarray:
         both = np.concatenate([changes, -changes])
-        moved = one.swim(turned_by(start.orientation, both[:, :3]), start.twist + both[:, 3:], above + below)
+        turned = turned_by(start.orientation, both[:, :3])
+        moved = one.swim(turned, start.twist + both[:, 3:9], start.servo + both[:, 9:], above + below)
         first, second = np.split(states_after(start, end, moved), 2)
         return np.asarray((first - second).T / 2.0)
 
-    straight_on = [one.law] * len(STATES)
+    straight_on = [one.law] * count
     monodromy = differences(np.diag(steps), straight_on, straight_on) / steps
     more, less = ([_plus(one.law, term.scaled(sign)) for term in bends] for sign in (1.0, -1.0))
-    inputs = differences(nothing, more, less) / (STEP / length)
+    inputs = differences(np.zeros((len(INPUTS), count)), more, less) / (STEP / length)
     settled = one.period, start, end, defect, rise
-    return PeriodicLinearisation(one.law, one.body, scene, *settled, monodromy, inputs, np.nan)
+    of_fins = one.fins, one.upright, tuple(one.servos)
+    return PeriodicLinearisation(one.law, one.body, scene, *settled, monodromy, inputs, np.nan, *of_fins)
 
 
 def states_after(start: Motion, end: Motion, moved: Motion) -> np.ndarray:
-    """(B, 9) states of the motions `moved` at the end of a period, relative to the settled one from `start` to `end`.
+    """(B, n) states of the motions `moved` at the end of a period, relative to the settled one from `start` to `end`.
 
     The course turns on with the settled motion.
     """
     settled = rotation(end.orientation)
     course = settled * rotation(start.orientation).inv()
     turn = course.inv().apply((rotation(moved.orientation) * settled.inv()).as_rotvec())
-    return np.hstack([turn, moved.twist - end.twist])
+    return np.hstack([turn, moved.twist - end.twist, moved.servo - end.servo])
 
 
 def _bend(name: str, size: float, period: float, rise: float) -> Term:

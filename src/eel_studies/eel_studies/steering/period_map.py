@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The map over one period of a gait: the head's attitude and twist at its start, and at its end.
+"""The map over one period of a gait: the head's attitude and twist and the angles of fins' servos at its start, and at
+its end.
 
 A motion that has settled repeats after a period, but for its position and its heading. Without a righting moment no
-attitude is special, and its twist alone has to repeat. With one the attitude to the vertical has to repeat too.
+attitude is special, and its twist alone has to repeat. With one, or with fins that hold the roll, the attitude to the
+vertical has to repeat too.
 """
 
 import math
@@ -17,6 +19,7 @@ from eel_dynamics.batches.simulate_batch import simulate_batch
 from eel_dynamics.runs.simulate import simulate
 from eel_gaits.laws.law import Law
 from eel_model.body.body import Body
+from eel_model.fins.fins import Fin, RollHold, checked_fins, servos_of
 from eel_model.scene import Scene
 
 SETTLING = 12  # periods from rest, after which the settled motion is searched from
@@ -34,6 +37,7 @@ class Motion(NamedTuple):
     position: np.ndarray  # (3,) m, world; 0 at the start
     orientation: np.ndarray  # (4,) x y z w, world from head
     twist: np.ndarray  # (6,) rad/s, m/s, head's axes
+    servo: np.ndarray  # (S,) rad, of fins: in the order of their states
 
     @property
     def up(self) -> np.ndarray:
@@ -58,13 +62,24 @@ def turned_by(orientation: np.ndarray, by: np.ndarray) -> np.ndarray:
 class PeriodMap:
     """One period of `law`, after all of its ramps, of a `body` in still water of the `scene`.
 
-    law, period [s]. steps: of the march in a period; resolution: points along the body. `ValueError` for a law that
-    does not repeat, and for a planar scene.
+    law, period [s]. fins: at angles that stay, commanded (0), or holding the roll. steps: of the march in a period;
+    resolution: points along the body. `ValueError` for a law that does not repeat, and for a planar scene.
+
+    Attributes:
+        servos: (S,) for each servo with a state the number of its first fin.
+        upright: whether the attitude to the vertical matters.
     """
 
-    def __init__(self, law: Law, body: Body, scene: Scene, steps: int, resolution: float):
+    def __init__(self, law: Law, body: Body, scene: Scene, steps: int, resolution: float, fins: Any = None):
         if scene.planar:
             raise ValueError("scene must not be planar: there is no roll to be linearised in the plane")
+        self.fins = checked_fins(fins, body, scene)
+        if given := next((fin for fin in self.fins if isinstance(fin.angle, tuple)), None):
+            raise ValueError(f"fins must have an angle that stays for a period to repeat, got a table for {given.name}")
+        own = [fin.servo for fin in self.fins]
+        self.servos = [own.index(servo) for servo in servos_of(self.fins) if self.fins[own.index(servo)].time_constant]
+        held = any(isinstance(fin.angle, RollHold) for fin in self.fins)
+        self.upright = bool(scene.metacentric_height or scene.weight or held)
         ends = [ramp.end for term in law.terms for ramp in term.envelope]
         settled, longest = max([0.0, *ends]), max((term.period for term in law.terms), default=0.0)
         times = settled + np.linspace(0.0, longest, 65)
@@ -74,9 +89,16 @@ class PeriodMap:
         self.scene = replace(scene, current=(0.0, 0.0, 0.0), internal_wrench=False, ledger=False)
         self._accuracy = Accuracy(name="period", resolution=resolution, step=self.period / steps)
 
-    def swim(self, orientations: np.ndarray, twists: np.ndarray, laws: list[Law] | None = None) -> Motion:
-        """The ends (B, ...) of a period that begins with `orientations` (B, 4) and `twists` (B, 6); `laws`: (B,), if
-        they are not the gait's. `SimulationStopped` where a swim cannot go on."""
+    def swim(
+        self,
+        orientations: np.ndarray,
+        twists: np.ndarray,
+        servos: np.ndarray | None = None,
+        laws: list[Law] | None = None,
+    ) -> Motion:
+        """The ends (B, ...) of a period that begins with `orientations` (B, 4), `twists` (B, 6) and `servos` (B, S);
+        `laws`: (B,), if they are not the gait's. `SimulationStopped` where a swim cannot go on."""
+        angles = np.zeros((len(np.atleast_2d(twists)), len(self.servos))) if servos is None else np.atleast_2d(servos)
         batch = simulate_batch(
             self.law if laws is None else laws,
             self.period,
@@ -87,11 +109,22 @@ class PeriodMap:
             orientations=orientations,
             twists=twists,
             estimate=False,
+            fins=[self._fins_at(each) for each in angles],
         )
         for error in batch.error:
             if error is not None:
                 raise error
-        return Motion(batch.position[:, -1], batch.orientation[:, -1], batch.twist[:, -1])
+        ends = batch.position[:, -1], batch.orientation[:, -1], batch.twist[:, -1]
+        return Motion(*ends, angles if batch.fin_angle is None else self._servos_at(batch.fin_angle[:, -1]))
+
+    def _fins_at(self, angles: np.ndarray) -> list[Fin]:
+        """The fins, their servos at these `angles` (S,)."""
+        at = {self.fins[first].servo: float(angle) for first, angle in zip(self.servos, angles, strict=True)}
+        return [replace(fin, initial_angle=at[fin.servo]) if fin.servo in at else fin for fin in self.fins]
+
+    def _servos_at(self, angles: np.ndarray) -> np.ndarray:
+        """Angles (..., S) of the servos at those (..., F) of the fins."""
+        return angles[..., self.servos] * [self.fins[first].sign for first in self.servos]
 
     def settled(self) -> tuple[Motion, Motion, float]:
         """Start and end of a period of the settled motion, and how far it is from repeating (as `CLOSE`).
@@ -116,15 +149,23 @@ class PeriodMap:
 
     def _guess(self) -> Motion:
         """The head after some periods from rest; in the plane if the law bends there alone."""
-        scene = replace(self.scene, planar=self._whole.in_plane)
+        scene = replace(self.scene, planar=self._whole.in_plane and not (self.fins or self.scene.weight))
         periods = self._start + SETTLING
         run = simulate(
-            self._whole, periods * self.period, scene=scene, body=self.body, accuracy=1e-3, stations=2, estimate=False
+            self._whole,
+            periods * self.period,
+            scene=scene,
+            body=self.body,
+            fins=self.fins,
+            accuracy=1e-3,
+            stations=2,
+            estimate=False,
         )
-        return Motion(np.zeros(3), run.orientation[-1], run.twist[-1])
+        servo = np.zeros(0) if run.fin_angle is None else self._servos_at(run.fin_angle[-1])
+        return Motion(np.zeros(3), run.orientation[-1], run.twist[-1], servo)
 
     def _one(self, start: Motion) -> Motion:
-        end = self.swim(start.orientation, start.twist)
+        end = self.swim(*start[1:])
         return Motion(*(row[0] for row in end))
 
     def _scale(self, start: Motion) -> np.ndarray:
@@ -134,21 +175,24 @@ class PeriodMap:
         return np.repeat((size / length, size), 3)
 
     def _defect(self, start: Motion, end: Motion) -> np.ndarray:
-        """What does not repeat: the twist (6,) by its size, and with a righting moment the vertical (3,) too."""
+        """What does not repeat: the twist (6,) by its size, the servos (S,), and where `upright` the vertical (3,)."""
         twist = (end.twist - start.twist) / self._scale(start)
-        return np.concatenate([twist, end.up - start.up]) if self.scene.metacentric_height else twist
+        return np.concatenate([twist, end.servo - start.servo, *([end.up - start.up] if self.upright else [])])
 
     def _moved(self, start: Motion, change: np.ndarray) -> Motion:
-        """The start with a changed twist, relative to its size, and with a righting moment another lean [rad]."""
-        lean = np.append(change[6:], np.zeros(9 - len(change)))
+        """The start with a changed twist, relative to its size, other servos, and where `upright` another lean."""
+        servos = 6 + len(self.servos)
+        lean = np.append(change[servos:], np.zeros(3 + servos - len(change)))
         twist = start.twist + self._scale(start) * change[:6]
-        return Motion(start.position, turned_by(start.orientation, lean[None])[0], twist)
+        turned = turned_by(start.orientation, lean[None])[0]
+        return Motion(start.position, turned, twist, start.servo + change[6:servos])
 
     def _slope(self, start: Motion) -> np.ndarray:
         """The derivative of the defect by those changes, by differences to either side."""
-        changes = DIFFERENCE * np.eye(8 if self.scene.metacentric_height else 6)
+        changes = DIFFERENCE * np.eye(6 + len(self.servos) + 2 * self.upright)
         both = [self._moved(start, sign * change) for sign in (1.0, -1.0) for change in changes]
-        ends = self.swim(np.array([each.orientation for each in both]), np.array([each.twist for each in both]))
+        _, orientations, twists, servos = map(np.array, zip(*both, strict=True))
+        ends = self.swim(orientations, twists, servos)
         pairs = zip(both, map(Motion, *ends), strict=True)
         above, below = np.split(np.array([self._defect(first, last) for first, last in pairs]), 2)
         return np.asarray(((above - below) / (2.0 * DIFFERENCE)).T)
@@ -165,7 +209,7 @@ class PeriodMap:
         about = np.array([[0.0, 0.0, -math.atan2(way[1], way[0])]])
         turn = rotation(turned_by(np.array([0.0, 0.0, 0.0, 1.0]), about)[0])
         first, last = (
-            Motion(turn.apply(each.position), turned_by(each.orientation, about)[0], each.twist)
+            Motion(turn.apply(each.position), turned_by(each.orientation, about)[0], each.twist, each.servo)
             for each in (start, end)
         )
         return first, last

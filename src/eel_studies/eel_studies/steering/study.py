@@ -111,7 +111,7 @@ def recovery(found: PeriodicLinearisation, lean: float, bend: float) -> tuple[np
         inputs = -gain @ state
         greatest = max(greatest, float(np.abs(inputs).max()))
         start = turned_by(found.start.orientation, state[None, :3]), (found.start.twist + state[3:])[None]
-        state = states_after(found.start, found.end, one.swim(*start, [found.bent(inputs)]))[0]
+        state = states_after(found.start, found.end, one.swim(*start, laws=[found.bent(inputs)]))[0]
         roll.append(state[0])
     return np.array(roll), greatest
 
