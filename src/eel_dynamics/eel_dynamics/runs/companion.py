@@ -19,6 +19,7 @@ from eel_dynamics.simulation.stopping import SimulationStopped
 ACCEPTED = 1.5  # factor of the target by which an estimate must lie below it
 MOST_REFINEMENTS = 4  # of a run whose error is above its target
 BLENDED_ORDER = 3.0  # at most, at which the error of the grid falls where friction changes its law along the body
+GRID_ORDER = 6.0  # at which the error of the few nodes between a robot's edges falls, at least
 RESAMPLING = 1.0 / 3.0  # 1 / (2^p - 1) of the order p = 2 of an interpolation
 # The companion has every third of the samples, where they are many. A period has 20 of them by default, so that three
 # periods show as many phases of it as before.
@@ -60,7 +61,10 @@ def with_error_estimate(swim: Any, request: Any) -> Any:
         error = ErrorEstimate(np.inf, None)
         if companion is not None:
             error = relative_errors(swim.run, companion.run)
-            error = error.times(swim.run.accuracy.share_of_distance(companion.run.accuracy))
+            share = swim.run.accuracy.share_of_distance(companion.run.accuracy)
+            if refinement:  # of a robot, whose grid is not as much finer as its steps are
+                share = max(share, min(1.0, (companion.run.nodes / swim.run.nodes) ** GRID_ORDER))
+            error = error.times(share)
         if refinement and companion is not None:  # it falls no faster than this: else the two agree by chance
             share = swim.run.accuracy.tolerance / companion.run.accuracy.tolerance
             if request.setup.scene.friction in ("blended", "taylor"):
