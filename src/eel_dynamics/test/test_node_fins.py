@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 from eel_gaits.ros.messages import law_to_message
 from eel_model.fins.text import fins_from_text, text_of_fins
+from eel_model.flow.text import flow_from_text
+from eel_model.robot.robot import robot_of
 from rclpy.duration import Duration
 from sensor_msgs.msg import JointState
 from swim_client import LIMIT, nanoseconds
@@ -13,6 +15,7 @@ from eel_dynamics import Fin, RollHold, Simulation, load_scene, save_scene
 from eel_gaits import straight
 
 PAIR = "pair station=0.2 area=0.001 aspect_ratio=2.5 k_p=2 k_d=0.15 time_constant=0.05"
+FLOW = "shear velocity=0.2,0,0 across=0,1,0 width=1"
 RUDDER = "left station=0.5 area=0.001 aspect_ratio=2.5 dihedral=1.2 angle=commanded time_constant=0.1"
 
 
@@ -20,12 +23,15 @@ def place(pose):
     return [getattr(pose.pose.position, axis) for axis in "xyz"]
 
 
-def test_commands_reach_the_fins_between_two_samples_as_in_the_library(start, client):
+@pytest.mark.parametrize("robot", [None, "eight_servos"])
+def test_commands_reach_the_fins_between_two_samples_as_in_the_library(start, client, robot):
+    """The robot, whose joints bend by themselves, swims in a shear."""
+    more = () if robot is None else ("-p", f"robot:={robot}", "-p", f"flow:={FLOW}")
     swim = client(topics=("head_pose",))
     swim.listen("fin_states", JointState)
     commands = swim.node.create_publisher(JointState, "fin_command", 10)
     swim.laws.publish(law_to_message(straight()))
-    node = start("dynamics", "--ros-args", "-p", f"fins:={PAIR} + {RUDDER}")
+    node = start("dynamics", "--ros-args", "-p", f"fins:={PAIR} + {RUDDER}", *more)
     swim.until(lambda: commands.get_subscription_count() > 0, "subscription")
     swim.until_time(0.1)
     paused = swim.stop_the_clock("head_pose")
@@ -35,7 +41,8 @@ def test_commands_reach_the_fins_between_two_samples_as_in_the_library(start, cl
     node.wait_for_output("fin_command refused", LIMIT)
     assert swim.pause(False).success
     swim.until_time(paused + 0.4)
-    library = Simulation(law=straight(), fins=fins_from_text(f"{PAIR} + {RUDDER}"))
+    flow, robot = robot and flow_from_text(FLOW), robot_of(robot or "")
+    library = Simulation(law=straight(), fins=fins_from_text(f"{PAIR} + {RUDDER}"), robot=robot, flow=flow)
     library.advance(paused)
     library.command_fins({"left_500": 0.3})
     states = {nanoseconds(m.header.stamp): m for m in swim.received["fin_states"]}
@@ -59,9 +66,11 @@ def test_the_text_of_fins_is_read_again(tmp_path):
     assert fins[:2] == Fin.pair(0.2, 1e-3, 2.5, angle=RollHold(2.0, 0.15), time_constant=0.05)
     assert fins_from_text(text_of_fins(fins)) == fins
     path = tmp_path / "swim.yaml"
-    path.write_text(f"/**: {{ros__parameters: {{gait: straight, fins: '{PAIR}'}}}}")
+    path.write_text(
+        f"/**: {{ros__parameters: {{gait: straight, fins: '{PAIR}', robot: eight_servos, flow: '{FLOW}'}}}}"
+    )
     swim = load_scene(path)
-    assert swim.fins == fins[:2]
+    assert swim.fins == fins[:2] and swim.robot is not None and swim.flow is not None
     save_scene(swim, tmp_path / "again.yaml")
     assert load_scene(tmp_path / "again.yaml").fins == swim.fins
 
