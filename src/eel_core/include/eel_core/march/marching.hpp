@@ -52,7 +52,7 @@ class Marching {
     }
 
   protected:
-    Marching(std::shared_ptr<const Swimmer> swimmer, Steppers stepper)
+    Marching(std::shared_ptr<const Swimmer> swimmer, Steppers stepper)  // NOLINT(bugprone-crtp*): `Own` alone
         : swimmer_(std::move(swimmer)), stepper_(std::move(stepper)), here_(*swimmer_)
     {
         state_[6] = 1.0;
