@@ -39,6 +39,7 @@ notebook: build   ## run docs/tutorials/swim.ipynb anew, with its outputs in out
 pictures: build   ## draw the pictures of the tutorials and of the visualiser in docs/images
 	@$(RUN) python tools/tutorial_pictures.py
 	@$(RUN) python tools/pictures.py
+	@$(RUN) python tools/part_films.py
 
 manoeuvres: build   ## swim every gait, and write docs/reference/manoeuvres.md with its pictures
 	@$(RUN) python tools/manoeuvres.py

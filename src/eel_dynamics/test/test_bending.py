@@ -228,3 +228,25 @@ def test_torques_of_a_run_drive_the_same_motion_as_open_loop_torques():
     again = simulate(straight(), 1.5, robot=Robot(joints), accuracy=1e-6, sample_period=0.005, estimate=False)
     assert greatest(again.joint_angle - swum.joint_angle) < 1e-3 * greatest(swum.joint_angle)
     assert greatest(again.position - swum.position) < 1e-4
+
+
+def test_a_copy_with_a_lower_limit_goes_on_from_the_present_and_keeps_it():
+    robot = Robot.named("eight_servos")
+    simulation = Simulation(law=straight(), robot=robot, scene=Scene(planar=True), accuracy=1e-4)
+    simulation.advance(1.2)
+    weak, same = (simulation.copy_with(robot=each) for each in (robot.changed(torque_limit=0.1), robot))
+    for copied in (weak, same):
+        assert copied.time == 1.2
+        assert copied.observe().joints["joint_angle"] == pytest.approx(
+            simulation.observe().joints["joint_angle"], abs=1e-14
+        )
+        assert copied.observe().position == pytest.approx(simulation.observe().position, abs=1e-15)
+    swum = []
+    for each in (simulation, same, weak):
+        joints = [(each.advance(float(time)), each.observe().joints)[1] for time in np.arange(1.3, 2.31, 0.1)]
+        swum.append(np.array([row["joint_angle"] for row in joints]))
+        torque = greatest([row["motor_torque"] for row in joints])
+        assert torque <= 0.1 if each is weak else torque > 0.2
+    assert greatest(swum[1] - swum[0]) < 1e-6 and greatest(swum[2] - swum[0]) > 0.1
+    with pytest.raises(ValueError, match="the same parts at the same places"):
+        simulation.copy_with(robot=chain(torque_limit=1.0, kp=5.0).changed("joint_1", position=0.09))

@@ -317,7 +317,10 @@ def test_the_summary_counts_path_speed_and_greatest_torque():
     text = summary.text()
     assert "law **falling**, swimming" in text
     assert "mean speed **0.500 m/s**, path 2.00 m" in text
-    assert "greatest C3 along the body **+0.6 N m** at X = 0.00 m" in text  # now
-    assert "of the samples so far -0.7 N m at X = 0.50 m, 2.00 s" in text
+    assert "now +0.6 N m at X = 0.00 m" in text
+    assert "greatest torque C3 in 3 s **0.7 N m** at X = 0.50 m" in text
+    assert "since the start -0.7 N m at X = 0.50 m, 2.00 s" in text
+    summary.add_torque(6 * 10**9, np.array([0.0, 0.5, 1.0]), np.array([0.5, 0.1, 0.2]))
+    assert "in 3 s **0.6 N m** at X = 0.00 m" in summary.text()  # that of 2 s is forgotten
     assert "accuracy standard, real-time factor 0, closure 1.23e-14" in text
     assert "warnings" not in text

@@ -16,8 +16,8 @@ from eel_viz.recording.recording_file import FileDestination
 from eel_viz.recording.recordings import Recordings
 from eel_viz.robots.fin_plates import EDGE, FinPlates
 from eel_viz.robots.joint_rings import AROUND, AXLE, JointRings
-from eel_viz.robots.motor_plots import load_colours, loads_of
-from eel_viz.ros.marker_messages import FinMarker
+from eel_viz.robots.loads import load_colours, loads_of
+from eel_viz.ros.marker_messages import FinMarker, JointMarkers
 from eel_viz.scene3d import colours
 from eel_viz.settings import Settings
 from made_up_recording import body
@@ -144,6 +144,23 @@ def test_parts_are_recorded_at_every_sample(tmp_path):
     assert "fins" in str(words) and "joints" in str(words)
 
 
+def test_the_tab_of_motors_and_the_plot_of_fins_are_there_for_bodies_that_have_some(tmp_path):
+    destination = FileDestination(Settings(recording=str(tmp_path / "run.rrd")), print, print)
+
+    def tabs():
+        return {each.name: each for each in destination.blueprint().root_container.contents}
+
+    def plots_of_motion():
+        _, right = tabs()["motion"].contents
+        return [view.name for view in right.contents]
+
+    assert "robot" not in tabs() and len(plots_of_motion()) == 3
+    destination.adopt_body(None, replace(body(), fins=FINS))
+    assert "robot" not in tabs() and plots_of_motion()[-1] == "Angles of the fins [deg]"
+    destination.adopt_body(None, replace(body(), joints=JOINTS))
+    assert list(tabs()) == ["overview", "torques", "motion", "robot", "swimmer"] and len(plots_of_motion()) == 3
+
+
 def test_a_body_without_parts_shows_none(tmp_path):
     from rerun.chunk import RrdReader
 
@@ -173,6 +190,16 @@ def test_fins_are_markers_too(backbone):
     corners = vertices[plates.triangles]
     np.testing.assert_allclose(points.reshape(2, -1, 3, 3), [corners, corners[:, ::-1]], rtol=1e-6)
     assert not fins.markers(Header(), backbone, read_joints(NS(name=["left_200"], position=[0.1])))
+
+
+def test_joints_are_markers_in_the_colours_of_their_loads(backbone):
+    robot = replace(body(), joints=JOINTS)
+    first, second = JointMarkers(robot).markers(Header(), backbone, MOTORS)
+    ring = JointRings(robot).place(backbone)[1]
+    np.testing.assert_allclose([(point.x, point.y, point.z) for point in second.points], ring, rtol=1e-9)
+    assert (first.color.r, first.color.g, first.color.b) == tuple(np.array(colours.ACTUATORS) / 255.0)
+    assert second.color.r != first.color.r and first.id != second.id
+    assert not JointMarkers(robot).markers(Header(), backbone, replace(MOTORS, torque=np.zeros(3)))
 
 
 BAD = [

@@ -96,7 +96,7 @@ class March:
             raise stopped if law is None else not_begun(law, stopped) from None
 
     def copy_with(self, setup: SimulationSetup) -> "March":
-        """A copy in the present state, on a grid for the accuracy of `setup`, which differs in that alone."""
+        """A copy in the present state, on a grid for the accuracy of `setup`, which differs in that or in its robot."""
         copied, finer = deepcopy(self), setup.settings.resolution / self.setup.settings.resolution
         copied.setup, resolution = setup, max(1.0, finer * self.settings.resolution)
         copied._change_grid(self.settings._replace(resolution=resolution, kinks=setup.settings.kinks))

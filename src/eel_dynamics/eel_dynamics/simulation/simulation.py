@@ -306,9 +306,15 @@ class Simulation:
         if self._meter is not None:
             self._meter.repeat(action)
 
-    def copy_with(self, accuracy: Accuracy) -> "Simulation":
-        """A copy in the present state that continues with the settings `accuracy`."""
-        other = Simulation(**self._setup.arguments | {"accuracy": accuracy})
+    def copy_with(self, accuracy: Accuracy | None = None, robot: Robot | None = None) -> "Simulation":
+        """A copy in the present state that continues with the settings `accuracy`, or with other numbers of the robot.
+
+        robot: with the same parts at the same places; its gains, limits, springs and dampers may differ. None: as here.
+        """
+        changes = {"accuracy": accuracy, "robot": robot}
+        other = Simulation(**self._setup.arguments | {name: each for name, each in changes.items() if each is not None})
+        if robot is not None and [*map(_place, robot.parts)] != [*map(_place, self.robot.parts if self.robot else ())]:
+            raise ValueError("robot must have the same parts at the same places to go on")
         other._march = self._march.copy_with(replace(other._setup, flow=self._march.setup.flow))
         other.currents = deepcopy(self.currents)
         other.ready, other._started = self.ready, self._started
@@ -488,6 +494,16 @@ def swim_time(
         if repeat:
             best = min(best, (clock.perf_counter() - begin) / duration)
     return best
+
+
+def _place(part: Any) -> tuple[Any, ...]:
+    """Kind and place of a part of a robot, and whether it has coordinates of its own."""
+    own = getattr(getattr(part, "actuator", None), "series_stiffness", None) is not None
+    return (
+        type(part),
+        *(getattr(part, name, None) for name in ("position", "start", "end", "width", "modes", "axis")),
+        own,
+    )
 
 
 def _scaled(law: Law, length: float) -> Law:

@@ -9,6 +9,7 @@ import re
 import numpy as np
 
 from eel_viz.messages import Body
+from eel_viz.plots.limit import RecentPeak
 from eel_viz.plots.readable import number
 from eel_viz.settings import Drawing
 
@@ -19,6 +20,7 @@ LABELS = {  # key of the diagnostics: its label
     "error_position": "estimated error of the position",
     "error_torque": "of the torque",
     "real_time_factor": "real-time factor",
+    "at_torque_limit": "**at their torque limits:**",
     "closure_torque_relative": "closure",
     "energy_residual_worst": "worst residual [J]",
 }
@@ -52,6 +54,7 @@ class Summary:
         self._path = 0.0  # m
         self._torque: tuple[float, float, int] = (0.0, 0.0, 0)  # N m, m, ns: the greatest of the last sample
         self._peak = self._torque  # the greatest so far
+        self._recent = RecentPeak()
 
     def add_position(self, stamp: int, position: np.ndarray) -> None:
         """Add the head's `position`, (3,) [m] in the world, at `stamp` [ns]."""
@@ -65,6 +68,7 @@ class Summary:
         """Add the yaw torque C3, (M,) [N m], at stations `x` (M,) [m] and `stamp` [ns]."""
         k = int(np.argmax(np.abs(torque)))
         self._torque = (float(torque[k]), float(x[k]), stamp)
+        self._recent.include(stamp, abs(float(torque[k])), float(x[k]))
         if abs(torque[k]) > abs(self._peak[0]):
             self._peak = self._torque
 
@@ -98,15 +102,16 @@ class Summary:
         fresh = self.stamp - self._state[0] <= MAXIMUM_AGE
         lines = [", ".join(part for part in (law, plain(self._state[1], LONGEST_TEXT) if fresh else "") if part)]
         shown = [key for key in LABELS if self.values.get(key) and (fresh or key not in VOLATILE)]
-        lines.append(", ".join(f"{LABELS[key]} {_short(self.values[key])}" for key in shown))
+        lines.append(", ".join(f"{LABELS[key]} {_shown(key, self.values[key])}" for key in shown))
         if self._last is not None and self._first is not None:
             seconds = (self._last[0] - self._first[0]) / 1e9
             mean = self._path / seconds if seconds > 0 else 0.0
             lines.append(f"until {self._last[0] / 1e9:.1f} s: mean speed **{mean:.3f} m/s**, path {self._path:.2f} m")
         if self._peak[0]:
-            (torque, x, _), (peak, peak_x, stamp) = self._torque, self._peak
-            lines.append(f"greatest C3 along the body **{torque:+.3g} N m** at X = {x:.2f} m")
-            lines.append(f"of the samples so far {peak:+.3g} N m at X = {peak_x:.2f} m, {stamp / 1e9:.2f} s")
+            (torque, x, _), (peak, peak_x, stamp), recent = self._torque, self._peak, self._recent
+            lines.append(f"greatest torque C3 in 3 s **{recent.value:.2g} N m** at X = {recent.place:.2f} m")
+            lines.append(f"now {torque:+.2g} N m at X = {x:.2f} m")
+            lines.append(f"since the start {peak:+.2g} N m at X = {peak_x:.2f} m, {stamp / 1e9:.2f} s")
         if self.body is not None:
             lines.append(f"body {self.body.length:.3g} m, {self.body.mass:.4g} kg")
         return "  \n".join(line for line in lines if line)
@@ -124,7 +129,7 @@ class Summary:
     def figures(self) -> dict[str, str]:
         """The main figures by name, for the comparison of two runs."""
         shown = {"law": plain(self.law or "")}
-        shown |= {LABELS[key]: _short(self.values[key]) for key in COMPARED if self.values.get(key)}
+        shown |= {LABELS[key]: _shown(key, self.values[key]) for key in COMPARED if self.values.get(key)}
         if self._last is not None and self._first is not None:
             seconds = (self._last[0] - self._first[0]) / 1e9
             shown["mean speed [m/s]"] = f"{self._path / seconds:.4f}" if seconds > 0 else "0"
@@ -139,10 +144,10 @@ def look_text(scales: Drawing, body: Body | None = None) -> str:
     lines = [
         "The eel swims towards its eyes, along the white arrow: bends run from nose to tail and push the water back.",
         "Colour on its flanks is the torque **C3** that bends it sideways, red one way and blue the other, on the "
-        "scale of the map at the upper right.",
+        "scale of the bar below the picture.",
         "Arrows are the **force of the water** (yellow; magenta at nose and tail), the violet ribbon what the tail "
         "leaves in the **wake**.",
-        *(["Pale plates are its **fins**, as large and turned as they are."] if body and body.fins else []),
+        *(["Lime plates are its **fins**, as large and turned as they are."] if body and body.fins else []),
         *([RINGS] if body and body.joints else []),
         "",
         f"Lengths: {scales.load_scale:g} m for 1 N/m along the body, {scales.end_force_scale:g} m for 1 N at its ends.",
@@ -157,9 +162,9 @@ def plain(name: str, longest: int = LONGEST_NAME) -> str:
     return escaped + ("..." if len(name) > longest else "")
 
 
-def _short(value: str) -> str:
-    """Numbers to three digits; other texts unchanged."""
+def _shown(key: str, value: str) -> str:
+    """Numbers to three digits; names, as of the accuracy, and other texts unchanged."""
     try:
-        return number(float(value))
+        return plain(value) if key == "accuracy" else number(float(value))
     except ValueError:
         return plain(value, LONGEST_TEXT)

@@ -17,6 +17,7 @@ from eel_viz.recording.rrd_frames import cut_to_whole_messages, is_complete
 from eel_viz.settings import Settings
 
 FILE_TICK = 0.6  # s: a process that is killed loses no more; each batch of an entity takes some 700 bytes of the file
+AGAIN_TICK = 60.0  # s: where the data can be recorded again; few large batches make a catalogue of files open fast
 ROOM = 2**18  # bytes that must be free: Rerun writes 170 kB at once, and may block for ever if that fails
 REMINDER = 30.0  # s between two warnings that nothing is saved
 
@@ -35,9 +36,9 @@ class FileDestination(Destination):
     def __init__(
         self, settings: Settings, log_info: LogFunction, log_warning: LogFunction, *, retry_from: int | None = None
     ) -> None:
-        super().__init__(
-            settings, Rates(numbers=0.0, drawings=settings.skin_rate, tick=FILE_TICK), log_info, log_warning, live=False
-        )
+        self._tick = AGAIN_TICK if retry_from is None else FILE_TICK
+        rates = Rates(numbers=0.0, drawings=settings.skin_rate, tick=self._tick)
+        super().__init__(settings, rates, log_info, log_warning, live=False)
         self._began = time.time_ns()
         self._first = pathlib.Path(settings.recording) if settings.recording else new_file()
         self._retry_from = retry_from
@@ -71,7 +72,7 @@ class FileDestination(Destination):
             self.log_info(f"saving to {path}; until it is complete, to {draft.path.name}")
             sink = rr.FileSink(str(draft.path), write_footer=self.settings.index)
             try:
-                stream = self.make_stream(sink, name, rr.ChunkBatcherConfig(flush_tick=FILE_TICK))
+                stream = self.make_stream(sink, name, rr.ChunkBatcherConfig(flush_tick=self._tick))
             except RuntimeError:  # no room for the sink's first bytes
                 reason = write_error(draft.path)
             else:

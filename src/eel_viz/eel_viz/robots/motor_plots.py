@@ -11,9 +11,9 @@ from eel_viz.batched_stream import BatchedStream
 from eel_viz.part_messages import Motors
 from eel_viz.plots.heat_map import ROWS, HeatMap
 from eel_viz.plots.limit import Limit
+from eel_viz.robots.loads import AT_LIMIT, load_colours, loads_of
 from eel_viz.scene3d import colours
 
-AT_LIMIT = 1.0 - 1e-9  # of the torque that a motor can give, from which it counts as at its limit
 MAP_PERIOD = 200_000_000  # ns
 SERIES = {
     entities.HARDEST_MOTOR: (("torque", colours.ACTUATORS), ("limit", colours.OTHER)),
@@ -21,19 +21,6 @@ SERIES = {
     entities.MOTOR_POWER: (("power [W]", colours.ACTUATORS),),
     entities.MOTOR_WORK: (("work [J]", colours.ACTUATORS),),
 }
-
-
-def loads_of(motors: Motors) -> np.ndarray:
-    """What each motor gives of what it can, (J,), 0 to 1; of motors without a limit NaN."""
-    torque, limited = np.abs(motors.torque), np.isfinite(motors.limit)
-    none = np.where(limited, (torque > 0.0).astype(float), np.nan)  # at a speed at which no torque is left
-    return np.asarray(np.divide(torque, motors.limit, out=none, where=limited & (motors.limit > 0.0)))
-
-
-def load_colours(loads: np.ndarray) -> np.ndarray:
-    """Entries of `colours.LOADS` for `loads` (...,), uint8: the last, red, at the limit alone."""
-    below = np.clip(np.nan_to_num(loads) * 254.0, 0.0, 254.0).round()
-    return np.where(loads >= AT_LIMIT, 255, below).astype(np.uint8)
 
 
 class LoadMap(HeatMap):

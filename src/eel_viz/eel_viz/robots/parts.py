@@ -12,11 +12,12 @@ from eel_viz.messages import Backbone, Body
 from eel_viz.part_messages import JointStates, Motors
 from eel_viz.robots.fin_plates import FinPlates
 from eel_viz.robots.joint_rings import JointRings
-from eel_viz.robots.motor_plots import AT_LIMIT, MotorPlots, load_colours, loads_of
+from eel_viz.robots.loads import AT_LIMIT, load_colours, loads_of
+from eel_viz.robots.motor_plots import MotorPlots
 from eel_viz.same_stamp import SameStamp
-from eel_viz.scene3d import colours
+from eel_viz.scene3d import colours, legend
 
-THIN, THICK = -1.6, -3.2  # pixels, as Rerun counts them: lines of a ring, and at the limit
+THIN, THICK = -1.5, -2.4  # pixels, as Rerun counts them: lines of a ring, and at the limit
 
 
 class Parts:
@@ -40,6 +41,8 @@ class Parts:
     def body(self, stamp: int, body: Body) -> None:
         """Take what the body has of fins and joints."""
         self._joints = len(body.joints)
+        if body.fins or body.joints:
+            legend.log_parts(self._stream, fins=bool(body.fins), joints=bool(body.joints))
         if body.fins:
             self._plates = FinPlates(body)
             plates = rr.Mesh3D.from_fields(triangle_indices=self._plates.triangles, albedo_factor=colours.FIN)

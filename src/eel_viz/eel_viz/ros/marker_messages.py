@@ -10,8 +10,10 @@ from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker
 
 from eel_viz.messages import Backbone, Body, Load, Profiles
-from eel_viz.part_messages import JointStates
+from eel_viz.part_messages import JointStates, Motors
 from eel_viz.robots.fin_plates import FinPlates
+from eel_viz.robots.joint_rings import JointRings
+from eel_viz.robots.loads import load_colours, loads_of
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.load_vectors import ALONG, LoadVectors
 from eel_viz.scene3d.skin import Skin
@@ -19,6 +21,7 @@ from eel_viz.settings import MarkerSettings
 
 WIDTHS = (0.0044, 0.011)  # m: diameters of shaft and tip of the arrows along the body
 END_WIDTHS = (0.008, 0.018)  # m: of those at its ends
+RING_WIDTH = 0.003  # m
 
 
 class SkinMarker:
@@ -75,6 +78,26 @@ class FinMarker:
         marker.pose.orientation.w, marker.color = 1.0, _colour(colours.FIN)
         marker.points = [points[corner] for corner in self._corners]
         return [marker]
+
+
+class JointMarkers:
+    """The joints of one `body` as rings, in the colours of what their motors give of what they can."""
+
+    def __init__(self, body: Body) -> None:
+        self._rings, self._count = JointRings(body), len(body.joints)
+        self._palette = [_colour(entry) for entry in colours.LOADS]
+
+    def markers(self, header: Header, backbone: Backbone, motors: Motors) -> list[Marker]:
+        """One marker for each joint; none where the `motors` are not as many."""
+        if len(motors.torque) != self._count:
+            return []
+        markers, shades = [], load_colours(loads_of(motors)).tolist()
+        for k, (ring, shade) in enumerate(zip(self._rings.place(backbone), shades, strict=True)):
+            marker = Marker(header=header, ns="joints", id=k, type=Marker.LINE_STRIP, scale=Vector3(x=RING_WIDTH))
+            marker.pose.orientation.w, marker.color = 1.0, self._palette[shade]
+            marker.points = [_point(each) for each in ring.tolist()]
+            markers.append(marker)
+        return markers
 
 
 def midline(header: Header, backbone: Backbone) -> Path:

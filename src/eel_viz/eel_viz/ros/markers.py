@@ -18,10 +18,10 @@ from nav_msgs.msg import Path
 from sensor_msgs.msg import JointState
 from visualization_msgs.msg import MarkerArray
 
-from eel_msgs.msg import Backbone, BodyGeometry, HydrodynamicLoad, InternalWrench
+from eel_msgs.msg import Backbone, BodyGeometry, HydrodynamicLoad, InternalWrench, MotorStates
 from eel_viz.messages import BadMessage, read_backbone, read_load, read_wrench, stamp_of
-from eel_viz.part_messages import read_body_with_parts, read_joints
-from eel_viz.ros.marker_messages import FinMarker, ForceMarkers, SkinMarker, midline
+from eel_viz.part_messages import read_body_with_parts, read_joints, read_motors
+from eel_viz.ros.marker_messages import FinMarker, ForceMarkers, JointMarkers, SkinMarker, midline
 from eel_viz.settings import MarkerSettings
 
 NAME = "markers"
@@ -31,6 +31,7 @@ TOPICS = {
     "internal_wrench": (InternalWrench, read_wrench),
     "hydrodynamic_load": (HydrodynamicLoad, read_load),
     "fin_states": (JointState, read_joints),
+    "motor_states": (MotorStates, read_motors),
 }
 DEPTH = 10  # samples that wait for the rest of their topics
 LOOK_PERIOD = 0.5  # s between two look-ups of the publishers
@@ -45,6 +46,7 @@ class Markers(ParameterNode):
         (self._settings,) = declare_all(self, MarkerSettings)
         self._skin: SkinMarker | None = None
         self._fins: FinMarker | None = None
+        self._joints: JointMarkers | None = None
         self._forces = ForceMarkers(self._settings)
         self._waiting: OrderedDict[int, dict[str, Any]] = OrderedDict()  # stamp [ns]: messages by topic
         self._expected: set[str] = set(TOPICS)
@@ -70,6 +72,7 @@ class Markers(ParameterNode):
             body = read_body_with_parts(message)
             self._skin = SkinMarker(body, self._settings.colour_limit)
             self._fins = FinMarker(body) if body.fins else None
+            self._joints = JointMarkers(body) if body.joints else None
         except BadMessage as problem:
             self._warn_once("body", problem)
 
@@ -113,6 +116,8 @@ class Markers(ParameterNode):
                 markers.extend(self._forces.markers(header, backbone, load))
             if self._fins is not None and "fin_states" in values:
                 markers.extend(self._fins.markers(header, backbone, values["fin_states"]))
+            if self._joints is not None and "motor_states" in values:
+                markers.extend(self._joints.markers(header, backbone, values["motor_states"]))
             self._markers.publish(MarkerArray(markers=markers))
         if self._midline.get_subscription_count():
             self._midline.publish(midline(header, backbone))

@@ -19,8 +19,9 @@ from eel_viz.scene3d.shapes import tiles
 DISTANCE = 1.0  # radii, from the eye: so a tangent in the picture is a length in radii
 BAR_AT = (-0.50, -0.425)  # tangents: the middle of the bar
 BAR_SIZE = (0.27, 0.018)
-WORDS_AT = -0.44  # tangent: the height of the words
+WORDS_AT = -0.42  # tangent: the height of the words
 FORCE_AT, ENDS_AT, WAKE_AT = -0.06, 0.27, 0.51  # tangents: the middles of the words
+PARTS_AT, RINGS_AT = -0.463, 0.30  # tangents: the height of the words below, and the middle of those of the rings
 LETTERS = 0.020  # tangent: height of a capital
 BAND = (-0.60, -0.39)  # tangents: lower and upper edge of the ground of the legend
 STEPS = 33
@@ -64,6 +65,14 @@ def log_words(stream: BatchedStream, stamp: int) -> None:
         at, texts, shades = zip(*words, strict=True)
         places = [camera.before_eye(DISTANCE, right, WORDS_AT) for right in at]
         stream.log(stamp, path, _written(places, texts, shades))
+
+
+def log_parts(stream: BatchedStream, *, fins: bool, joints: bool) -> None:
+    """Log what plates and rings are, below the other words, valid at all times."""
+    words = {(FORCE_AT, "fins", colours.FIN): fins, (RINGS_AT, "joints, red at the limit", colours.LABEL): joints}
+    at, texts, shades = zip(*(each for each, there in words.items() if there), strict=True)
+    places = [camera.before_eye(DISTANCE, right, PARTS_AT) for right in at]
+    stream.log_static(f"{entities.LEGEND}/parts", _written(places, texts, shades))
 
 
 def _written(places: list[np.ndarray], texts: Sequence[str], shades: Sequence[Colour] = ()) -> rr.LineStrips3D:

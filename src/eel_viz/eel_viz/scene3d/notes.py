@@ -13,7 +13,7 @@ from eel_viz.scene3d.lettering import standing_texts
 
 PERIOD = 400_000_000  # ns: words that changed faster could not be read
 LETTERS = 0.043  # height of a capital [radii]
-AHEAD = (0.06, 0.22)  # from head to begin and end of the arrow [body lengths]
+AHEAD = (0.06, 0.26)  # from head to begin and end of the arrow [body lengths]
 NEARER = 0.25
 SLOW = 0.01  # body lengths per second, below which no direction is shown
 NAME = "greatest torque C3 in 3 s"
@@ -32,7 +32,7 @@ class Notes:
         self._heading = SameStamp(self._draw_heading)
         self._torque = SameStamp(self._draw_torque)
         self._words: dict[str, tuple[str, int]] = {}  # and when they were written [ns]
-        stream.log_static(entities.HEADING, rr.Arrows3D.from_fields(colors=[colours.NOTE], radii=[0.004]))
+        stream.log_static(entities.HEADING, rr.Arrows3D.from_fields(colors=[colours.NOTE], radii=[0.007]))
         leader = [[0.05 * camera.UP, (ABOVE - 1.2 * LETTERS) * camera.UP]]
         line = rr.LineStrips3D(leader, colors=[colours.NOTE], radii=rr.Radius.ui_points(0.5))
         stream.log_static(f"{entities.TORQUE_NOTE}/line", line)
@@ -58,7 +58,7 @@ class Notes:
             begin, end = (backbone.position[0] + share * length / speed * velocity for share in AHEAD)
             ends = {"origins": begin[None].astype(np.float32), "vectors": (end - begin)[None].astype(np.float32)}
             self._stream.add_row(stamp, entities.HEADING, rr.Arrows3D, **ends)
-            self._write(stamp, entities.SPEED_NOTE, f"{head_speed:.2f} m/s", end, frame, BESIDE)
+            self._write(stamp, entities.SPEED_NOTE, f"swims {head_speed:.2f} m/s", end, frame, BESIDE)
 
     def _draw_torque(self, stamp: int, body: tuple[Backbone, Frame], peak: tuple[float, float]) -> None:
         (backbone, frame), (x, torque) = body, peak

@@ -29,7 +29,7 @@ from eel_viz.views.views import (
 
 SETTLED = 0.4  # of a run: from here on it is repeated, for the swim is settled by then
 POWER_SHOWN = 4.0  # s: duration of the last power that is shown, so that its scale fits the swim and not its start
-POWER = "Power [W]: actuators red, drag yellow, wake violet, nose magenta, flow blue, fins lime"
+POWER = "Power [W]: actuators red, drag yellow, wake violet, nose magenta"
 HARDEST = "Motor nearest to its limit [N m]: torque red, limit white"
 XYZ = "x orange, y green, z blue"
 
@@ -41,7 +41,7 @@ def overview(look: Look) -> rrb.Container:
         rrb.Vertical(
             heat_map_view(),
             profile_view(entities.TORQUE, "Internal torque C(X)"),
-            series_view(look, POWER, entities.POWER, entities.POWER_BESIDES, last=POWER_SHOWN),
+            series_view(look, _power(look), entities.POWER, entities.POWER_BESIDES, last=POWER_SHOWN),
             rrb.Horizontal(
                 series_view(look, "Speed of the head [m/s]", entities.SPEED),
                 series_view(look, "Depth of the head [m]", entities.DEPTH),
@@ -51,6 +51,12 @@ def overview(look: Look) -> rrb.Container:
         column_shares=[1.15, 1.0],
         name="overview",
     )
+
+
+def _power(look: Look) -> str:
+    """The name of the plot of powers; that of a flow is blue, where there is one."""
+    named = {", fins lime": look.fins, ", dampers brown": look.joints}
+    return POWER + "".join(name for name, there in named.items() if there)
 
 
 def torques(look: Look) -> rrb.Container:

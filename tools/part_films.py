@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Films of what robots have: a torque limit that is lowered until a robot cannot follow; fins that hold the roll.
+
+`docs/images/servos.webp` and `fins.webp` (`make pictures`). Rerun's viewer draws them; status 3 where it cannot.
+"""
+
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
+from eel_gym.episode_recording import STACKED
+from eel_viz.pictures.drawing import Drawing, SideBySide, drawn, drawn_beside
+from eel_viz.pictures.film import film
+from eel_viz.pictures.render import frames, times
+from eel_viz.recording.library import to_rerun
+from eel_viz.viewer import CannotRender
+from PIL import Image
+
+from eel_dynamics import Fin, Robot, RollHold, Run, Simulation, simulate
+from eel_gaits import Law, falling, straight
+
+FOLDER = Path(__file__).resolve().parent.parent / "docs" / "images"
+LIMITS = ((1.0, 3.0), (0.3, 6.0), (0.2, 9.0), (0.1, 12.0))  # N m, and until when [s]
+STEP = 0.02  # s, between samples
+WHOLE, HALF = (1080, 640), (720, 504)  # pixels: of a window, of one of two pictures
+WIDTH = 760  # pixels of a film, at most
+FPS, QUALITY = 6.0, 24
+BAR = 60  # pixels: the empty bar at the top of a window, and its tabs
+
+
+def weakened() -> Iterator[tuple[str, Any]]:
+    """The messages of a robot of eight servos whose torque limit falls as `LIMITS` say."""
+    law, robot = straight(), Robot.named("eight_servos")
+    simulation = Simulation(law=law, robot=robot.changed(torque_limit=LIMITS[0][0]), accuracy=1e-3)
+    time = 0.0
+    for limit, end in LIMITS:
+        weaker = robot.changed(torque_limit=limit)
+        simulation = simulation.copy_with(robot=weaker) if time else simulation
+        snapshots = []
+        while time < end - 1e-9:
+            simulation.advance(time)
+            snapshots.append(simulation.observe(load=False))
+            time = round(time + STEP, 9)
+        columns: dict[str, Any] = {name: stacked([getattr(each, name) for each in snapshots]) for name in STACKED}
+        columns |= {name: stacked([each.joints[name] for each in snapshots]) for name in snapshots[0].joints}
+        told = Law(name=f"torque limit {limit:g} N m")
+        numbers: dict[str, Any] = {"energy": None, "steps": 0, "evaluations": 0, "nodes": 0}
+        here: dict[str, Any] = {name: getattr(simulation, name) for name in ("body", "scene", "accuracy", "x")}
+        yield from messages_of_run(Run(law=told, robot=weaker, **here, **numbers, **columns))
+
+
+def stacked(rows: list[Any]) -> Any:
+    """The `rows` as one array; None where they are None."""
+    return None if rows[0] is None else np.array(rows)
+
+
+def draw(drawing: Drawing | SideBySide, folder: Path, name: str, *, start: float, end: float, top: int = 0) -> None:
+    """Write the film `name` of `drawing`, without the `top` pixels of each picture, and print its size."""
+    at = times(drawing, fps=FPS, start=start, end=end, speed=1.0)
+    for path in frames(drawing, folder, at):
+        with Image.open(path) as picture:
+            cut = picture.convert("RGB").crop((0, top, picture.width, picture.height))
+        size = (WIDTH, WIDTH * cut.height // cut.width) if cut.width > WIDTH else cut.size
+        cut.resize(size, Image.Resampling.LANCZOS).save(path)
+    film(folder, len(at), FOLDER / name, fps=FPS, quality=QUALITY)
+    print(f"docs/images/{name}: {(FOLDER / name).stat().st_size / 1e3:.0f} kB")
+
+
+def main() -> int:
+    """Draw both."""
+    pair = Fin.pair(station=0.2, area=2e-3, aspect_ratio=2.5, angle=RollHold(2.0, 0.15), time_constant=0.05)
+    try:
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            to_rerun(folder / "servos.rrd", [weakened()], ["eight servos"], blueprint="robot")
+            with drawn(folder / "servos.rrd", size=WHOLE) as drawing:
+                draw(drawing, folder, "servos.webp", start=2.0, end=LIMITS[-1][1] - STEP, top=BAR)
+            for kind, fins in (("without", None), ("with", [pair])):
+                run = simulate(falling(), 10.0, sample_period=STEP, load=True, fins=fins)
+                run.to_rerun(folder / f"{kind}.rrd")
+            with drawn_beside(folder / "without.rrd", folder / "with.rrd", size=HALF, bare=True) as both:
+                draw(both, folder, "fins.webp", start=2.0, end=9.9)
+    except CannotRender as reason:
+        print(f"part films: {reason}", file=sys.stderr)
+        return 3
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
