@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs to compare others with: two methods on two grids, which are trusted where they agree.
+"""Swims that are compared: tried without a word, timed in turns, and against two methods on two grids.
 
 Two grids may have nearly the same error, so the pair must agree better than what it is to judge.
 """
 
+import statistics
 import time
+import warnings
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any
 
@@ -15,7 +18,10 @@ from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.swim import Swim
 from eel_dynamics.simulation.stopping import SimulationStopped
 
+from eel_studies.workers import in_threads
+
 DEARER = 10.0  # times, that the next pair takes
+LONG = 0.5  # s, of a swim whose CPU time is known well enough from one round
 REFERENCES = tuple(  # finer ones, where the first do not agree
     (
         Accuracy(name="pair", resolution=points, tolerance=tolerance),
@@ -23,6 +29,46 @@ REFERENCES = tuple(  # finer ones, where the first do not agree
     )
     for points, tolerance in ((40.0, 1e-9), (70.0, 1e-11), (160.0, 1e-12), (320.0, 1e-13))
 )
+
+
+def attempt(swim: Swim, **how: Any) -> Run | Exception:
+    """The run of `swim`, or why there is none. how: as in `Swim.run`. It shows no progress."""
+    try:
+        return swim.run(**{"progress": lambda reached, left: None} | how)
+    except (SimulationStopped, ValueError) as error:
+        return error
+
+
+def attempts(swims: Iterable[Swim], **how: Any) -> list[Run | Exception]:
+    """`attempt` of each of the `swims`, over threads, without warnings, which the runs keep."""
+    with warnings.catch_warnings(action="ignore"):
+        return in_threads(lambda swim: attempt(swim, **how), swims)
+
+
+def cpu_seconds(
+    swims: list[Swim], duration: float, rounds: int, say: Callable[[str], object] = lambda text: None
+) -> list[float]:
+    """CPU time [s] on one core of `duration` [s] of each of the `swims`, set-up included, without samples.
+
+    Medians over `rounds`, in which the swims take turns, but for those that take `LONG`; infinite where one stops.
+    say(text): called with each round.
+    """
+
+    def timed(swim: Swim) -> float:
+        begin = time.thread_time()
+        try:
+            swim.simulation(stations=2).advance(duration)
+        except (SimulationStopped, ValueError):
+            return np.inf
+        return time.thread_time() - begin
+
+    times: list[list[float]] = [[] for _ in swims]
+    for each in range(rounds):
+        say(f"times, round {each + 1} of {rounds}")
+        for swim, row in zip(swims, times, strict=True):
+            if not row or row[0] < LONG:
+                row.append(timed(swim))
+    return [statistics.median(row) for row in times]
 
 
 def reference_of(

@@ -79,3 +79,7 @@ OWN: dict[str, Callable[[Swim, Any], dict[str, Any]]] = {  # name: (swim, value)
     "resolution": lambda swim, value: _settings(swim, resolution=number("resolution", value)),
     "method": lambda swim, value: _settings(swim, method=value[0], order=value[1]),
 }
+NAMES = (
+    "of the gait; scene., body., initial., flow., robot. or fins. with a field; amplitude, density_ratio, flow_speed, "
+    "spin, step, tolerance, resolution"
+)

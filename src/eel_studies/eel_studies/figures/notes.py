@@ -2,54 +2,35 @@
 """The numbers of the page beside the figures, docs/figures/README.md. Each is computed from the runs in the figures."""
 
 import numpy as np
+from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.runs.run import Run
 from eel_model.section_data import CRITICAL_REYNOLDS
 
-from eel_studies.figures import corrections, kern_comparison
-from eel_studies.figures.corrections import Correction
-from eel_studies.figures.kern_comparison import Comparison
-from eel_studies.figures.orders import ConvergenceErrors, Errors
-from eel_studies.figures.paper_drawings import INSTANT, PLACE, wrench_of
-
-FINE = 4  # index of the number of points from which on the order along the body is fitted
+from eel_studies.figures.drawings import INSTANT, PLACE, wrench_of
+from eel_studies.figures.readings import FASTEST, OWN, PRINTED
 
 
-def parts_of(readings: list[Correction], comparison: Comparison) -> dict[str, str]:
-    """The tables of the page, by the names of its parts."""
-    return {"corrections": corrections.table_of(readings), "kern": kern_comparison.table_of(comparison)}
-
-
-def values_of(
-    readings: list[Correction],
-    control: Run,
-    comparison: Comparison,
-    errors: Errors,
-) -> dict[str, str]:
+def values_of(runs: dict[str, Run], control: Run, fast: Analysis) -> dict[str, str]:
     """The numbers within the sentences of the page, by name.
 
-    readings: of `corrections.swim`. control: run of the same wave without the bends in pitch. comparison: of
-    `kern_comparison.compare`. errors: of `orders`, by rule and drag.
+    runs: of `swim_readings`. control: of the same wave without the bends in pitch. fast: of `swim_kern`.
     """
-    runs = {row.label: row.run for row in readings}
-    run, printed = runs[corrections.OWN], runs[corrections.PRINTED]
-    x, y, z = run.position[-1]
-    above = comparison.fast.stride / kern_comparison.PUBLISHED_SPEEDS[1] - 1.0
+    run, end = runs[OWN], runs[OWN].position[-1]
     return {
         "mass": f"{run.body_mass:.4f}",
         "duration": f"{run.time[-1]:g}",
-        "end": f"({x:+.2f}, {y:+.2f}, {z:+.2f})",
-        "end_y": f"{y:+.2f}",
+        "end": f"({end[0]:+.2f}, {end[1]:+.2f}, {end[2]:+.2f})",
+        "end_y": f"{end[1]:+.2f}",
         "control_y": f"{control.position[-1, 1]:+.2f}",
-        "printed_z": f"{printed.position[-1, 2]:+.2f}",
+        "printed_z": f"{runs[PRINTED].position[-1, 2]:+.2f}",
         **_along(run),
         **_in_time(run),
         "speed": f"{run.twist[-1, 3]:.2f}",
         "roll": f"{_greatest(run.twist[:, 0]):.1f}",
         "mean_speed": f"{run.analysis().mean_speed:.3f}",
         **_ledger(run),
-        **_orders(errors["in_space"], errors["in_time"]),
-        **_corrections(readings),
-        "kern_above": f"{above:.0%}",
+        **_corrections(runs),
+        "kern_above": f"{fast.stride / FASTEST - 1.0:.0%}",
     }
 
 
@@ -65,9 +46,8 @@ def _along(run: Run) -> dict[str, str]:
 
 
 def _in_time(run: Run) -> dict[str, str]:
-    """The extremes of force and torque at `PLACE`, and the greatest torque of all."""
-    station = int(np.argmin(np.abs(run.x - PLACE)))
-    yaw = wrench_of(run)[1][:, station, 2]
+    """The extremes of the torque at `PLACE`, and the greatest torque of all."""
+    yaw = wrench_of(run)[1][:, int(np.argmin(np.abs(run.x - PLACE))), 2]
     torque, place, time = run.greatest_torque()
     return {
         "yaw_least": f"{yaw.min():.2f}",
@@ -87,20 +67,13 @@ def _ledger(run: Run) -> dict[str, str]:
     return {"work": f"{work:.2f}", **parts, "residual": f"{_greatest(energy.residual) / work:.0e}"}
 
 
-def _orders(space: dict[bool, ConvergenceErrors], time: dict[bool, ConvergenceErrors]) -> dict[str, str]:
-    found = {}
-    for drag, prefix in ((False, ""), (True, "drag_")):
-        found[f"{prefix}motion_by_points"] = f"{space[drag].order('motion', slice(FINE, None)):.1f}"
-        found[f"{prefix}motion_by_step"] = f"{time[drag].order('motion'):.1f}"
-    return found
-
-
-def _corrections(readings: list[Correction]) -> dict[str, str]:
-    own, perimeter, _, laminar, mass, _ = readings
+def _corrections(runs: dict[str, Run]) -> dict[str, str]:
+    own, perimeter, _, laminar, mass, _ = runs.values()
+    speed = own.analysis().mean_speed
     return {
-        "exchanged_share": f"{mass.run.greatest_torque()[0] / own.run.greatest_torque()[0]:.0%}",
-        "perimeter_speed": f"{perimeter.mean_speed / own.mean_speed - 1.0:+.0%}",
-        "laminar_speed": f"{laminar.mean_speed / own.mean_speed - 1.0:+.0%}",
+        "exchanged_share": f"{mass.greatest_torque()[0] / own.greatest_torque()[0]:.0%}",
+        "perimeter_speed": f"{perimeter.analysis().mean_speed / speed - 1.0:+.0%}",
+        "laminar_speed": f"{laminar.analysis().mean_speed / speed - 1.0:+.0%}",
     }
 
 

@@ -7,8 +7,6 @@ where the motion allows, and each measures its own error: what lies below it is 
 one core; the swims take turns, and medians count.
 """
 
-import statistics
-import time
 import warnings
 from dataclasses import dataclass, replace
 
@@ -16,17 +14,15 @@ import numpy as np
 from eel_base.quantity import checked_instance, number
 from eel_base.wording import one_line
 from eel_dynamics.accuracy.accuracy import COARSEST, Accuracy
-from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import measures_of
 from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.scene_file import words_of
 from eel_dynamics.runs.swim import Swim
-from eel_dynamics.simulation.stopping import SimulationStopped
 
+from eel_studies.reference import attempts, cpu_seconds
 from eel_studies.scene_terms.terms import TERMS, WITHIN, terms_of, without
 from eel_studies.table import Table
-from eel_studies.workers import in_threads
 
 MEASURES = {"mean_speed": "speed", "greatest_torque": "torque", "cost_of_transport": "cost of transport"}
 EFFECTS = ("path", *MEASURES.values())
@@ -143,24 +139,25 @@ def terms(swim: Swim, tolerance: float = 0.02) -> Terms:
     fine = Accuracy.of(min(FINER * tolerance, COARSEST_COMPARED))
     exact = Accuracy.of(float(f"{min(EXACT_ENOUGH * tolerance, COARSEST):.3g}"))
     scene = replace(swim.scene, internal_wrench=True, ledger=True)
-    whole = _swum(swim._replace(scene=scene, accuracy=fine))
+    (whole,) = attempts([swim._replace(scene=scene, accuracy=fine)])
     if isinstance(whole, Exception):
         raise whole
     compared = swim._replace(scene=scene, duration=float(whole.time[-1]), sample_period=float(np.diff(whole.time)[0]))
     parts = terms_of(compared)
     most = max(LEAST_EVALUATIONS, DEARER * whole.evaluations / float(whole.time[-1]))
-    swum = in_threads(lambda each: _swum(each._replace(accuracy=fine), most), parts.values())
+    swum = attempts([each._replace(accuracy=fine) for each in parts.values()], most_evaluations=most)
     effects = {name: _effect(run, whole) for name, run in zip(parts, swum, strict=True)}
     small = [name for name in parts if effects[name].worst <= tolerance and _may_go(parts[name], swim)]
     dropped, restored = sorted(small, key=lambda name: effects[name].worst), []
     while True:
-        together = _effect(_swum(without(compared, dropped)._replace(accuracy=exact)), whole)
+        (run,) = attempts([without(compared, dropped)._replace(accuracy=exact)])
+        together = _effect(run, whole)
         if together.worst <= tolerance or not dropped:
             break
         restored.append(dropped.pop())
     recommended = without(swim, dropped)._replace(accuracy=exact)
-    own = [off(swim) for off in (TERMS[name] for name in parts)]
-    first, *others, last = _seconds([swim, *own, recommended], float(whole.time[-1]))
+    own = [TERMS[name](swim) for name in parts]
+    first, *others, last = cpu_seconds([swim, *own, recommended], float(whole.time[-1]), ROUNDS)
     effects = {name: replace(effects[name], seconds=took) for name, took in zip(parts, others, strict=True)}
     nothing, together = replace(_effect(whole, whole), seconds=first), replace(together, seconds=last)
     rate = whole.error_estimate.growth_rate if whole.error_estimate else 0.0
@@ -180,16 +177,6 @@ def _may_go(without: Swim, swim: Swim) -> bool:
     return True
 
 
-def _swum(swim: Swim, most_evaluations: float = MOST_EVALUATIONS) -> Run | Exception:
-    """The run, or why there is none."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # the table has the error of each run
-            return swim.run(most_evaluations=most_evaluations, progress=lambda reached, left: None)
-    except (SimulationStopped, ValueError) as error:
-        return error
-
-
 def _effect(run: Run | Exception, whole: Run) -> Effect:
     if isinstance(run, Exception):
         return Effect(np.inf, np.inf, np.inf, np.inf, np.nan, np.inf, one_line(run))
@@ -207,20 +194,6 @@ def _measures(run: Run) -> dict[str, float]:
     if np.isnan(found["greatest_torque"]) and run.torque is not None:
         found["greatest_torque"] = float(np.linalg.norm(run.torque, axis=2).max())
     return found
-
-
-def _seconds(swims: list[Swim], duration: float) -> list[float]:
-    """The CPU time [s] of `duration` [s] of each of the `swims`; infinite where one stops."""
-
-    def timed(swim: Swim) -> float:
-        try:
-            begin = time.thread_time()
-            swim.simulation().advance(duration)
-            return time.thread_time() - begin
-        except (SimulationStopped, ValueError):
-            return np.inf
-
-    return [statistics.median(times) for times in zip(*([*map(timed, swims)] for _ in range(ROUNDS)), strict=True)]
 
 
 def _percent(value: float) -> str:

@@ -53,7 +53,7 @@ def _on_the_axis(swim: Swim) -> Swim:
 
 
 def planar(swim: Swim) -> Swim:
-    """The `swim` in the plane z = const: law, start and current without their parts out of it."""
+    """The `swim` in the plane z = const, without fins: law, start and current without their parts out of it."""
     law = swim.law
     if isinstance(law, Law) and not law.in_plane:
         law = Law(*(term for term in law.terms if term.axis == "yaw"), name=law.name, transition=law.transition)
@@ -61,7 +61,7 @@ def planar(swim: Swim) -> Swim:
     orientation = np.array([0.0, 0.0, z, w]) / np.hypot(z, w) if np.hypot(z, w) > 0.0 else AT_REST.orientation
     start = swim.start._replace(orientation=orientation, twist=swim.start.twist * (0, 0, 1, 1, 1, 0))
     scene = replace(swim.scene, planar=True, current=(*swim.scene.current[:2], 0.0))
-    return swim._replace(law=law, start=start, scene=scene)
+    return swim._replace(law=law, start=start, scene=scene, fins=())
 
 
 TERMS: dict[str, Off] = {

@@ -20,7 +20,7 @@ from eel_studies.outputs import Outputs, add_output_options
 from eel_studies.scene_options import add_scene_options, swim_from
 from eel_studies.stability.maps import OUTCOMES, Axis, Map, measure
 from eel_studies.stability.report import STUDIES, counts, report
-from eel_studies.varied import varied
+from eel_studies.varied import NAMES, varied
 
 NAME = "eel stability"
 
@@ -55,10 +55,9 @@ def _map(options: argparse.Namespace) -> int:
     for axis in axes:
         varied(swim, {axis.name: axis.low})  # what there is not is refused before the map
     scene = Path(options.swim or "falling").stem
-    title = f"{scene}: {axes[0].name} and {axes[1].name}"
-    item = Map(scene, title, axes[0], axes[1], options.points, swim)
-    outputs, progress = Outputs(NAME, options, [scene] if options.page else []), Progress(NAME, "")
-    progress.say(f"{options.points**2} swims, each twice")
+    item = Map(scene, f"{scene}: {axes[0].name} and {axes[1].name}", axes[0], axes[1], options.points, swim)
+    outputs = Outputs(NAME, options, [scene] if options.page else [])
+    Progress(NAME, "").say(f"{options.points**2} swims, each twice")
     found = measure(item)
     print(counts([found]).text())
     for outcome in OUTCOMES[1:]:
@@ -87,12 +86,9 @@ def _parser() -> Parser:
         "the inertia, drift over 100,000 periods, growth out of a plane.",
     )
     add_scene_options(parser)
-    groups = "scene., body., initial., flow., robot. or fins. with a field"
-    own = "amplitude, density_ratio, flow_speed, spin, step, tolerance, resolution"
-    add_repeated(parser, "--over", "NAME=LOW:HIGH", f"a number of the map: of the gait, {groups}, {own}; twice")
-    parser.add_argument(
-        "--study", action="append", choices=STUDIES, metavar="NAME", help=f"one of {', '.join(STUDIES)} (all)"
-    )
-    parser.add_argument("--points", type=int, default=13, metavar="N", help="swims along each side of a map (13)")
+    add_repeated(parser, "--over", "NAME=LOW:HIGH", f"a number of the map: {NAMES}; twice")
+    names = ", ".join(STUDIES)
+    parser.add_argument("--study", action="append", choices=STUDIES, metavar="NAME", help=f"one of {names} (all)")
+    parser.add_argument("--points", type=int, default=9, metavar="N", help="swims along each side of a map (9)")
     add_output_options(parser)
     return parser

@@ -21,8 +21,8 @@ from eel_dynamics.accuracy.accuracy import FINEST, Accuracy
 from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.swim import Swim
-from eel_dynamics.simulation.stopping import SimulationStopped
 
+from eel_studies.reference import attempt
 from eel_studies.varied import varied
 from eel_studies.workers import in_threads
 
@@ -126,8 +126,7 @@ class Measured:
 
 def measure(item: Map) -> Measured:
     """Swim every cell of the map, and once more at a tenth of its target."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # the runs keep them
+    with warnings.catch_warnings(action="ignore"):  # the runs keep them
         return Measured(item, item.values(cell_of))
 
 
@@ -135,20 +134,20 @@ def cell_of(swim_of: Callable[[], Swim]) -> np.ndarray:
     """The cell (`CELL`) of the swim that `swim_of()` gives, unless it is refused."""
     try:
         swim = swim_of()
-        target = getattr(Accuracy.of(swim.accuracy), "target", None) or TARGET
-        run = _swum(swim, target)
     except ValueError as error:
         return _cell(REFUSED, str(error))
-    except SimulationStopped as stop:
-        return _cell(STOPPED, str(stop), steps=stop.run.steps if hasattr(stop, "run") else 0)
+    target = getattr(Accuracy.of(swim.accuracy), "target", None) or TARGET
+    run = _swum(swim, target)
+    if isinstance(run, Exception):
+        own = getattr(run, "run", None)
+        return _cell(REFUSED if isinstance(run, ValueError) else STOPPED, str(run), steps=own.steps if own else 0)
     about: dict[str, Any] = {
         "steps": run.steps,
         "limits": any("ledger" not in text and "error" not in text for text in run.warnings),
     }
-    try:
-        finer = _swum(swim._replace(accuracy=Accuracy.of(max(FINER * target, FINEST))), FINER * target)
-    except (SimulationStopped, ValueError) as stop:
-        return _cell(UNCHECKED, str(stop), **about)
+    finer = _swum(swim._replace(accuracy=Accuracy.of(max(FINER * target, FINEST))), FINER * target)
+    if isinstance(finer, Exception):
+        return _cell(UNCHECKED, str(finer), **about)
     own, others = run.error_estimate, finer.error_estimate
     assert own is not None and others is not None
     apart = relative_errors(run, finer).worst
@@ -168,8 +167,7 @@ def _cell(outcome: str, text: str = "", **about: Any) -> np.ndarray:
     return np.array(tuple(values[name] for name in CELL.names or ()), CELL)
 
 
-def _swum(swim: Swim, target: float) -> Run:
+def _swum(swim: Swim, target: float) -> Run | Exception:
     most = MOST_EVALUATIONS * max(1.0, -np.log10(target)) / min(1.0, float(swim.duration))
-    how: dict[str, Any] = {"most_evaluations": most, "progress": lambda reached, left: None}
-    scene = replace(swim.scene, ledger=True)
-    return swim._replace(scene=scene).run(sample_period=float(swim.duration) / SAMPLES, stations=STATIONS, **how)
+    how = {"sample_period": float(swim.duration) / SAMPLES, "stations": STATIONS, "most_evaluations": most}
+    return attempt(swim._replace(scene=replace(swim.scene, ledger=True)), **how)

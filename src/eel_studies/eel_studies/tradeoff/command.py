@@ -22,14 +22,12 @@ from eel_studies.outputs import Outputs, add_output_options
 from eel_studies.scene_options import add_scene_options, swim_from
 from eel_studies.tradeoff.delivered import COUNT, SEED, deliver, delivered_table, draw_delivered
 from eel_studies.tradeoff.drawing import SIZE, draw_trade
-from eel_studies.tradeoff.measuring import SAMPLE_PERIOD, Trade, affordable, measure
-from eel_studies.tradeoff.page import PARTS, reference_line, write_page
-from eel_studies.tradeoff.price import SWIMS, draw_prices, prices
-from eel_studies.tradeoff.table import asked_table, trade_table, worth_table
+from eel_studies.tradeoff.measuring import SAMPLE_PERIOD, affordable, bare, measure
+from eel_studies.tradeoff.report import PARTS, budget_line, parts_of_page, reference_line, trade_table
 
 NAME = "eel tradeoff"
 DELIVERED = "--delivered"  # as the first option: the other parser
-DELIVERED_PARTS, DELIVERED_SIZE = ("delivered", "errors", "price"), (4.5, 3.6)  # parts of the page; inches
+DELIVERED_PARTS, DELIVERED_SIZE = ("delivered", "errors"), (4.5, 3.6)  # parts of the page; inches
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -47,56 +45,46 @@ def _trade(options: argparse.Namespace) -> int:
     for swim in swims.values():
         if isinstance(swim.duration, float) and not swim.duration >= (least := swim.sample_period or SAMPLE_PERIOD):
             raise ValueError(f"--duration must be >= {least} s, got {swim.duration}")
-    if not options.repeats >= 1:
-        raise ValueError(f"--repeats must be 1 or more, got {options.repeats}")
-    outputs, found = Outputs(NAME, options, PARTS), []
+    _check_least(options, repeats=1)
+    outputs, found, pictures = Outputs(NAME, options, PARTS), [], []
     for name, swim in swims.items():
         progress.say(f"scene {name}")
+        swim = bare(swim)
         trade = measure(swim, *affordable(swim, options.quick, options.repeats), progress.say, name)
         found.append(trade)
-        tables = trade_table(trade, options.all), asked_table(trade), worth_table(trade)
-        print(f"\n{trade.name}, {trade.duration:g} s. {reference_line(trade)}", *(t.text() for t in tables), sep="\n\n")
+        about = f"\n{trade.name}, {trade.duration:g} s. {reference_line(trade)}"
+        print(about, trade_table(trade, options.all).text(), sep="\n\n")
         if budget:
-            print(f"\n{_budget_line(trade, budget)}")
-    pictures = []
-    for trade in found:
-        name, title = f"tradeoff_{trade.name}", f"The trade of the scene {trade.name}"
-        pictures.append(outputs.draw(name, title, partial(draw_trade, trade=trade), SIZE, ("svg", "png")))
+            print(f"\n{budget_line(trade, budget)}")
+        file, title = f"tradeoff_{trade.name}", f"The trade of the scene {trade.name}"
+        pictures.append(outputs.draw(file, title, partial(draw_trade, trade=trade), SIZE, ("svg", "png")))
         if options.csv:
-            path = outputs.folder / f"{name}.csv"
+            path = outputs.folder / f"{file}.csv"
             trade_table(trade, everything=True).write_csv(path)
             print(f"written to {written_as(path)}")
-    write_page(outputs, found, pictures)
+    outputs.write(*parts_of_page(found, pictures))
     return 0
 
 
-def _budget_line(trade: Trade, budget: Budget) -> str:
-    best, asked = trade.within(budget)
-    named = "no preset or target is as fast" if asked is None else f"{asked.accuracy.name} delivers"
-    return f"{budget.name}: {best.accuracy.name} delivers {best.error:.1e}; {named}" + (
-        f" {asked.error:.1e}." if asked else "."
-    )
-
-
 def _deliver(options: argparse.Namespace) -> int:
-    """Measure what the targets deliver; print it, and draw it with the price of a target."""
-    for name, least in (("count", 1), ("seed", 0)):
-        if getattr(options, name) < least:
-            raise ValueError(f"--{name} must be {least} or more, got {getattr(options, name)}")
+    """Measure what the targets deliver; print it, and draw it."""
+    _check_least(options, count=1, seed=0)
     outputs, progress = Outputs(NAME, options, DELIVERED_PARTS), Progress(NAME, "swims")
     trials = deliver(options.count, options.seed, progress.say)
     table = delivered_table(trials)
     print(table.text())
-    found = prices(options.count, options.seed, progress.say)
-    figures = {
-        "delivered": ("Estimated and true errors", lambda figure: draw_delivered(figure, trials)),
-        "price": ("Cost over delivered error", lambda figure: draw_prices(figure, *found)),
-    }
-    pictures = [outputs.draw(name, *each, DELIVERED_SIZE, ("svg", "png")) for name, each in figures.items()]
-    values = {"count": options.count, "seed": options.seed, "swims": len(trials), "priced": min(options.count, SWIMS)}
-    parts = dict(zip(DELIVERED_PARTS, (table.markdown(), *pictures), strict=True))
-    outputs.write(parts, {name: str(value) for name, value in values.items()})
+    draw = partial(draw_delivered, trials=trials)
+    picture = outputs.draw("delivered", "Estimated and true errors", draw, DELIVERED_SIZE, ("svg", "png"))
+    values = {"count": str(options.count), "seed": str(options.seed), "swims": str(len(trials))}
+    outputs.write(dict(zip(DELIVERED_PARTS, (table.markdown(), picture), strict=True)), values)
     return 0
+
+
+def _check_least(options: argparse.Namespace, **least: int) -> None:
+    """`ValueError` for an option below the `least` value that it may have."""
+    for name, low in least.items():
+        if getattr(options, name) < low:
+            raise ValueError(f"--{name} must be {low} or more, got {getattr(options, name)}")
 
 
 def _parser() -> Parser:
@@ -111,7 +99,7 @@ def _parser() -> Parser:
         "--repeats", type=int, default=5, metavar="N", help="rounds of timing, of which the median counts (5)"
     )
     parser.add_argument("--quick", action="store_true", help="a ninth of the settings, for a look")
-    parser.add_argument("--all", action="store_true", help="print every setting, not the fronts and presets alone")
+    parser.add_argument("--all", action="store_true", help="print every setting, not the front and presets alone")
     parser.add_argument("--csv", action="store_true", help="everything measured, as .csv beside the pictures")
     add_output_options(parser)
     parser.add_argument(
@@ -126,8 +114,8 @@ def _parser() -> Parser:
 def _delivered_parser() -> Parser:
     parser = Parser(
         prog=f"{NAME} {DELIVERED}",
-        description="Measure what the targets of accuracy deliver over random swims, how well runs judge their own "
-        "error, and what each target costs.",
+        description="Measure what the targets of accuracy deliver over random swims, and how well runs judge their own "
+        "error.",
     )
     parser.add_argument(DELIVERED, action="store_true", help="this study")
     parser.add_argument("--count", type=int, default=COUNT, help=f"of the random swims ({COUNT})")

@@ -130,16 +130,18 @@ def swims_of(count: int, seed: int) -> list[Swim]:
     return [drawn(np.random.default_rng([seed, index])) for index in range(count)]
 
 
-def delivered_table(trials: list[Trial]) -> Table:
-    """The counts of the trials as a table: a row for the motion alone, for runs with torque, and for all."""
-    groups = {
+def _groups(trials: list[Trial]) -> dict[str, list[Trial]]:
+    """Those of the motion alone, and those with torque."""
+    return {
         "position, motion alone": [each for each in trials if each.estimate.torque is None],
         "position and torque": [each for each in trials if each.estimate.torque is not None],
-        "all": trials,
     }
-    columns = [_cells(part) for part in groups.values()]
-    rows = [(name, *each.values()) for name, each in zip(groups, columns, strict=True)]
-    return Table(("error of", *columns[0]), rows)
+
+
+def delivered_table(trials: list[Trial]) -> Table:
+    """The counts of the trials as a table: a row for each of the groups, and for all."""
+    columns = {name: _cells(part) for name, part in (_groups(trials) | {"all": trials}).items()}
+    return Table(("error of", *columns["all"]), [(name, *each.values()) for name, each in columns.items()])
 
 
 def _cells(trials: list[Trial]) -> dict[str, str]:
@@ -165,8 +167,8 @@ def _cells(trials: list[Trial]) -> dict[str, str]:
 def draw_delivered(figure: Any, trials: list[Trial]) -> None:
     """Draw true errors against estimates, both relative to the target, into an empty matplotlib figure."""
     axes = figure.subplots()
-    for label, torque, marker in (("motion alone", False, "o"), ("with torque", True, "s")):
-        known = [each for each in trials if each.error is not None and (each.estimate.torque is not None) is torque]
+    for marker, (label, part) in zip("os", _groups(trials).items(), strict=True):
+        known = [each for each in part if each.error is not None]
         estimate = [max(each.estimate.worst, LEAST) / each.target for each in known]
         error = [max(each.error.worst, LEAST) / each.target for each in known]
         axes.loglog(estimate, error, marker, markersize=3, alpha=0.6, label=label)

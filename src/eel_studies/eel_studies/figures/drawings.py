@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Figures 5 to 9 of the paper. Each function draws runs of the falling gait into an empty matplotlib figure."""
+"""Figures 5 to 9 of the paper, and two more. Each function draws runs of the falling gait into an empty figure."""
 
 import numpy as np
 from eel_dynamics.runs.run import Run
@@ -9,8 +9,11 @@ from eel_studies.pictures import (
     BLACK,
     BLUE,
     COLOUR_BAR,
+    GREEN,
+    ORANGE,
     OWN,
     PALE_BLUE,
+    PURPLE,
     Axes,
     Figure,
     legend_above,
@@ -141,3 +144,46 @@ def _finish(axes: Axes, label: str) -> None:
     axes.set_ylabel(label)
     axes.axhline(0.0, color=BLACK, linewidth=0.5)
     plain(axes)
+
+
+def draw_torque(figure: Figure, run: Run, *_: object) -> None:
+    """Draw the internal torques C2 and C3 [N m] over time and X, each as a map."""
+    panels = figure.subplots(2, 1, sharex=True)
+    for axes, column, name in zip(panels, (1, 2), ("$C_2$, pitch [N m]", "$C_3$, yaw [N m]"), strict=True):
+        values = wrench_of(run)[1][..., column].T  # (M, T)
+        size = np.max(np.abs(values))
+        levels = np.linspace(-size, size, 20)  # an even number: no line at 0, where the water is still
+        drawn = axes.contourf(run.time, run.x, values, levels=levels, cmap="PuOr")
+        drawn.set_rasterized(True)
+        axes.set_ylabel("$X_1$ [m], nose to tail")
+        axes.invert_yaxis()
+        figure.colorbar(drawn, ax=axes, label=name, pad=0.02, format="%+.2f").ax.set_label(COLOUR_BAR)
+    axes.set_xlabel("time t [s]")
+
+
+def draw_ledger(figure: Figure, run: Run, *_: object) -> None:
+    """Draw the powers [W], the works [J] and the residual [J] of the energy ledger over time."""
+    energy = run.energy
+    assert energy is not None
+    lines = (
+        ("actuator", "actuators", BLUE, "-"),
+        ("drag", "drag along the body", ORANGE, (0, (5, 2))),
+        ("wake", "wake", GREEN, (0, (2, 1.5))),
+        ("nose", "nose", PURPLE, (0, (5, 1.5, 1, 1.5))),
+    )
+    power, work, residual = figure.subplots(3, 1, sharex=True, height_ratios=(1.0, 1.0, 0.6))
+    for name, label, colour, dash in lines:
+        power.plot(run.time, energy[f"{name}_power"], color=colour, linestyle=dash, linewidth=1.3, label=label)
+        work.plot(run.time, energy[f"{name}_work"], color=colour, linestyle=dash, linewidth=1.3, label=f"_{label}")
+    work.plot(run.time, energy.kinetic_body + energy.kinetic_fluid, color=BLACK, linewidth=1.0, label="kinetic energy")
+    left = np.where(energy.residual == 0.0, np.nan, np.abs(energy.residual))  # 0 at the start has no logarithm
+    residual.semilogy(run.time, left, color=BLACK, linewidth=1.0)
+    power.set_ylabel("power into body\nand water [W]")
+    work.set_ylabel("its integral [J]")
+    residual.set_ylabel("|residual| [J]")
+    residual.set_xlabel("time t [s]; grey: pitch bends")
+    legend_above(figure, columns=3)
+    for axes in (power, work, residual):
+        plain(axes)
+    figure.align_ylabels()
+    mark_pitch((power, work))
