@@ -21,7 +21,7 @@ COLUMNS: dict[str, Callable[[Measured], str]] = {  # head: text of a row
     "error of position": lambda row: f"{row.position:.1e}",
     "error of torque": lambda row: f"{row.torque:.1e}",
     "evaluations": lambda row: str(row.run.evaluations),
-    "times real time": lambda row: f"{row.times_real_time:.3g}",
+    "times real time": lambda row: _speed(row),
 }
 WANTED = 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7  # relative errors of the rows of the short table
 PARTS = "digits", "picture", "scenes"  # of the page
@@ -56,7 +56,7 @@ def scenes_table(found: list[Trade]) -> Table:
     for trade in found:
         asked = {row.accuracy.name: row for row in trade.asked}
         cells = [asked.get(name) for name in PRESETS]
-        texts = ("diverges" if row is None else f"{row.error:.0e} at {row.times_real_time:.3g}" for row in cells)
+        texts = ("diverges" if row is None else f"{row.error:.0e} at {_speed(row)}" for row in cells)
         rows.append((f"{trade.name}, {trade.duration:g} s", f"{trade.reference_error:.0e}", *texts))
     return Table(("scene", "reference", *PRESETS), rows)
 
@@ -104,6 +104,11 @@ def machine() -> str:
     except (OSError, StopIteration):
         pass
     return f"one core ({processor}), {date.today()}, the mechanics compiled for {eel_core.build_info()['level']}"
+
+
+def _speed(row: Measured) -> str:
+    """Times real time, to three digits or a whole number."""
+    return f"{row.times_real_time:.{0 if row.times_real_time > 100.0 else 1}f}"
 
 
 def _cells(row: Measured) -> list[str]:
