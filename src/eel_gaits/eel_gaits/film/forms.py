@@ -3,7 +3,7 @@
 
     time_s, point, x_mm, y_mm                  a row for each point; all rows of one time are a frame, head first
     time_s, x0_m, y0_m, x1_m, y1_m ...         a row for each frame
-    scorer / bodyparts / coords                DeepLabCut
+    scorer / bodyparts / coords                DeepLabCut (.csv, and .h5 where pandas and PyTables are installed)
     scorer / individuals / bodyparts / coords  the same, of several animals
     track, frame_idx, instance.score, nose.x   SLEAP's analysis .csv
 
@@ -14,12 +14,13 @@ import csv
 import io
 import itertools
 import re
+from importlib import import_module
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from eel_base.files.input_file import InputFile, Misplaced
-from eel_base.wording import shown
+from eel_base.wording import one_line, shown
 
 from eel_gaits.sources.tables import LARGEST, MOST_BYTES, MOST_NUMBERS, lines_of
 
@@ -40,9 +41,11 @@ class Tracks(NamedTuple):
 
 
 def read_tracks(path: Path) -> Tracks:
-    """The points in a .csv file. `ValueError` names line, column and value of what does not fit."""
+    """The points in a .csv or .h5 file. `ValueError` names line, column and value of what does not fit."""
+    if path.suffix == ".h5":
+        return _of_hdf(path)
     if path.suffix != ".csv":
-        raise ValueError("tracked points must be in a .csv file, which DeepLabCut and SLEAP write too")
+        raise ValueError("tracked points must be in a .csv or .h5 file")
     rows = _rows(path)
     head = [name.strip() for name in rows[0][1]]
     if head[0] == "scorer":
@@ -174,6 +177,31 @@ def _of_parts(frames: np.ndarray, names: list[tuple[str, str, str]], values: np.
     _check_rising(frames)
     notes = (f"{unlikely} points of a likelihood below {LIKELY} count as missing",) if unlikely else ()
     return Tracks(frames, animals, "px", True, notes)
+
+
+def _of_hdf(path: Path) -> Tracks:
+    try:
+        import_module("tables")  # what pandas reads .h5 with
+        pandas = import_module("pandas")
+    except ImportError:
+        raise ValueError(
+            "an .h5 file of DeepLabCut needs pandas and PyTables (pip install pandas tables); its .csv needs neither"
+        ) from None
+    with InputFile(path, MOST_BYTES):
+        pass
+    try:
+        return tracks_of_frame(pandas.read_hdf(path))
+    except Exception as error:  # PyTables' own, KeyError, and what its pickles raise
+        raise ValueError(f"it cannot be read as HDF5 of DeepLabCut: {one_line(error)}") from None
+
+
+def tracks_of_frame(frame: Any) -> Tracks:
+    """Tracks of DeepLabCut's `pandas.DataFrame`: columns of the levels scorer, (individuals,) bodyparts, coords."""
+    levels = list(frame.columns.names)
+    if levels[-2:] != ["bodyparts", "coords"]:
+        raise ValueError(f"a DeepLabCut table must have columns of scorer, bodyparts and coords, got {shown(levels)}")
+    names = [(name[1] if len(name) == 4 else "", name[-2], name[-1]) for name in frame.columns]
+    return _of_parts(np.arange(len(frame), dtype=float), names, frame.to_numpy(dtype=float))
 
 
 def _of_sleap(head: list[str], rows: list[tuple[int, list[str]]]) -> Tracks:
