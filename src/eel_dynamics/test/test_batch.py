@@ -161,7 +161,7 @@ def test_progress_reaches_the_end():
         ({"scenes": [Scene(), None]}, ("scenes\\[1\\]", "None")),
         ({"positions": np.zeros((2, 2))}, ("positions\\[0\\]", "3 numbers")),
         ({"twists": [[0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, np.nan]]}, ("twists\\[1\\]", "nan")),
-        ({"orientations": [0, 0, 0, 2]}, ("orientations", "unit")),
+        ({"orientations": [0, 0, 0, 2]}, ("orientation", "unit")),
         ({"accuracy": [1e-2, "quick"], "laws": [straight()] * 2}, ("accuracy", "quick")),
         ({"scenes": [Scene(), Scene(planar=True)]}, ("swimmer 1", "pitch")),
         ({"threads": 0}, ("threads", "0")),

@@ -10,11 +10,11 @@ import numpy as np
 from eel_base.wording import not_one_of, one_line, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.simulation.commanded_robots import CommandedRobots
-from eel_dynamics.simulation.head_motion import level_orientation
 from eel_dynamics.simulation.sampled_swimmers import LEFT_OUT, Array, SampledSwimmers
 from eel_gaits.pilot.head_motion import HeadMotion
 from eel_model.body.body import Body
 from eel_model.flow.flow import Flow
+from eel_model.initial_state import level_orientation
 from eel_model.scene import Scene
 
 from eel_gym.episode_recording import EpisodeRecording

@@ -21,12 +21,12 @@ SIGNS = {  # of the components of what is observed, under the half turn
 
 def turn_vector(vector: ArrayLike) -> np.ndarray:
     """Components (-x, -y, z) of `vector`, shape (..., 3), after a half turn of its axes about z. Its own inverse."""
-    return np.asarray(vector, dtype=float) * VECTOR + 0.0  # + 0.0: no minus zero
+    return np.asarray(np.asarray(vector, dtype=float) * VECTOR + 0.0)  # + 0.0: no minus zero
 
 
 def turn_quaternion(quaternion: ArrayLike) -> np.ndarray:
     """Orientation `quaternion`, (..., 4) x y z w, after a half turn of the axes of world and body. Its own inverse."""
-    return np.asarray(quaternion, dtype=float) * QUATERNION + 0.0
+    return np.asarray(np.asarray(quaternion, dtype=float) * QUATERNION + 0.0)
 
 
 def with_section_axes(orientation: np.ndarray) -> np.ndarray:

@@ -2,11 +2,12 @@
 """Equality of objects that hold arrays: every number the same to the last bit, NaN equal to NaN."""
 
 from dataclasses import fields
+from typing import Any
 
 import numpy as np
 
 
-def same(one, other) -> bool:
+def same(one: Any, other: Any) -> bool:
     """Whether two values are equal: numbers, texts, arrays, errors, and dicts, tuples and lists of such values."""
     if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
         return _same_arrays(one, other)
@@ -20,17 +21,17 @@ def same(one, other) -> bool:
         return one.keys() == other.keys() and all(same(one[name], other[name]) for name in one)
     if isinstance(one, (tuple, list)):
         return len(one) == len(other) and all(map(same, one, other))
-    return one == other
+    return bool(one == other)
 
 
-def same_fields(one, other) -> bool:
+def same_fields(one: Any, other: Any) -> bool:
     """Whether two dataclass instances are of one class, and all their fields are the same."""
     return type(one) is type(other) and all(
         same(getattr(one, item.name), getattr(other, item.name)) for item in fields(one)
     )
 
 
-def _same_arrays(one, other) -> bool:
+def _same_arrays(one: Any, other: Any) -> bool:
     if not (isinstance(one, np.ndarray) and isinstance(other, np.ndarray)):
         return False
     return one.dtype == other.dtype and np.array_equal(one, other, equal_nan=one.dtype.kind == "f")

@@ -8,13 +8,18 @@ less than four digits of an acceleration in double precision, and counts as sing
 
 import numpy as np
 
+from eel_model.body.grid import Grid
+from eel_model.section_data import SectionData
+
 MOST = 1e12
 PART = 0.25  # of a singular direction, from which a degree of freedom is named
 FREEDOMS = "roll", "pitch", "yaw", "surge", "sway", "heave"
 PLANE = 2, 3, 4
 
 
-def straight_inertia(grid, sections, nose_mass: float, length: float, offset: bool = False) -> np.ndarray:
+def straight_inertia(
+    grid: Grid, sections: SectionData, nose_mass: float, length: float, offset: bool = False
+) -> np.ndarray:
     """Inertia (6, 6) [kg] of a straight body about the head, rotation first.
 
     sections: `SectionData` at the nodes of `grid`. nose_mass: m_o [kg]. length [m]: of the body. offset: its centre of
@@ -50,7 +55,9 @@ def condition_of(matrix: np.ndarray) -> float:
     return float(value[-1] / value[0]) if value[0] > 0.0 else np.inf
 
 
-def check_inertia(grid, sections, nose_mass: float, length: float, planar: bool, offset: bool = False):
+def check_inertia(
+    grid: Grid, sections: SectionData, nose_mass: float, length: float, planar: bool, offset: bool = False
+) -> None:
     """`ValueError` that names the degrees of freedom without inertia. Arguments as in `straight_inertia`."""
     free = list(PLANE) if planar else list(range(6))
     matrix = straight_inertia(grid, sections, nose_mass, length, offset)[np.ix_(free, free)]

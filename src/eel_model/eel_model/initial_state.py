@@ -8,6 +8,8 @@ import numpy as np
 from eel_base.attitude import unit_quaternion, world_from_body
 from eel_base.quantity import checked_row
 from eel_base.wording import shown
+from eel_gaits.pilot.head_motion import HeadMotion
+from numpy.typing import ArrayLike
 
 
 class InitialState(NamedTuple):
@@ -33,6 +35,16 @@ class InitialState(NamedTuple):
         return self._replace(twist=twist)
 
 
+def head_motion_of(head: InitialState) -> HeadMotion:
+    """The motion of a simulation's `head`, as on the topic `odom`: a controller that works here drives the node too."""
+    return HeadMotion(head.position, head.orientation, head.twist[:3], head.twist[3:])
+
+
+def level_orientation(heading: float) -> tuple[float, float, float, float]:
+    """The orientation (x, y, z, w) of a level head with this `heading` [rad]."""
+    return 0.0, 0.0, math.sin(0.5 * heading), math.cos(0.5 * heading)
+
+
 def time_scale(twist: np.ndarray, length: float) -> float:
     """The shorter time [s] in which a `twist` (6,) moves a body by its `length` [m] or turns it by 1 rad."""
     a, b, c, u, v, w = twist.tolist()
@@ -40,12 +52,12 @@ def time_scale(twist: np.ndarray, length: float) -> float:
     return min(length / speed if speed else np.inf, 1.0 / spin if spin else np.inf)
 
 
-def checked_quaternion(name: str, quaternion) -> np.ndarray:
+def checked_quaternion(name: str, quaternion: ArrayLike) -> np.ndarray:
     """`quaternion` (x, y, z, w) as an array (4,), normalised (`unit_quaternion`)."""
     return np.array(unit_quaternion(name, checked_row(name, quaternion, 4).tolist()))
 
 
-def check_planar(position, orientation, twist):
+def check_planar(position: np.ndarray, orientation: np.ndarray, twist: np.ndarray) -> None:
     """`ValueError` unless the initial state lies in the plane z = const and stays there."""
     x, y, _, _ = orientation.tolist()
     if abs(x) > 1e-12 or abs(y) > 1e-12:

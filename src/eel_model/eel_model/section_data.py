@@ -35,7 +35,9 @@ TAYLOR = 5.4  # of the friction along a cylinder in oblique flow: eel_core/model
 CRITICAL_REYNOLDS = 8.0e4  # Reynolds number at which the printed friction law jumps from laminar to turbulent
 
 
-def added_masses(body: Body, scene: Scene, a_squared, b_squared):
+def added_masses(
+    body: Body, scene: Scene, a_squared: np.ndarray, b_squared: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Added masses of a section: M_f along E2 and E3 [kg/m], and J_f1 [kg m] (eq. 37).
 
     They are zero where the scene is not reactive. a_squared, b_squared: squares of the half-axes [m^2].
@@ -46,7 +48,7 @@ def added_masses(body: Body, scene: Scene, a_squared, b_squared):
     return lateral, rho * np.pi * along3, rho * np.pi / 8.0 * (a_squared - b_squared) ** 2
 
 
-def swept_water(body: Body, scene: Scene, x: np.ndarray):
+def swept_water(body: Body, scene: Scene, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The added masses (n,) of the water that is swept past the sections at `x` (n,) [m]."""
     return added_masses(body, scene, body.half_height(x) ** 2, body.half_width(x) ** 2)
 
@@ -93,7 +95,9 @@ class StationData(NamedTuple):
     added2_slope: np.ndarray  # (M,) kg/m^2, derivative of `added2` by X
     added3_slope: np.ndarray  # (M,) kg/m^2
     added_roll_slope: np.ndarray  # (M,) kg
-    missed: np.ndarray | tuple  # (14, M, p_max) for each of `PARTS`: what the rows of `points` miss, times m; or none
+    missed: (
+        np.ndarray | tuple[()]
+    )  # (14, M, p_max) for each of `PARTS`: what the rows of `points` miss, times m; or none
 
 
 def nose_of(body: Body, scene: Scene) -> tuple[float, float]:
@@ -105,7 +109,7 @@ def nose_of(body: Body, scene: Scene) -> tuple[float, float]:
 
 
 def core_swimmer(
-    body: Body, scene: Scene, grid: Grid, sections: SectionData, x, kinks: str, fins: tuple[Fin, ...] = ()
+    body: Body, scene: Scene, grid: Grid, sections: SectionData, x: np.ndarray, kinks: str, fins: tuple[Fin, ...] = ()
 ) -> eel_core.Swimmer:
     """`body` in `scene` for the compiled mechanics: the `sections` at the nodes of `grid`, and stations at `x` (M,)
     [m]; `kinks`: which of the drag's are integrated exactly (`Accuracy`)."""
@@ -136,14 +140,17 @@ def core_swimmer(
     )
 
 
-def missed_drag_of(body: Body, scene: Scene, grid: Grid, sections: SectionData):
+def missed_drag_of(body: Body, scene: Scene, grid: Grid, sections: SectionData) -> np.ndarray | tuple[()]:
     """What the integrals of the drag up to a kink miss: (3, K, n), or nothing for a body that is smooth."""
     if not (len(body.breaks) and scene.resistive):
         return ()
-    of_drag = lambda table: np.array([table.drag2, table.drag3, table.drag_roll])  # noqa: E731
     angle = np.linspace(0.0, np.pi, 1 + PLACES * grid.matrix.shape[1])
-    field = lambda x: of_drag(sections_of(body, scene, x))  # noqa: E731
-    return missed_within(field, of_drag(sections), grid, body.breaks, 0.5 - 0.5 * np.cos(angle))
+    places = 0.5 - 0.5 * np.cos(angle)
+    return missed_within(lambda x: _drags(sections_of(body, scene, x)), _drags(sections), grid, body.breaks, places)
+
+
+def _drags(sections: SectionData) -> np.ndarray:
+    return np.array([sections.drag2, sections.drag3, sections.drag_roll])
 
 
 def weight_time(scene: Scene, sections: SectionData, weight: np.ndarray, length: float) -> float:
@@ -176,7 +183,7 @@ def check_weight(body: Body, scene: Scene, sections: SectionData, weight: np.nda
 
 def stations_of(body: Body, scene: Scene, grid: Grid, nodes: SectionData, x: np.ndarray) -> StationData:
     """Tabulate `body` in `scene` at the stations `x` (M,) [m]; `nodes`: the sections at the nodes of `grid`."""
-    missed: np.ndarray | tuple = ()
+    missed: np.ndarray | tuple[()] = ()
     if len(body.breaks):
         missed = missed_before(lambda at: _parts(sections_of(body, scene, at)), _parts(nodes), grid, body.breaks, x)
     a_squared, b_squared, a_slope, b_slope = _squares_at(body, x.tobytes())
@@ -199,7 +206,7 @@ def _parts(sections: SectionData) -> np.ndarray:
 
 
 @lru_cache(maxsize=64)
-def _squares_at(body: Body, x: bytes) -> tuple:
+def _squares_at(body: Body, x: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """`Body.squares` at the stations, which all runs and companions of a body share."""
     return body.squares(np.frombuffer(x))
 

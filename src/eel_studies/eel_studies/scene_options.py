@@ -6,11 +6,11 @@ from pathlib import Path
 
 from eel_base.command.command_line import Parser
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.commands.options import add_options, body_of, scene_of, set_numbers
+from eel_dynamics.commands.options import add_options, scene_of, set_numbers
 from eel_dynamics.runs.scene_file import SUFFIXES, load_scene
 from eel_dynamics.runs.swim import Swim
 from eel_gaits.gaits.settings import Settings
-from eel_model.body.body import Body
+from eel_model.body.body import Body, body_of
 from eel_model.fins.text import fins_from_text
 from eel_model.scene import Scene
 

@@ -19,7 +19,7 @@ from eel_dynamics.analysis.peaks import peaks, torque_size
 from eel_dynamics.analysis.powers import area, drag_powers, power_density, torque_of
 from eel_dynamics.analysis.settling import FEWEST, SETTLED, change_of
 
-AT_REST = 1e-9  # of the body's length in a period: slower is round-off, and no motion
+STILL = 1e-9  # of the body's length in a period: slower is round-off, and no motion
 
 
 class Analysis:
@@ -69,7 +69,7 @@ class Analysis:
     @property
     def moves(self) -> bool:
         """Whether the swimmer moves by more than round-off."""
-        return self.mean_speed > AT_REST * self.run.body.length / self.window.period
+        return self.mean_speed > STILL * self.run.body.length / self.window.period
 
     @property
     def frequency(self) -> float:

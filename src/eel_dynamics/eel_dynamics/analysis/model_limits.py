@@ -20,9 +20,10 @@ by t1 (1 + K2 z - K3 y) per length, which must stay positive out to the skin.
 """
 
 import numpy as np
+from eel_base.attitude import world_from_body
 from eel_model.axes import REP103
 
-from eel_dynamics.analysis.analysis import Analysis
+from eel_dynamics.analysis.analysis import STILL, Analysis
 
 LEAST_SLENDERNESS = 5.0
 LEAST_REYNOLDS = 1e3
@@ -33,7 +34,6 @@ LOOKS, PLACES = 32, 13  # instants and stations at which that is looked at
 TAIL_LEADS = 0.25  # share of the time
 APART = 4.0  # half-axes along the body, beyond which two sections are not neighbours
 COINCIDENT = 1e-9  # of the body's length: centres of sections at one place
-AT_REST = 1e-9  # of the body's length, over the whole time: round-off
 TINY = float(np.finfo(float).tiny)
 AT_ONCE = 64  # instants whose pairs of sections are looked at together
 
@@ -192,7 +192,7 @@ def warnings_of(run) -> tuple[str, ...]:
     limits = ModelLimits(run.body, run.scene, run.x)
     later, speed = _later_half(run)
     placed = run if run.flow is None else run.in_axes(REP103)
-    floor = run.body_mass * (AT_REST * run.body.length / max(run.time[-1] - run.time[0], TINY)) ** 2
+    floor = run.body_mass * (STILL * run.body.length / max(run.time[-1] - run.time[0], TINY)) ** 2
     found = [
         limits.of_body(),
         limits.of_bending(run.time, run.curvature),
@@ -212,10 +212,8 @@ def ledger_tolerance(target: float | None) -> float:
 
 def cross_axes(orientation) -> tuple[np.ndarray, np.ndarray]:
     """Directions left and up of sections, (..., 3) each, in the world, from their orientation (..., 4) x y z w."""
-    x, y, z, w = np.moveaxis(np.asarray(orientation), -1, 0)
-    side = np.stack((2.0 * (x * y - z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + x * w)), axis=-1)
-    up = np.stack((2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y)), axis=-1)
-    return side, up
+    axes = world_from_body(orientation)
+    return axes[..., 1], axes[..., 2]
 
 
 def _later_half(run) -> tuple[np.ndarray, float]:
@@ -229,5 +227,5 @@ def _later_half(run) -> tuple[np.ndarray, float]:
         if swims or len(time) < 2:
             return later, 0.0
         way = float(np.linalg.norm(centre[-1] - centre[0]))
-        return later, way / (time[-1] - time[0]) if way > AT_REST * run.body.length else 0.0
+        return later, way / (time[-1] - time[0]) if way > STILL * run.body.length else 0.0
     return analysis.window.inside, analysis.mean_speed if analysis.moves else 0.0

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks the arguments of `simulate_batch`, and broadcasts them to its swimmers."""
 
-from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from eel_base.quantity import checked_instance, checked_row, numbers, positive
@@ -9,11 +9,8 @@ from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.body.body import Body
-from eel_model.fins.fins import checked_fins
 from eel_model.flow.flow import Flow
-from eel_model.initial_state import InitialState, check_planar, checked_quaternion
-from eel_model.robot.compiled import mode_table
-from eel_model.robot.robot import Robot, checked_robot
+from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
@@ -21,7 +18,6 @@ from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.runs.motions import LAWS
 from eel_dynamics.simulation.simulation_setup import (
     SimulationSetup,
-    check_flow,
     check_planar_law,
     checked_stations,
 )
@@ -55,21 +51,23 @@ def swimmers_of(
         flows=[None] if flows is None else _several("flows", flows, (Flow, type(None))),
         robots=[None] if robots is None else _several("robots", robots, (Robot, type(None))),
         fins=_lists(fins),
-        positions=_rows("positions", positions, lambda name, row: checked_row(name, row, 3)),
-        orientations=_rows("orientations", orientations, checked_quaternion),
-        twists=_rows("twists", twists, lambda name, row: checked_row(name, row, 6)),
+        positions=_rows("positions", positions, 3),
+        orientations=_rows("orientations", orientations, 4),
+        twists=_rows("twists", twists, 6),
     )
     most = positive("most_evaluations", most_evaluations, "per simulated second")
     x = {length: checked_stations(stations, length) for length in dict.fromkeys(body.length for body in bodies)}
+    names = "body", "scene", "accuracy", "flow", "robot", "fins"
     swimmers = []
-    for index, (law, body, scene, accuracy, flow, robot, own, *state) in enumerate(
-        zip(laws, bodies, scenes, settings, flows, robots, fins, *states, strict=True)
-    ):
-        initial = InitialState(*state)
-        _check_swimmer(index, law, scene, flow, initial)
-        robot, own = _checked_robot_and_fins(index, robot, own, body, scene)
-        setup = SimulationSetup(body, scene, accuracy, x[body.length], initial, most_evaluations=most, flow=flow)
-        setup = replace(setup, robot=robot, fins=own)
+    for index, (law, *own) in enumerate(zip(laws, bodies, scenes, settings, flows, robots, fins, strict=True)):
+        more: dict[str, Any] = dict(zip(names, own, strict=True)) | {"stations": x[own[0].length]}
+        state = tuple(rows[index] for rows in states)
+        try:
+            setup = SimulationSetup.of(initial_state=state, most_evaluations=most, **more)
+            if setup.scene.planar:
+                check_planar_law(law)
+        except ValueError as error:
+            raise ValueError(f"swimmer {index}: {error}") from None
         swimmers.append((law, setup))
     return swimmers
 
@@ -101,28 +99,8 @@ def _lists(fins) -> list:
     return list(fins) if several else [fins]
 
 
-def _rows(name: str, values, check) -> list[np.ndarray]:
+def _rows(name: str, values, size: int) -> list[np.ndarray]:
     array = numbers(name, values)
     if array.ndim == 1:
-        return [check(name, array)]
-    return [check(f"{name}[{index}]", row) for index, row in enumerate(np.atleast_1d(array))]
-
-
-def _checked_robot_and_fins(index: int, robot: Robot | None, fins, body: Body, scene: Scene):
-    try:
-        robot, fins = checked_robot(robot), checked_fins(fins, body, scene)
-        if robot is not None:
-            mode_table(robot, body, bool(scene.planar))
-    except ValueError as error:
-        raise ValueError(f"swimmer {index}: {error}") from None
-    return robot, fins
-
-
-def _check_swimmer(index: int, law: Law | SampledLaw, scene: Scene, flow: Flow | None, initial: InitialState):
-    try:
-        if scene.planar:
-            check_planar(*initial)
-            check_planar_law(law)
-        check_flow(flow, scene, initial)
-    except ValueError as error:
-        raise ValueError(f"swimmer {index}: {error}") from None
+        return [checked_row(name, array, size)]
+    return [checked_row(f"{name}[{index}]", row, size) for index, row in enumerate(np.atleast_1d(array))]

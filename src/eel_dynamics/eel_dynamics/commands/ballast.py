@@ -9,10 +9,10 @@ import numpy as np
 from eel_base.command.command_line import Parser
 from eel_base.command.run_command import checked_out, run_command
 from eel_base.files.output_file import written_as
-from eel_model.body.body import COLUMNS, MASSES, Body
+from eel_model.body.body import COLUMNS, MASSES, Body, body_of
 
 from eel_dynamics.analysis.trim import ballast_for, trim_of
-from eel_dynamics.commands.options import add_options, body_of, scene_of
+from eel_dynamics.commands.options import add_options, scene_of
 from eel_dynamics.runs.storage.tables import write_columns
 
 NAME = "eel ballast"

@@ -8,14 +8,13 @@ import argparse
 import inspect
 from collections.abc import Callable
 from dataclasses import fields, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from eel_base.command.command_line import Parser
 from eel_base.wording import did_you_mean, shown
 from eel_gaits.gaits.registry import GAITS, find
-from eel_model.body.body import NAMED, Body
+from eel_model.body.body import NAMED
 from eel_model.flow.text import NAMES
 from eel_model.robot.ready import READY
 from eel_model.scene import Scene
@@ -103,11 +102,6 @@ def duration_option(text: str) -> float | str:
         raise argparse.ArgumentTypeError(
             f"must be a number of seconds, or {UNTIL_SETTLED}, got {shown(text)}"
         ) from None
-
-
-def body_of(text: str) -> Body:
-    """The body that --body gives: a name, or a file. `ValueError` where it does not fit; `OSError`: not readable."""
-    return Body.from_file(text) if Path(text).suffix else Body.named(text)
 
 
 def scene_of(texts: list[str], base: Scene | None = None) -> Scene:

@@ -28,16 +28,16 @@ from eel_gaits.gaits.sequence_file import sequence_from_file
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.motion_file import read_motion
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.body.body import Body
+from eel_model.body.body import Body, body_of
 from eel_model.fins.text import fins_from_text
 from eel_model.flow.text import flow_from_text
 from eel_model.robot.robot import robot_of
 from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
-from eel_dynamics.analysis.actuators import MOST_JOINTS
+from eel_dynamics.analysis.joint_demand import MOST_JOINTS
 from eel_dynamics.commands.filmed import EEL, add_film_options, beat_from, body_for, effect_of_fit
-from eel_dynamics.commands.options import add_options, body_of, scene_of, set_numbers
+from eel_dynamics.commands.options import add_options, scene_of, set_numbers
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.scene_file import SUFFIXES as SCENES
 from eel_dynamics.runs.scene_file import load_scene

@@ -6,6 +6,7 @@ from dataclasses import Field, fields, replace
 from typing import Any
 
 from eel_base.quantity import checked
+from eel_model.body.body import body_of
 from eel_model.flow.plain import flow_of
 from eel_model.flow.text import flow_from_text, text_of_flow
 from eel_model.robot.robot import robot_of
@@ -18,7 +19,6 @@ from rclpy.parameter import Parameter
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.ros.parameters import FRAMES, ROOT, DynamicsParameters
-from eel_dynamics.ros.simulation_from_parameters import body_of
 
 SCENE, FLOW, USE_SIM_TIME = "scene.", "flow.", "use_sim_time"
 

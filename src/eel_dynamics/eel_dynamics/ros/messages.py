@@ -31,7 +31,7 @@ from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
 from eel_dynamics.accuracy.error_estimate import HeadErrors
-from eel_dynamics.analysis.actuators import Joints
+from eel_dynamics.analysis.joint_demand import Joints
 from eel_dynamics.curvature.curvature_samples import LateSample, check_points
 from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
 from eel_dynamics.runs.exchange.messages_of_run import fields_of_fins, fields_of_joints, outline

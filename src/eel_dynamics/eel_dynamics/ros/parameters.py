@@ -15,7 +15,7 @@ from eel_base.quantity import AT_RESET, Quantities, quantity
 from eel_base.wording import shown
 
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
-from eel_dynamics.analysis.actuators import MOST_JOINTS
+from eel_dynamics.analysis.joint_demand import MOST_JOINTS
 
 FRAMES = ("world_frame", "head_frame", "section_frame")
 NOW: dict[str, Any] = {"changeable": True}  # a change acts at once

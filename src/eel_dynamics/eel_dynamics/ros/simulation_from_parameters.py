@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes the simulation from the node's parameters."""
 
-from pathlib import Path
-
-from eel_model.body.body import Body
+from eel_model.body.body import body_of
 from eel_model.fins.text import fins_from_text
 from eel_model.flow.text import flow_from_text
 from eel_model.robot.robot import robot_of
@@ -32,8 +30,3 @@ def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene) -> 
         flow=flow_from_text(parameters.flow),
         fins=fins_from_text(parameters.fins),
     )
-
-
-def body_of(name: str) -> Body:
-    """The body of this name, or from this file. `ValueError` or `OSError` if there is none."""
-    return Body.from_file(name) if Path(name).suffix in (".csv", ".npz") else Body.named(name)

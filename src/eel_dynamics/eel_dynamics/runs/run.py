@@ -13,8 +13,8 @@ from eel_model.body.body import Body
 from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
 
-from eel_dynamics.analysis.actuators import Actuators, actuators_of
 from eel_dynamics.analysis.analysis import Analysis
+from eel_dynamics.analysis.joint_demand import Actuators, actuators_of
 from eel_dynamics.analysis.model_limits import warnings_of
 from eel_dynamics.analysis.peaks import FINER, MOST_SAMPLES, greatest_torque_of
 from eel_dynamics.analysis.run_summary import describe

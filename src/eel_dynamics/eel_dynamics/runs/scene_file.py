@@ -31,10 +31,10 @@ from eel_base.files.yaml_tree import read_yaml
 from eel_base.quantity import checked_instance, checked_row, positive
 from eel_base.wording import did_you_mean, shown
 from eel_gaits.gaits.settings import SEQUENCES, Settings
-from eel_model.body.body import Body
+from eel_model.body.body import Body, body_of
 from eel_model.fins.text import fins_from_text, text_of_fins
 from eel_model.flow.text import flow_from_text, text_of_flow
-from eel_model.robot.robot import Robot
+from eel_model.robot.robot import robot_of
 from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
@@ -93,9 +93,8 @@ def words_of(swim: Swim) -> dict[str, Any]:
 
 
 def _body(swim: Swim, value: Any) -> dict[str, Any]:
-    from_file = bool(Path(checked_instance("body", value, str)).suffix)
-    body = Body.from_file(value) if from_file else Body.named(value)
-    return {"body": body, "body_file": value if from_file else ""}
+    body = body_of(checked_instance("body", value, str))
+    return {"body": body, "body_file": value if Path(value).suffix else ""}
 
 
 def _plain_body(swim: Swim) -> str:
@@ -135,9 +134,9 @@ def _plain_flow(swim: Swim) -> str:
 
 
 def _robot(swim: Swim, value: Any) -> dict[str, Any]:
-    from_file = bool(Path(checked_instance("robot", value, str)).suffix)
-    robot = Robot.from_file(value) if from_file else Robot.named(value)
-    return {"robot": robot, "robot_file": value if from_file else "", "body": robot.body or swim.body}
+    robot = robot_of(checked_instance("robot", value, str))
+    own = None if robot is None else robot.body
+    return {"robot": robot, "robot_file": value if Path(value).suffix else "", "body": own or swim.body}
 
 
 def _plain_robot(swim: Swim) -> str:

@@ -8,7 +8,7 @@ from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 
 from eel_dynamics.accuracy.accuracy import PRESETS, Accuracy
-from eel_dynamics.analysis.analysis import AT_REST
+from eel_dynamics.analysis.analysis import STILL
 from eel_dynamics.analysis.averaging_window import PLACES, common_period
 from eel_dynamics.analysis.settling import FEWEST, SETTLED, change_of
 from eel_dynamics.simulation.simulation import Simulation
@@ -62,7 +62,7 @@ def settling_time(law, setup: SimulationSetup) -> float:
         if window < FEWEST or (count - window) * period < last_ramp * (1.0 - 1e-9):
             continue
         speeds = np.linalg.norm(np.diff(centre[-window - 1 :], axis=0), axis=1)
-        moves = np.max(speeds) > AT_REST * setup.body.length
+        moves = np.max(speeds) > STILL * setup.body.length
         if moves and change_of(speeds) > MARGIN * SETTLED:
             continue
         works = np.diff(work[-window - 1 :])

@@ -17,35 +17,30 @@ from eel_gaits.gaits.swimming import straight
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.body.body import Body
-from eel_model.body.grid import Grid
 from eel_model.fins.fins import Fin, checked_commands
 from eel_model.flow.flow import Flow
 from eel_model.flow.stream import CurrentStream
-from eel_model.initial_state import InitialState
 from eel_model.robot.actuators import Servo
 from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
 from numpy.typing import ArrayLike
 
-import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy, within_budget
 from eel_dynamics.accuracy.budget import Budget
-from eel_dynamics.accuracy.error_estimate import ErrorEstimate, HeadErrors
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 from eel_dynamics.simulation.bending.bent_march import march_of
-from eel_dynamics.simulation.bending.joint_motion import JointMotion
-from eel_dynamics.simulation.discretisation import Discretisation
 from eel_dynamics.simulation.energy import WORKS
 from eel_dynamics.simulation.error_meter import ErrorMeter
 from eel_dynamics.simulation.march import March
-from eel_dynamics.simulation.observations import Observations, Snapshot
+from eel_dynamics.simulation.observations import Observations
+from eel_dynamics.simulation.present import Present
 from eel_dynamics.simulation.simulation_setup import SimulationSetup, checked_state
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 
-class Simulation:
+class Simulation(Present):
     """One swimmer, from its initial state on. Adopt a law (or add samples), advance, observe.
 
     `ValueError` names the argument that does not fit.
@@ -109,67 +104,7 @@ class Simulation:
         self.currents = CurrentStream(setup.default_transition)
         self._meter = ErrorMeter(self._march) if measure_error else None
 
-    @property
-    def time(self) -> float:
-        """Present time [s]."""
-        return self._march.time
-
-    @property
-    def state(self) -> np.ndarray:
-        """(13,) position, orientation, momentum about the head, in the world's axes."""
-        return np.array(self._march.core.state)
-
-    @property
-    def setup(self) -> SimulationSetup:
-        """What neither a march nor a reset changes."""
-        return self._setup
-
-    @property
-    def accuracy(self) -> Accuracy:
-        """The settings in force."""
-        return self._setup.settings
-
-    @property
-    def fins(self) -> tuple[Fin, ...]:
-        """The fins, each of a pair by itself."""
-        return self._setup.fins
-
-    @property
-    def grid(self) -> Grid:
-        """The nodes along the body."""
-        return self.discretisation.grid
-
-    @property
-    def discretisation(self) -> Discretisation:
-        """Body and scene on the grid."""
-        return self._march.discretisation
-
     # -- law and samples
-
-    @property
-    def law(self) -> Law | SampledLaw | None:
-        """The law in force, or the last one before a controller took over."""
-        return self._march.follower.law
-
-    @property
-    def law_on_grid(self) -> eel_core.LawOnGrid:
-        """The law or the samples that drive the body, on the grid."""
-        return self._march.law_on_grid
-
-    @property
-    def samples_until(self) -> float | None:
-        """Last instant [s] of a controller's samples, or None where there are none."""
-        return self._march.follower.samples.end
-
-    @property
-    def sampled(self) -> bool:
-        """Whether a controller's samples drive the shape at present."""
-        return self._march.follower.sampled
-
-    @property
-    def resting(self) -> bool:
-        """Whether a controller's samples have run out, so that the shape comes to rest."""
-        return self._march.follower.resting
 
     def adopt(self, law: Law | SampledLaw, origin: float = 0.0, transition: float | None = None) -> None:
         """Follow `law` from the present time on. `origin` [s] is the simulation time of its own t = 0.
@@ -256,16 +191,6 @@ class Simulation:
         """
         angles = checked_commands(self._setup.fins, commands)
         self._on_both(lambda march: march.command_fins(angles))
-
-    def water_at(self, place: ArrayLike) -> np.ndarray:
-        """Velocity (3,) [m/s], world, that the water has at a `place` (3,) [m] at present, without the swimmer."""
-        u = None if self.flow is None else self.flow.sample(place, self.time).velocity
-        return self._setup.current if u is None else self._setup.current + u
-
-    @property
-    def flow(self) -> Flow | None:
-        """How the water moves at present, beside the scene's current."""
-        return self._march.setup.flow
 
     def command(
         self,
@@ -360,23 +285,6 @@ class Simulation:
         if self._meter is not None:
             self._meter.restart(self._march)
 
-    # -- observe
-
-    def observe(self, wrench: bool = True, load: bool = True) -> Snapshot:
-        """The snapshot of the present instant.
-
-        wrench, load: whether it holds the internal wrench, and the water's load along the body.
-        """
-        return self._march.observe(wrench, load)
-
-    @property
-    def head(self) -> InitialState:
-        """Position (3,) [m], orientation (4,) and twist (6,) of the head at present, as `set_state` takes them.
-
-        It costs a tenth of `observe`.
-        """
-        return self._march.head
-
     def record(
         self,
         times: np.ndarray,
@@ -402,62 +310,6 @@ class Simulation:
         if self._meter is not None:
             self._meter.compare(self._march)
         return out, works, *recorded
-
-    @property
-    def joints(self) -> JointMotion | None:
-        """The motion of a robot's joints at the samples of the last `record`; None without one."""
-        joints: JointMotion | None = self._march.joints
-        return joints
-
-    @property
-    def energy_at_start(self) -> float:
-        """Kinetic and potential energy [J] in the initial state."""
-        return self._march.energy_at_start
-
-    @property
-    def works(self) -> np.ndarray:
-        """(6,) J of actuators, wake, nose, drag, flow and fins since the start."""
-        return np.array(self._march.core.works)
-
-    @property
-    def evaluations(self) -> tuple[int, int, int]:
-        """Numbers of steps, rejected steps and evaluations of the head's dynamics so far."""
-        counts: tuple[int, int, int] = self._march.core.counts
-        return counts
-
-    # -- error, where it is measured (`measure_error`); else None
-
-    @property
-    def error_estimate(self) -> ErrorEstimate | None:
-        """The errors of the motion since `measured_since`, at the last comparison.
-
-        They are relative to the path and to the greatest torque since then, and infinite where the companion stopped.
-        """
-        return None if self._meter is None else self._meter.estimate(self._march)
-
-    @property
-    def head_errors(self) -> HeadErrors | None:
-        """The errors of the head's motion since `measured_since`, at the last comparison.
-
-        All are infinite where the companion stopped. The absolute ones are also infinite before the first comparison,
-        and once the position was lost.
-        """
-        return None if self._meter is None else self._meter.head_errors
-
-    @property
-    def measured_since(self) -> float | None:
-        """[s], start of the estimate. It begins again once the errors have grown so far that they grow no more."""
-        return None if self._meter is None else self._meter.measured_since
-
-    @property
-    def lost_at(self) -> float | None:
-        """[s], when it first began again because of that; None where it never did."""
-        return None if self._meter is None else self._meter.lost_at
-
-    @property
-    def memory(self) -> int:
-        """Bytes that an evaluation reads and writes."""
-        return int(self._march.core.memory)
 
 
 @cache

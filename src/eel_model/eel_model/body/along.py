@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A number of the body along X, such as its mass per length: one value, a function, or values at the body's points."""
 
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -21,7 +22,15 @@ class AlongBody:
     `ValueError` for values that are not finite, or below `minimum`.
     """
 
-    def __init__(self, name: str, unit: str, given: Any, x: np.ndarray | None, bounds, minimum: float | None = None):
+    def __init__(
+        self,
+        name: str,
+        unit: str,
+        given: Any,
+        x: np.ndarray | None,
+        bounds: Sequence[float],
+        minimum: float | None = None,
+    ) -> None:
         self.given, self._length, self._cubics = given, bounds[-1], None
         if callable(given):
             at = np.concatenate([np.linspace(*ends, 64) for ends in pairwise(bounds)])
@@ -51,7 +60,7 @@ class AlongBody:
         return np.array(np.broadcast_to(self.given(at) if callable(self.given) else self.given, at.shape), dtype=float)
 
 
-def _cubics(x: np.ndarray, values: np.ndarray, bounds) -> tuple[list, np.ndarray]:
+def _cubics(x: np.ndarray, values: np.ndarray, bounds: Sequence[float]) -> tuple[list[Any], np.ndarray]:
     """Monotone cubics (Fritsch and Butland), one between two kinks that are points, and where they start."""
     from scipy.interpolate import PchipInterpolator
 
@@ -59,7 +68,7 @@ def _cubics(x: np.ndarray, values: np.ndarray, bounds) -> tuple[list, np.ndarray
     return [PchipInterpolator(x[i : j + 1], values[i : j + 1]) for i, j in pairwise(cuts)], x[cuts[:-1]]
 
 
-def cuts_at(x: np.ndarray, bounds) -> list[int]:
+def cuts_at(x: np.ndarray, bounds: Sequence[float] | np.ndarray) -> list[int]:
     """The indices of the points `x` (M,) [m] at which a curve through them is cut: the ends, and those at a kink."""
     near = [int(np.argmin(np.abs(x - kink))) for kink in bounds[1:-1] if np.min(np.abs(x - kink)) < 1e-9 * x[-1]]
     return [0, *near, len(x) - 1]

@@ -359,6 +359,11 @@ def checked_body(body: Any) -> Body:
     return Body.boyer2010() if body is None else checked_instance("body", body, Body)
 
 
+def body_of(text: str) -> Body:
+    """The body called `text`, or in that file. `ValueError` if there is none; `OSError`: not readable."""
+    return Body.from_file(text) if Path(text).suffix else Body.named(text)
+
+
 def _named_shape(name: str, length: float) -> dict[str, Any]:
     half_axes = {axis: NamedHalfAxis(name, axis, length) for axis in ("half_width", "half_height")}
     return {"name": name, "length": length, "kinks": tuple(kink * length for kink in KINKS[name]), **half_axes}

@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev, legendre
+from numpy.typing import ArrayLike
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,7 +34,7 @@ class Panel:
     points: int
     graded: str = ""
 
-    def locate(self, fraction):
+    def locate(self, fraction: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
         """X [m] at the panel's variable `fraction` in (0, 1), and the derivative [m] of X by it."""
         fraction = np.asarray(fraction, dtype=float)
         length = self.end - self.start
@@ -43,12 +44,12 @@ class Panel:
             return self.end - length * (1.0 - fraction) ** 2, 2.0 * length * (1.0 - fraction)
         return self.start + length * fraction, np.full_like(fraction, length)
 
-    def fraction(self, x):
+    def fraction(self, x: ArrayLike) -> np.ndarray:
         """The panel's variable at X = `x` [m]; the inverse of `locate`."""
         part = np.clip((np.asarray(x, dtype=float) - self.start) / (self.end - self.start), 0.0, 1.0)
         if self.graded == "end":
-            return 1.0 - np.sqrt(1.0 - part)
-        return np.sqrt(part) if self.graded else part
+            return np.asarray(1.0 - np.sqrt(1.0 - part))
+        return np.asarray(np.sqrt(part) if self.graded else part)
 
 
 class PanelPoints(NamedTuple):
@@ -105,34 +106,34 @@ class Grid:
         previous = np.concatenate(([0.0], x[:-1]))
         return Grid(panels, x, weight, previous, first, count, matrix, fractions, barycentric, series)
 
-    def points_at(self, x) -> PanelPoints:
+    def points_at(self, x: np.ndarray) -> PanelPoints:
         """The points at X = `x` (M,) [m], ascending."""
         return PanelPoints(*self.rows_at(x, "integral"), self.fraction_at(x))
 
-    def interpolation_at(self, x) -> Callable[[np.ndarray], np.ndarray]:
+    def interpolation_at(self, x: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
         """The function from fields at the nodes (..., n) to their values at X = `x` (M,) [m]: (..., M)."""
         rows, first, _ = self.rows_at(x, "value")
         last = len(self.x) - 1
 
         def values(fields: np.ndarray) -> np.ndarray:
             nodes = (np.minimum(first + j, last).astype(np.int64) for j in range(rows.shape[1]))
-            return sum(rows[:, j] * fields[..., node] for j, node in enumerate(nodes))
+            return np.asarray(sum(rows[:, j] * fields[..., node] for j, node in enumerate(nodes)))
 
         return values
 
-    def panel_at(self, x) -> np.ndarray:
+    def panel_at(self, x: np.ndarray) -> np.ndarray:
         """Index (M,) of the panel that holds X = `x` (M,) [m]. A kink belongs to the panel that it ends."""
         ends = np.array([panel.end for panel in self.panels])
-        return np.minimum(np.searchsorted(ends, x, side="left"), len(ends) - 1)
+        return np.asarray(np.minimum(np.searchsorted(ends, x, side="left"), len(ends) - 1))
 
-    def fraction_at(self, x) -> np.ndarray:
+    def fraction_at(self, x: np.ndarray) -> np.ndarray:
         """The variable (M,) of the panel that holds X = `x` (M,) [m]."""
         home, result = self.panel_at(x), np.empty(len(x))
         for index, panel in enumerate(self.panels):
             result[home == index] = panel.fraction(x[home == index])
         return result
 
-    def rows_at(self, x, kind: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def rows_at(self, x: np.ndarray, kind: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Rows that turn nodal values into values at X = `x` (M,) [m].
 
         kind "integral": the integral from the start of the panel to X [m]. kind "value": the interpolating polynomial.
@@ -182,17 +183,17 @@ def barycentric_weights(points: int) -> np.ndarray:
     """
     at = radau_points(points)
     distance = 4.0 * (at[:, None] - at[None, :]) + np.eye(points)  # in quarters: the products stay within range
-    return 1.0 / np.prod(distance, axis=1)
+    return np.asarray(1.0 / np.prod(distance, axis=1))
 
 
-def interpolation_matrix(points: int, at) -> np.ndarray:
+def interpolation_matrix(points: int, at: ArrayLike) -> np.ndarray:
     """Values at `at` (M,) in [0, 1] of the polynomial through the Radau points: (M, points)."""
-    return chebyshev.chebvander(2.0 * np.asarray(at, dtype=float) - 1.0, points - 1) @ _series(points)
+    return np.asarray(chebyshev.chebvander(2.0 * np.asarray(at, dtype=float) - 1.0, points - 1) @ _series(points))
 
 
-def integration_matrix(points: int, end) -> np.ndarray:
+def integration_matrix(points: int, end: ArrayLike) -> np.ndarray:
     """Integral from 0 to `end` (M,) in [0, 1] of the polynomial through the Radau points: (M, points)."""
-    return chebyshev.chebvander(2.0 * np.asarray(end, dtype=float) - 1.0, points) @ _integral_series(points)
+    return np.asarray(chebyshev.chebvander(2.0 * np.asarray(end, dtype=float) - 1.0, points) @ _integral_series(points))
 
 
 @cache

@@ -4,8 +4,10 @@
 A half-axis grows like sqrt(X) at a rounded nose. Only its square is smooth there.
 """
 
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from eel_base.wording import shown
@@ -22,7 +24,7 @@ class FunctionHalfAxis:
 
     breaks = np.empty(0)
 
-    def __init__(self, name: str, function, bounds):
+    def __init__(self, name: str, function: Any, bounds: Sequence[float]) -> None:
         if not callable(function):
             raise ValueError(f"body {name} must be a function of X, or an array with x=, got {shown(function)}")
         self.name = name
@@ -56,7 +58,7 @@ class FunctionHalfAxis:
         series = chebyshev.Chebyshev.interpolate(lambda x: self._value(x) ** 2, DEGREE, domain=[start, end])
         return series.deriv()
 
-    def _check(self):
+    def _check(self) -> None:
         length = self._bounds[-1]
         x = np.concatenate([np.linspace(start, end, 64) for start, end in pairwise(self._bounds)])
         values = self._value(x)
@@ -69,7 +71,7 @@ class FunctionHalfAxis:
 class ArrayHalfAxis:
     """A half-axis given at points: monotone cubics through its squares (Fritsch and Butland), one between two kinks."""
 
-    def __init__(self, name: str, x: np.ndarray, values: np.ndarray, bounds):
+    def __init__(self, name: str, x: np.ndarray, values: np.ndarray, bounds: Sequence[float]) -> None:
         from scipy.interpolate import PchipInterpolator
 
         if values.shape != x.shape:
@@ -84,17 +86,17 @@ class ArrayHalfAxis:
 
     def square(self, x: np.ndarray) -> np.ndarray:
         """[m^2] at `x` [m]."""
-        return np.maximum(0.0, self._each(self._pieces, x))
+        return np.asarray(np.maximum(0.0, self._each(self._pieces, x)))
 
     def slope(self, x: np.ndarray) -> np.ndarray:
         """Derivative of the square by X [m] at `x` [m]."""
         return self._each(self._slopes, x)
 
-    def _each(self, functions, x):
+    def _each(self, functions: Sequence[Callable[..., Any]], x: np.ndarray) -> np.ndarray:
         return piecewise(functions, self._starts, np.clip(np.asarray(x, dtype=float), 0.0, self._length))
 
 
-def _check_shape(name: str, x: np.ndarray, values: np.ndarray, length: float):
+def _check_shape(name: str, x: np.ndarray, values: np.ndarray, length: float) -> None:
     """`ValueError` unless the half-axis is 0 at the nose and positive inside."""
     if np.any(values < 0.0):
         worst = np.argmin(values)

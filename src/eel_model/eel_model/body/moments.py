@@ -33,6 +33,9 @@ from eel_model.body.grid import (
 RULES = (8, 8), (4, 64), (3, 256)
 
 
+Field = Callable[[np.ndarray], np.ndarray]  # of X (M,) [m] to values (m, M)
+
+
 class Part(NamedTuple):
     """A panel with p nodes and E ends of parts of it, in each of which the field is smooth."""
 
@@ -43,7 +46,7 @@ class Part(NamedTuple):
     field: np.ndarray  # (m, M) there, times the weights of Gauss' rule [m]
 
 
-def with_moments(field: Callable[[np.ndarray], np.ndarray], grid: Grid, breaks: np.ndarray) -> np.ndarray:
+def with_moments(field: Field, grid: Grid, breaks: np.ndarray) -> np.ndarray:
     """Values (m, n) at the nodes of `grid` with the moments of `field` over each panel.
 
     field: of X (M,) [m] to values (m, M); it is smooth between the `breaks` [m], which rise.
@@ -55,7 +58,7 @@ def with_moments(field: Callable[[np.ndarray], np.ndarray], grid: Grid, breaks: 
     return values
 
 
-def missed_before(field, values: np.ndarray, grid: Grid, breaks: np.ndarray, x: np.ndarray) -> np.ndarray:
+def missed_before(field: Field, values: np.ndarray, grid: Grid, breaks: np.ndarray, x: np.ndarray) -> np.ndarray:
     """Of the nodes of its panel, what their parts in the integral to X = `x` (M,) [m], ascending, miss: (m, M, p_max).
 
     With a smooth function g, the integral of field g from the nose is the sum over those nodes of the missed times g,
@@ -75,7 +78,9 @@ def missed_before(field, values: np.ndarray, grid: Grid, breaks: np.ndarray, x: 
     return result
 
 
-def missed_within(field, values: np.ndarray, grid: Grid, breaks: np.ndarray, fractions: np.ndarray) -> np.ndarray:
+def missed_within(
+    field: Field, values: np.ndarray, grid: Grid, breaks: np.ndarray, fractions: np.ndarray
+) -> np.ndarray:
     """The same from the start of each node's panel to `fractions` (K,) of it, by the values at the nodes: (m, K, n)."""
     result = np.zeros((len(fractions), *values.shape))
     ends = [np.concatenate((_inside(panel, breaks), fractions)) for panel in grid.panels]
@@ -91,7 +96,7 @@ def _missed(part: Part, values: np.ndarray, ends_at: np.ndarray) -> np.ndarray:
     fields = part.field.reshape(-1, *shape).transpose(1, 0, 2)
     exact = np.cumsum(fields @ interpolation_matrix(panel.points, part.at).reshape(*shape, -1), axis=0)
     rows = integration_matrix(panel.points, ends_at) * panel.locate(radau_points(panel.points))[1]
-    return exact[np.searchsorted(part.ends, ends_at)] - rows[:, None, :] * values
+    return np.asarray(exact[np.searchsorted(part.ends, ends_at)] - rows[:, None, :] * values)
 
 
 def _correction(part: Part, values: np.ndarray) -> np.ndarray:
@@ -103,11 +108,11 @@ def _correction(part: Part, values: np.ndarray) -> np.ndarray:
     series = moments * (2.0 * np.arange(panel.points) + 1.0)
     series[:, -1] = -series[:, :-1].sum(axis=1)  # P_k = 1 at the panel's end
     correction = series @ basis.T
-    return np.divide(correction, scale, out=np.zeros_like(correction), where=scale > 0.0)
+    return np.asarray(np.divide(correction, scale, out=np.zeros_like(correction), where=scale > 0.0))
 
 
 def _legendre(panel: Panel, at: np.ndarray) -> np.ndarray:
-    return legendre.legvander(2.0 * at - 1.0, panel.points - 1)
+    return np.asarray(legendre.legvander(2.0 * at - 1.0, panel.points - 1))
 
 
 def _inside(panel: Panel, breaks: np.ndarray) -> np.ndarray:
@@ -116,7 +121,7 @@ def _inside(panel: Panel, breaks: np.ndarray) -> np.ndarray:
     return panel.fraction(breaks[first:last])
 
 
-def _parts(field, grid: Grid, ends: Sequence[np.ndarray | None]) -> list[Part]:
+def _parts(field: Field, grid: Grid, ends: Sequence[np.ndarray | None]) -> list[Part]:
     """The panels of `grid` with `ends` of parts, fractions of each; None for a panel that is not wanted."""
     parts, weights, places, begin = [], [], [], 0
     for panel, each in zip(grid.panels, ends, strict=True):

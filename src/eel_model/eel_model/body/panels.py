@@ -5,6 +5,7 @@ import math
 from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +18,7 @@ CLOSEST = 1e-3  # lengths between a kink of the body and a knot of a law that st
 
 @lru_cache(maxsize=256)
 def panels_of(
-    body, resolution: float, knots: tuple[float, ...] = (), wrench: bool = True, edges: tuple[float, ...] = ()
+    body: Any, resolution: float, knots: tuple[float, ...] = (), wrench: bool = True, edges: tuple[float, ...] = ()
 ) -> tuple[Panel, ...]:
     """Panels between the kinks of `body`, the `knots` [m] of a law's splines and the `edges` [m] of a robot's modes.
 

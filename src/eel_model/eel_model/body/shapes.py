@@ -8,9 +8,11 @@ J. Exp. Biol. 209 (2006).
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
+from numpy.typing import ArrayLike
 
 KERN_HEAD, KERN_TAIL, KERN_WIDTH_OF_TAIL = 0.04, 0.95, 0.01  # of the length
 KERN_MIDDLE, KERN_HEIGHT = 0.51, 0.08
@@ -25,7 +27,7 @@ class NamedHalfAxis:
     name: str
     length: float
 
-    def __call__(self, x) -> np.ndarray:
+    def __call__(self, x: ArrayLike) -> np.ndarray:
         """[m] at `x` [m]."""
         return FUNCTIONS[self.body, self.name](np.asarray(x, dtype=float), self.length)
 
@@ -40,17 +42,14 @@ class PolynomialHalfAxis:
     bounds: tuple[float, ...]
     coefficients: tuple[tuple[float, ...], ...]
 
-    def __call__(self, x) -> np.ndarray:
+    def __call__(self, x: ArrayLike) -> np.ndarray:
         """[m] at `x` [m]; 0 at the nose."""
         x = np.asarray(x, dtype=float)
-        series = [self._series(panel) for panel in range(len(self.coefficients))]
-        square = piecewise(series, self.bounds, x)
-        square -= np.where(x <= self.bounds[1], series[0](0.0), 0.0)
+        along = PolynomialAlong(self.bounds, self.coefficients)
+        square = along(x)
+        square -= np.where(x <= self.bounds[1], along(0.0), 0.0)
         least = np.finfo(float).tiny  # no section inside is singular by round-off
-        return np.sqrt(np.where(x > 0.0, np.maximum(square, least), 0.0))
-
-    def _series(self, panel: int) -> chebyshev.Chebyshev:
-        return chebyshev.Chebyshev(self.coefficients[panel], domain=self.bounds[panel : panel + 2])
+        return np.asarray(np.sqrt(np.where(x > 0.0, np.maximum(square, least), 0.0)))
 
 
 @dataclass(frozen=True)
@@ -60,36 +59,36 @@ class PolynomialAlong:
     bounds: tuple[float, ...]
     coefficients: tuple[tuple[float, ...], ...]
 
-    def __call__(self, x) -> np.ndarray:
+    def __call__(self, x: ArrayLike) -> np.ndarray:
         """Its values at `x` [m]."""
         ends = zip(pairwise(self.bounds), self.coefficients, strict=True)
         series = [chebyshev.Chebyshev(row, domain=domain) for domain, row in ends]
         return piecewise(series, self.bounds, np.asarray(x, dtype=float))
 
 
-def _boyer_radius(x):
-    return 0.05 * np.sqrt(np.maximum(0.0, 1.0 - np.maximum(0.0, 1.0 - x / 0.05) ** 2))
+def _boyer_radius(x: np.ndarray) -> np.ndarray:
+    return np.asarray(0.05 * np.sqrt(np.maximum(0.0, 1.0 - np.maximum(0.0, 1.0 - x / 0.05) ** 2)))
 
 
-def _boyer_half_width(x, length):
-    return _boyer_radius(x) * (0.5 - (np.sin(np.pi * x - np.pi / 2) + 1.0) / 6.0 - x**2 / 8.0)
+def _boyer_half_width(x: np.ndarray, length: float) -> np.ndarray:
+    return np.asarray(_boyer_radius(x) * (0.5 - (np.sin(np.pi * x - np.pi / 2) + 1.0) / 6.0 - x**2 / 8.0))
 
 
-def _boyer_half_height(x, length):
+def _boyer_half_height(x: np.ndarray, length: float) -> np.ndarray:
     part = np.clip((20.0 * x - 4.0) / 11.0, 0.0, 1.0)
-    return _boyer_radius(x) * (1.0 - (np.sin(np.pi * part - np.pi / 2) + 1.0) / 5.0)
+    return np.asarray(_boyer_radius(x) * (1.0 - (np.sin(np.pi * part - np.pi / 2) + 1.0) / 5.0))
 
 
-def _kern_half_width(x, length):
+def _kern_half_width(x: np.ndarray, length: float) -> np.ndarray:
     s, head, tail, width = x / length, KERN_HEAD, KERN_TAIL, KERN_WIDTH_OF_TAIL
     front = np.sqrt(np.maximum(0.0, 2.0 * head * s - s**2))
     trunk = head - (head - width) * ((s - head) / (tail - head)) ** 2
-    return length * np.where(s < head, front, np.where(s < tail, trunk, width * (1.0 - s) / (1.0 - tail)))
+    return np.asarray(length * np.where(s < head, front, np.where(s < tail, trunk, width * (1.0 - s) / (1.0 - tail))))
 
 
-def _kern_half_height(x, length):
+def _kern_half_height(x: np.ndarray, length: float) -> np.ndarray:
     s = x / length
-    return length * KERN_HEIGHT * np.sqrt(np.maximum(0.0, 1.0 - ((s - KERN_MIDDLE) / KERN_MIDDLE) ** 2))
+    return np.asarray(length * KERN_HEIGHT * np.sqrt(np.maximum(0.0, 1.0 - ((s - KERN_MIDDLE) / KERN_MIDDLE) ** 2)))
 
 
 FUNCTIONS = {
@@ -100,24 +99,30 @@ FUNCTIONS = {
 }
 
 
-def polynomials_through(half_axis, bounds: tuple[float, ...], degree: int = 48) -> PolynomialHalfAxis:
+def polynomials_through(
+    half_axis: Callable[[np.ndarray], np.ndarray], bounds: tuple[float, ...], degree: int = 48
+) -> PolynomialHalfAxis:
     """Polynomials through the square of a `half_axis` (function of X [m] that returns m) between the `bounds` [m]."""
     return PolynomialHalfAxis(tuple(bounds), coefficients_of(lambda x: half_axis(x) ** 2, bounds, degree))
 
 
-def coefficients_of(function, bounds: tuple[float, ...], degree: int = 48) -> tuple[tuple[float, ...], ...]:
+def coefficients_of(
+    function: Callable[[np.ndarray], np.ndarray], bounds: tuple[float, ...], degree: int = 48
+) -> tuple[tuple[float, ...], ...]:
     """Rows of coefficients of the polynomials through a `function` of X [m] between the `bounds` [m]."""
     series = [chebyshev.Chebyshev.interpolate(function, degree, domain=ends) for ends in pairwise(bounds)]
     return tuple(tuple(each.coef.tolist()) for each in series)
 
 
-def piecewise(functions: Sequence[Callable], bounds: Sequence[float] | np.ndarray, x: np.ndarray) -> np.ndarray:
+def piecewise(
+    functions: Sequence[Callable[..., Any]], bounds: Sequence[float] | np.ndarray, x: np.ndarray
+) -> np.ndarray:
     """Values at `x` [m] of functions of X, each from one of the `bounds` [m] to the next; a bound belongs to the first.
 
     The first and the last function go on beyond the bounds.
     """
     if len(functions) == 1:
-        return functions[0](x)
+        return np.asarray(functions[0](x))
     home = np.clip(np.searchsorted(bounds, x, side="left") - 1, 0, len(functions) - 1)
     result = np.empty(x.shape)
     for index, function in enumerate(functions):

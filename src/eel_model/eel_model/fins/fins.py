@@ -18,6 +18,7 @@ from eel_base.wording import not_one_of, shown
 
 import eel_core
 from eel_model.body.body import Body
+from eel_model.body.grid import Grid
 from eel_model.scene import Scene
 
 COMMANDED = "commanded"  # angle of a fin that follows commands
@@ -142,7 +143,7 @@ class Fin:
         return -1.0 if isinstance(self.angle, RollHold) and self.side == "left" else 1.0
 
     @property
-    def servo(self) -> tuple:
+    def servo(self) -> tuple[Any, ...]:
         """What turns it: fins that are equal in this have one servo."""
         own: Any = self.name if self.angle == COMMANDED else None
         where = self.station if isinstance(self.angle, RollHold) else own
@@ -195,7 +196,7 @@ def checked_fins(fins: Any, body: Body, scene: Scene) -> tuple[Fin, ...]:
     return found
 
 
-def servos_of(fins: tuple[Fin, ...]) -> list[tuple]:
+def servos_of(fins: tuple[Fin, ...]) -> list[tuple[Any, ...]]:
     """The servos of the fins, each once."""
     return list(dict.fromkeys(fin.servo for fin in fins))
 
@@ -208,7 +209,9 @@ def edges_of(body: Body, fins: tuple[Fin, ...], known: tuple[float, ...] = ()) -
     return tuple(sorted(stations - set(near)))
 
 
-def core_fins(body: Body, scene: Scene, grid, x: np.ndarray, fins: tuple[Fin, ...]) -> tuple[list, list]:
+def core_fins(
+    body: Body, scene: Scene, grid: Grid, x: np.ndarray, fins: tuple[Fin, ...]
+) -> tuple[list[Any], list[Any]]:
     """The fins and their servos for the compiled mechanics; stations at `x` (M,) [m]."""
     if not fins:
         return [], []

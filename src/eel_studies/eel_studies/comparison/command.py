@@ -17,12 +17,12 @@ from eel_base.command.progress import Progress
 from eel_base.command.run_command import checked_out, run_command
 from eel_base.files.output_file import written_as
 from eel_dynamics.analysis.measures import MEASURES, measures_of
-from eel_dynamics.commands.options import add_options, body_of, scene_of, set_numbers
+from eel_dynamics.commands.options import add_options, scene_of, set_numbers
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.settled_duration import until_settled
 from eel_dynamics.runs.simulate import simulate
 from eel_gaits.gaits.registry import gait
-from eel_model.body.body import Body
+from eel_model.body.body import Body, body_of
 from eel_model.scene import Scene
 
 from eel_studies.pictures import BLUE, ORANGE, Figure, legend_above, plain, write_picture

@@ -17,9 +17,10 @@ from eel_base.command.progress import Progress
 from eel_base.command.run_command import checked_out, run_command
 from eel_base.files.output_file import written_as
 from eel_base.wording import shown
-from eel_dynamics.commands.options import add_options, add_repeated, body_of, scene_of, set_numbers
+from eel_dynamics.commands.options import add_options, add_repeated, scene_of, set_numbers
 from eel_dynamics.runs.storage.tables import write_columns
 from eel_gaits.laws.law import Law
+from eel_model.body.body import body_of
 from eel_model.robot.robot import robot_of
 from eel_model.scene import Scene
 

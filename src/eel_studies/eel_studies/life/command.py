@@ -16,8 +16,9 @@ from eel_base.command.run_command import checked_out, run_command
 from eel_base.files.output_file import written_as
 from eel_base.quantity import positive
 from eel_dynamics.commands.filmed import add_film_options, beat_from
-from eel_dynamics.commands.options import add_options, add_repeated, body_of, scene_of, set_numbers
+from eel_dynamics.commands.options import add_options, add_repeated, scene_of, set_numbers
 from eel_gaits.film.beat import Beat
+from eel_model.body.body import body_of
 
 from eel_studies.life.drawing import draw_lamprey, draw_robot
 from eel_studies.life.lamprey import HEIGHTS, MEASURED, LampreySwim, in_thick_water, lamprey, swims

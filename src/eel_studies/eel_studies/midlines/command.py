@@ -13,9 +13,10 @@ from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
 from eel_base.command.run_command import checked_out, run_command
 from eel_base.files.output_file import written_as
-from eel_dynamics.commands.options import add_options, body_of
+from eel_dynamics.commands.options import add_options
 from eel_dynamics.runs.simulate import simulate
 from eel_gaits.sources.motion_file import read_midlines
+from eel_model.body.body import body_of
 
 from eel_studies.midlines.comparison import MidlineComparison, compared
 from eel_studies.pictures import Figure, write_picture

@@ -14,16 +14,9 @@ from eel_base.command.run_command import checked_out, run_command
 from eel_base.files.output_file import written_as
 from eel_base.wording import shown
 from eel_dynamics.analysis.measures import MEASURES
-from eel_dynamics.commands.options import (
-    add_options,
-    add_repeated,
-    body_of,
-    named_texts,
-    scene_of,
-    set_numbers,
-    varied_values,
-)
+from eel_dynamics.commands.options import add_options, add_repeated, named_texts, scene_of, set_numbers, varied_values
 from eel_dynamics.runs.storage.tables import write_columns
+from eel_model.body.body import body_of
 from eel_model.scene import Scene
 
 from eel_studies.optimisation.front import FORMATS

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from eel_dynamics.simulation.head_motion import head_motion_of
 from eel_dynamics.simulation.simulation import Simulation
 from eel_gaits.pilot.pilot import Pilot
+from eel_model.initial_state import head_motion_of
 from eel_model.scene import Scene
 
 from eel_studies.points import AccuracyLike

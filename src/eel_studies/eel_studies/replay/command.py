@@ -15,11 +15,11 @@ from eel_base.command.run_command import checked_out, run_command
 from eel_base.files.output_file import written_as
 from eel_base.quantity import positive
 from eel_base.wording import shown
-from eel_dynamics.commands.options import add_options, add_repeated, body_of, named_texts, scene_of
+from eel_dynamics.commands.options import add_options, add_repeated, named_texts, scene_of
 from eel_dynamics.runs.exchange.eel_viz_functions import joints_of_bag
 from eel_dynamics.runs.storage.tables import write_columns
 from eel_gaits.sources.joint_log import JointLog, joint_log, law_of_links, read_joint_log
-from eel_model.body.body import Body
+from eel_model.body.body import Body, body_of
 from eel_model.scene import Scene
 
 from eel_studies.pictures import write_picture

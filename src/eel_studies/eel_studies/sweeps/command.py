@@ -20,13 +20,13 @@ from eel_dynamics.analysis.measures import MEASURES
 from eel_dynamics.commands.options import (
     add_options,
     add_repeated,
-    body_of,
     check_names,
     named_texts,
     set_numbers,
     varied_values,
 )
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED
+from eel_model.body.body import body_of
 
 from eel_studies.sweeps.sweep import check_points, sweep
 
