@@ -132,7 +132,7 @@ def test_the_error_under_steps_of_commands_is_not_underrated():
         runs.append((simulation, np.array(torques)))
     (measured, torque), (_, exact) = runs
     apart, size = (np.linalg.norm(each, axis=2).max() for each in (torque - exact, exact))
-    assert measured.error_estimate.torque > apart / size > 2e-4
+    assert measured.error_estimate.torque > apart / size > 2e-5
 
 
 @pytest.mark.fault(

@@ -22,9 +22,10 @@ def panels_of(
 ) -> tuple[Panel, ...]:
     """Panels between the kinks of `body`, the `knots` [m] of a law's splines and the `edges` [m] of a robot's modes.
 
-    Together they have about `resolution` points per body length, and each has three to spare; two between the edges of
-    modes, where panels are short. Where the internal
-    `wrench` is wanted, the first panel has more: the body and its loads go like roots of X there (they weigh little).
+    Together they have about `resolution` points per body length, and each has three to spare. With two between the
+    edges of modes the torque of a stiff joint that starts is off by hundredths, and coarser grids share that. Where
+    the internal `wrench` is wanted, the first panel has more: the body and its loads go like roots of X there (they
+    weigh little).
     So has the last panel where they do so at the tail.
 
     Processors take up to eight nodes at once. The grid fills these: the panels that would have a point next get one.
@@ -32,7 +33,7 @@ def panels_of(
     least = CLOSEST * body.length
     kinks = np.array([0.0, *body.panel_ends])
     inner = [knot for knot in knots if np.min(np.abs(kinks - knot)) > least and kinks[1] < knot < body.length]
-    panels, start, spare = [], 0.0, 2 if edges else 3
+    panels, start, spare = [], 0.0, 3
     for end in sorted({*body.panel_ends, *inner, *edges}):
         points = spare + nearest(resolution * (end - start) / body.length)
         graded = "start" if start == 0.0 else "end" if end == body.length and body.pointed_tail else ""
