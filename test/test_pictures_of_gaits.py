@@ -42,6 +42,8 @@ def pictures(tmp_path):
         try:
             with drawn(tmp_path / RECORDING, size=SIZE) as drawing:
                 for name in BLUEPRINTS:
+                    if name == "robot":  # of bodies with joints alone
+                        continue
                     drawing.arrange(name)
                     yield name, drawing.png(MOMENT), drawing.views()
         except CannotRender as reason:

@@ -9,7 +9,6 @@ from collections import Counter
 import numpy as np
 import pytest
 from eel_viz.pictures.drawing import drawn
-from eel_viz.settings import BLUEPRINTS
 from eel_viz.viewer import CannotRender, _await_listening
 
 VIEWS = {
@@ -32,7 +31,7 @@ def test_every_view_is_shown_without_a_complaint(can_draw, tmp_path):
 
     record(tmp_path / "made_up.rrd", 2.0, 50.0, compare="other")
     with drawn(tmp_path / "made_up.rrd", size=(1280, 720)) as drawing:
-        for name in BLUEPRINTS:
+        for name in VIEWS:
             drawing.arrange(name)
             drawing.png(1.5)
             views = drawing.views()

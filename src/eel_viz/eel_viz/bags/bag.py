@@ -27,7 +27,8 @@ from eel_viz.bags.mcap_file import RecordReader, damage_of
 from eel_viz.bags.metadata import NAME, check_metadata
 
 SUFFIXES = (".mcap", ".db3")
-PADDING = 8  # bytes, of a double
+PADDED = "sensor_msgs/msg/JointState", "eel_msgs/msg/MotorStates"  # their last fields are sequences of doubles
+PADDING = 8, 12  # bytes that ROS may leave behind one or several such sequences that are empty
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,13 +112,14 @@ class Bag:
                 yield connection.topic, stamp, message
 
     def _deserialised(self, raw: Any, kind: str) -> object:
-        """The message. An empty sequence of doubles at its end, as of a JointState, may have some bytes behind it."""
+        """The message; empty sequences of doubles at its end may have some bytes behind them."""
         try:
             return self._store.deserialize_cdr(raw, kind)
         except SerdeError:
-            if kind != "sensor_msgs/msg/JointState" or len(raw) <= PADDING:
-                raise
-            return self._store.deserialize_cdr(raw[:-PADDING], kind)
+            for behind in PADDING if kind in PADDED else ():
+                with contextlib.suppress(SerdeError):
+                    return self._store.deserialize_cdr(raw[:-behind], kind)
+            raise
 
     def _open(self) -> None:
         if self._path.is_file() or (self._path / NAME).exists():

@@ -75,8 +75,8 @@ class Parts:
         self._log_states(stamp, entities.JOINT_NUMBERS, states)
 
     def motor_states(self, stamp: int, motors: Motors) -> None:
-        """Log and draw torques, limits and powers of the motors."""
-        if self._due("motor numbers", stamp, self._numbers):
+        """Log and draw torques, limits and powers of the motors, if there are any."""
+        if len(motors.torque) and self._due("motor numbers", stamp, self._numbers):
             values = {name: getattr(motors, name) for name in ("torque", "limit", "power")}
             self._stream.add_arrays(stamp, entities.MOTOR_NUMBERS, "MotorStates", values)
         if self._motors is not None and len(motors.torque) == self._joints:
@@ -84,6 +84,8 @@ class Parts:
             self._driven.second(stamp, motors)
 
     def _log_states(self, stamp: int, path: str, states: JointStates) -> None:
+        if not states.names:
+            return
         if self._names.get(path) != states.names:
             self._names[path] = states.names
             names = rr.DynamicArchetype("JointState", components={"name": list(states.names)})
