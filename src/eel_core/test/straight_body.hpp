@@ -71,6 +71,7 @@ inline std::shared_ptr<Swimmer> straight_body()
                 constant(0.015),     constant(inertia3),   constant(0.0),         constant(0.0),
                 constant(0.0),       constant(body_mass),  constant(0.0),         constant(drag3),
                 constant(0.0),       constant(0.0),        constant(0.0),         constant(0.0)};
+    swimmer->tail.added2 = added_mass, swimmer->tail.added3 = added_mass3;
     swimmer->friction = Friction::laminar, swimmer->resistive = false;
     return swimmer;
 }
