@@ -127,8 +127,8 @@ void check_fits(const LawOnGrid& law, const Swimmer& swimmer)
 
 class PyMarch : public BoundMarch<March> {
   public:
-    PyMarch(std::shared_ptr<const Swimmer> swimmer, const std::string& method, std::size_t order, bool planar)
-        : BoundMarch(false, std::move(swimmer), Method::of(method, order), planar)
+    PyMarch(const std::shared_ptr<const Swimmer>& swimmer, const std::string& method, std::size_t order, bool planar)
+        : BoundMarch(false, swimmer, Method::of(method, order), planar)
     {
     }
 
@@ -138,11 +138,12 @@ class PyMarch : public BoundMarch<March> {
         const InUse in_use(in_use_);
         return std::unique_ptr<PyMarch>(new PyMarch(march_, has_law_));
     }
-    void change(std::shared_ptr<const Swimmer> swimmer, const std::string& method, std::size_t order, bool planar)
+    void change(const std::shared_ptr<const Swimmer>& swimmer, const std::string& method, std::size_t order,
+                bool planar)
     {
         const InUse in_use(in_use_);
         has_law_ = false;
-        march_.change(std::move(swimmer), Method::of(method, order), planar);
+        march_.change(swimmer, Method::of(method, order), planar);
     }
     void follow(const std::shared_ptr<const LawOnGrid>& law, std::vector<double> breakpoints, const StepBounds& bounds,
                 bool ledger, const py::object& current, std::shared_ptr<Flow> flow, bool smoothly,
