@@ -34,8 +34,11 @@ def test_random_robots_run_or_are_refused_with_the_part_to_blame(seeds):
     assert refused <= 0.05 * len(seeds)
 
 
+SEEN = 2, 7, 19, 21, 126, 128, 217, 283  # seeds that have missed their target unseen, before
+
+
 @pytest.mark.filterwarnings("ignore")
-@pytest.mark.parametrize("seeds", [(2, 7, 19, 21, 126, 128, 217, 283), pytest.param(range(100), marks=pytest.mark.soak)])
+@pytest.mark.parametrize("seeds", [SEEN, pytest.param(range(100), marks=pytest.mark.soak)])
 def test_error_of_random_robots_is_within_the_target_or_told(seeds):
     for seed in seeds:
         run, exact = swum(seed, 1e-3), swum(seed, EXACT, False)
