@@ -2,6 +2,7 @@
 """Robots from YAML: what is meant is read, what cannot be is one line with file, line and key."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -91,10 +92,11 @@ def test_a_body_lies_beside_the_file_or_has_a_name(tmp_path):
         ("joints:\n" + "  - {position: 0.3}\n" * 40_000, "must have at most 500000 bytes"),
     ],
 )
-def test_what_a_file_cannot_hold_is_one_short_line(tmp_path, text, told):
+def test_what_a_file_cannot_hold_is_one_short_line(tmp_path, monkeypatch, text, told):
+    monkeypatch.chdir(tmp_path)  # a long path would have the line cut
     with pytest.raises(ValueError) as refused:
-        robot_of(tmp_path, text)
-    said = str(refused.value).replace(str(tmp_path), "")
+        robot_of(Path(), text)
+    said = str(refused.value)
     assert told in said and "\n" not in said and len(said) < 400
 
 
