@@ -55,5 +55,5 @@ def integrators() -> Lines:
 
 
 def _apart(run: Any, exact: Any) -> float:
-    """Distance of the heads at the end, by the path."""
+    """Distance of the heads at the end, divided by the length of the path."""
     return float(np.linalg.norm(run.position[-1] - exact.position[-1])) / exact.path_length

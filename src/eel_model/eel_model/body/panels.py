@@ -41,8 +41,7 @@ def panels_of(
         if graded:
             points = 1 + (max(points, 3 + nearest(math.sqrt(resolution))) if wrench else points)
         parts = -(-points // WIDEST_PANEL) if start > 0.0 else 1
-        edges = np.linspace(start, end, parts + 1).tolist()
-        for left, right in pairwise(edges):
+        for left, right in pairwise(np.linspace(start, end, parts + 1).tolist()):
             kind = graded if right == end else ""
             panels.append(Panel(start=left, end=right, points=-(-points // parts), graded=kind))
         start = end
