@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names and types of the swimmer's topics, and fields of its ledger, as texts: no ROS is imported.
 
-A new topic has its name here. `SampleMessages` (eel_dynamics/ros/messages.py) fills its message, `PARTS`
-(eel_dynamics/ros/publishers.py) names what is costly to find for it, and `messages_of_run` (eel_dynamics/runs/exchange)
-makes the same from a run. `READERS` (eel_viz/recording/dispatcher.py) and the method of its name
-in `Loggers` draw it.
+A new topic has its name here. `FIELDS` (eel_dynamics/runs/exchange/message_fields.py) says what its fields hold,
+`SampleMessages` (eel_dynamics/ros/messages.py) makes its message, and `PARTS` (eel_dynamics/ros/publishers.py) names
+what is costly to find for it. `READERS` (eel_viz/recording/dispatcher.py) and the method of its name in `Loggers` draw
+it.
 """
 
 OWN = {  # relative: below the swimmer's namespace

@@ -34,6 +34,7 @@ from eel_dynamics.accuracy.error_estimate import HeadErrors
 from eel_dynamics.analysis.joint_demand import Joints
 from eel_dynamics.curvature.curvature_samples import LateSample, check_points
 from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
+from eel_dynamics.runs.exchange.message_fields import FIELDS, LINEAR, OF_JOINTS
 from eel_dynamics.runs.exchange.messages_of_run import fields_of_fins, fields_of_joints, outline
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
@@ -42,7 +43,6 @@ from eel_msgs.srv import SetState
 
 JOIN = "a controller that joins a running simulation begins 1/rate or more after the stamp of the last odom"
 Numbers = dict[str, np.ndarray]  # of a SerialisedMessage, by path
-Fill = Callable[[Numbers, Snapshot], None]
 SECOND = 1_000_000_000  # ns
 FAR_AHEAD = 3600.0  # s: a stamp further ahead of the simulation is wall time by mistake
 LARGEST_LAW = 2**19  # bytes, without the name: 1,000 terms of 30 knots, which are adopted in half a second
@@ -60,35 +60,35 @@ class SampleMessages:
         x, scene = simulation.x, simulation.scene
         self._errors: HeadErrors | None = None  # those in the covariances of odom
         world, head, section = parameters.world_frame, parameters.head_frame, parameters.section_frame
-        topics: dict[str, tuple[Any, str, Fill]] = {
-            "head_pose": (PoseStamped(), world, self._fill_pose),
-            "head_twist": (TwistStamped(), head, self._fill_twist),
-            "odom": (Odometry(child_frame_id=head), world, self._fill_odometry),
-            "backbone": (msg.Backbone(), world, self._fill_backbone),
-            "curvature": (msg.Curvature(), section, self._fill_curvature),
-            "internal_wrench": (msg.InternalWrench(), section, self._fill_wrench),
-            "hydrodynamic_load": (msg.HydrodynamicLoad(), section, self._fill_load),
-            "energy": (msg.EnergyLedger(), world, self._fill_energy),
-            "swim_state": (msg.SwimState(), world, self._fill_state),
-            "flow_at_head": (Vector3Stamped(), world, self._fill_flow),
+        topics: dict[str, tuple[Any, str]] = {
+            "head_pose": (PoseStamped(), world),
+            "head_twist": (TwistStamped(), head),
+            "odom": (Odometry(child_frame_id=head), world),
+            "backbone": (msg.Backbone(), world),
+            "curvature": (msg.Curvature(), section),
+            "internal_wrench": (msg.InternalWrench(), section),
+            "hydrodynamic_load": (msg.HydrodynamicLoad(), section),
+            "energy": (msg.EnergyLedger(), world),
+            "swim_state": (msg.SwimState(), world),
+            "flow_at_head": (Vector3Stamped(), world),
         }
         for name, computed in (("internal_wrench", scene.internal_wrench), ("energy", scene.ledger)):
             if not computed:
                 del topics[name]
-        for message, frame, _ in topics.values():
+        for message, frame in topics.values():
             message.header.frame_id = frame
             _lengthen(message, np.asarray(x, dtype=float), len(simulation.fins))
         if (flow := simulation.flow) is not None:
             zero = array.array("d", bytes(8 * lattice_around(np.zeros(3), simulation.body.length, flow).size))
             vectors = msg.FlowVectors(position=zero, velocity=zero)
             vectors.header.frame_id = world
-            topics["flow_vectors"] = vectors, world, self._fill_vectors
+            topics["flow_vectors"] = vectors, world
         stations = len(x) if parameters.publish_tf_stations else 0
         children = [head, *(f"{section}_{k}" for k in range(stations))]
         transforms = [TransformStamped(child_frame_id=child) for child in children]
         for transform in transforms:
             transform.header.frame_id = world
-        topics["/tf"] = TFMessage(transforms=transforms), world, self._fill_transform
+        topics["/tf"] = TFMessage(transforms=transforms), world
         yaw, pitch = parameters.yaw_joints, parameters.pitch_joints
         robots = (2, slice(0, yaw), yaw), (1, slice(yaw, yaw + pitch), pitch)  # section axis, place, number of joints
         self._joints = [(axis, place, Joints(x, float(x[-1]), count)) for axis, place, count in robots if count]
@@ -102,21 +102,39 @@ class SampleMessages:
             zeros = [0.0] * len(names)
             effort = zeros if scene.internal_wrench or robot is not None else []
             joint_state = JointState(name=names, position=zeros, velocity=zeros, effort=effort)
-            topics["joint_states"] = joint_state, "", self._fill_joints if robot is None else self._fill_robot
+            topics["joint_states"] = joint_state, ""
             if robot is not None and robot.joints:
                 motors = msg.MotorStates(torque=zeros, limit=zeros, power=zeros)
-                topics["motor_states"] = motors, "", self._fill_motors
+                topics["motor_states"] = motors, ""
         if simulation.fins:
             from sensor_msgs.msg import JointState
 
             count = [0.0] * len(simulation.fins)
             names = [fin.name for fin in simulation.fins]
-            topics["fin_states"] = JointState(name=names, position=count, effort=[]), "", self._fill_fins
-        self.kinds = {name: type(message) for name, (message, *_) in topics.items()}
-        self._topics = {name: (SerialisedMessage(message), fill) for name, (message, _, fill) in topics.items()}
+            topics["fin_states"] = JointState(name=names, position=count, effort=[]), ""
+        self.kinds = {name: type(message) for name, (message, _) in topics.items()}
+        self._further: dict[str, Callable[[Numbers, Snapshot], None]] = {  # what `FIELDS` has not
+            "odom": self._fill_covariances,
+            "hydrodynamic_load": self._without_minus_zeros,
+            "energy": self._fill_energy,
+            "swim_state": self._fill_state,
+            "flow_at_head": self._fill_flow,
+            "flow_vectors": self._fill_vectors,
+            "/tf": self._fill_transform,
+            "motor_states": self._fill_limits,
+        }
+        own = dict(FIELDS)
+        if robot is None:
+            self._further["joint_states"], own["joint_states"] = self._fill_joints, {}
+        self._topics: dict[str, tuple[SerialisedMessage, list[tuple[str, list[tuple[np.ndarray, Any]]]]]] = {}
+        for name, (message, _) in topics.items():
+            numbers = (serialised := SerialisedMessage(message)).numbers
+            fields = [(path, each) for path, each in own.get(name, {}).items() if path in numbers]
+            places: dict[str, list[tuple[np.ndarray, Any]]] = {each.quantity: [] for _, each in fields}
+            for path, each in fields:
+                places[each.quantity].append((numbers[path], (..., each.components)))
+            self._topics[name] = serialised, list(places.items())
         self._clock = SerialisedMessage(Clock())
-        self._of: Snapshot | None = None
-        self._head = np.zeros(13)  # the head's position, orientation and twist in that snapshot
 
     def set_time(self, nanoseconds: int) -> None:
         """Set the simulation time [ns] of all messages, including /clock's."""
@@ -128,11 +146,14 @@ class SampleMessages:
 
     def fill(self, name: str, snapshot: Snapshot) -> bytes:
         """The message of topic `name`, filled from `snapshot`."""
-        message, fill = self._topics[name]
-        if snapshot is not self._of:  # several topics need the head's state
-            head = np.concatenate((snapshot.position, snapshot.orientation, snapshot.twist))
-            self._of, self._head = snapshot, head
-        fill(message.numbers, snapshot)
+        message, fields = self._topics[name]
+        quantity = snapshot.joints.__getitem__ if name in OF_JOINTS else snapshot.__getattribute__
+        for each, places in fields:
+            values = quantity(each)
+            for place, components in places:
+                place[:] = values[components].ravel()
+        if name in self._further:
+            self._further[name](message.numbers, snapshot)
         return self._sealed(message)
 
     def _sealed(self, message: SerialisedMessage) -> bytes:
@@ -140,21 +161,7 @@ class SampleMessages:
             stamp[:] = self._nanoseconds
         return message.data()
 
-    def _fill_fins(self, numbers: Numbers, snapshot: Snapshot) -> None:
-        numbers["position"][:] = snapshot.fin_angle
-
-    def _fill_pose(self, numbers: Numbers, snapshot: Snapshot) -> None:
-        numbers["pose.position"][:], numbers["pose.orientation"][:] = self._head[POSITION], self._head[ORIENTATION]
-
-    def _fill_twist(self, numbers: Numbers, snapshot: Snapshot) -> None:
-        numbers["twist.angular"][:], numbers["twist.linear"][:] = self._head[ANGULAR], self._head[LINEAR]
-
-    def _fill_odometry(self, numbers: Numbers, snapshot: Snapshot) -> None:
-        numbers["pose.pose.position"][:], numbers["pose.pose.orientation"][:] = (
-            self._head[POSITION],
-            self._head[ORIENTATION],
-        )
-        numbers["twist.twist.angular"][:], numbers["twist.twist.linear"][:] = self._head[ANGULAR], self._head[LINEAR]
+    def _fill_covariances(self, numbers: Numbers, snapshot: Snapshot) -> None:
         errors = self._simulation.head_errors or NO_ERRORS
         if errors != self._errors:  # they change ten times a second
             self._errors, known = errors, math.isfinite(errors.position)
@@ -163,8 +170,8 @@ class SampleMessages:
                 numbers[name][:] = np.diag(np.repeat(variances, 3)).ravel() if known else UNKNOWN
 
     def _fill_transform(self, numbers: Numbers, snapshot: Snapshot) -> None:
-        numbers["transforms[0].transform.translation"][:] = self._head[POSITION]
-        numbers["transforms[0].transform.rotation"][:] = self._head[ORIENTATION]
+        numbers["transforms[0].transform.translation"][:] = snapshot.position
+        numbers["transforms[0].transform.rotation"][:] = snapshot.orientation
         if "transforms[1].transform.rotation" not in numbers:
             return
         positions, rotations = snapshot.backbone, with_section_axes(snapshot.section_orientation)
@@ -172,27 +179,9 @@ class SampleMessages:
             numbers[f"transforms[{k}].transform.translation"][:] = position
             numbers[f"transforms[{k}].transform.rotation"][:] = rotation
 
-    def _fill_backbone(self, numbers: Numbers, snapshot: Snapshot) -> None:
-        numbers["position"][:] = snapshot.backbone.ravel()
-        numbers["orientation"][:] = snapshot.section_orientation.ravel()
-
-    def _fill_curvature(self, numbers: Numbers, snapshot: Snapshot) -> None:
-        numbers["pitch"][:], numbers["yaw"][:] = snapshot.curvature[:, 1], snapshot.curvature[:, 2]
-        numbers["pitch_rate"][:], numbers["yaw_rate"][:] = snapshot.curvature_rate[:, 1], snapshot.curvature_rate[:, 2]
-
-    def _fill_wrench(self, numbers: Numbers, snapshot: Snapshot) -> None:
-        for axis in range(3):
-            numbers[TORQUES[axis]][:] = snapshot.torque[:, axis]
-            numbers[FORCES[axis]][:] = snapshot.force[:, axis]
-
-    def _fill_load(self, numbers: Numbers, snapshot: Snapshot) -> None:
-        for axis in range(3):
-            numbers[FORCES[axis]][:] = snapshot.fluid_force[:, axis]
-            numbers[RESISTANCES[axis]][:] = snapshot.resistive_force[:, axis]
+    def _without_minus_zeros(self, numbers: Numbers, snapshot: Snapshot) -> None:
         for name in ("tail_force", "nose_force", "wake_momentum_rate"):
-            numbers[name][:] = getattr(snapshot, name) + 0.0
-        if self._simulation.fins:
-            numbers["fin_force"][:] = snapshot.fin_force.ravel()
+            numbers[name] += 0.0
 
     def _fill_energy(self, numbers: Numbers, snapshot: Snapshot) -> None:
         numbers[""][:] = [getattr(snapshot.energy, name) for name in ENERGY_FIELDS]
@@ -200,16 +189,16 @@ class SampleMessages:
     def _fill_state(self, numbers: Numbers, snapshot: Snapshot) -> None:
         errors = self._simulation.head_errors
         numbers[""][:] = (  # in the order of the fields
-            np.linalg.norm(self._head[LINEAR]),
-            -self._head[POSITION][2],
-            heading(self._head[ORIENTATION]),
+            np.linalg.norm(snapshot.twist[LINEAR]),
+            -snapshot.position[2],
+            heading(snapshot.orientation),
             math.nan if snapshot.torque is None else np.max(np.abs(snapshot.torque)),
             math.nan if snapshot.actuator_work is None else snapshot.actuator_work,
             math.nan if errors is None else errors.relative,
         )
 
     def _fill_flow(self, numbers: Numbers, snapshot: Snapshot) -> None:
-        numbers["vector"][:] = self._simulation.water_at(self._head[POSITION])
+        numbers["vector"][:] = self._simulation.water_at(snapshot.position)
 
     def _fill_vectors(self, numbers: Numbers, snapshot: Snapshot) -> None:
         simulation, flow = self._simulation, self._simulation.flow
@@ -225,16 +214,9 @@ class SampleMessages:
             if "effort" in numbers:
                 numbers["effort"][place] = joints.motor_torque(snapshot.torque)[:, axis]
 
-    def _fill_robot(self, numbers: Numbers, snapshot: Snapshot) -> None:
-        joints = snapshot.joints
-        for field, name in (("position", "joint_angle"), ("velocity", "joint_rate"), ("effort", "joint_torque")):
-            numbers[field][:] = joints[name]
-
-    def _fill_motors(self, numbers: Numbers, snapshot: Snapshot) -> None:
-        torque, power = snapshot.joints["motor_torque"], snapshot.joints["motor_power"]
+    def _fill_limits(self, numbers: Numbers, snapshot: Snapshot) -> None:
         assert self._simulation.robot is not None
-        numbers["torque"][:], numbers["power"][:] = torque, power
-        numbers["limit"][:] = most_torque(self._simulation.robot.servos, torque, power)
+        numbers["limit"][:] = most_torque(self._simulation.robot.servos, numbers["torque"], numbers["power"])
 
 
 def _lengthen(message: Any, x: np.ndarray, fins: int) -> None:
@@ -247,10 +229,6 @@ def _lengthen(message: Any, x: np.ndarray, fins: int) -> None:
 
 NO_ERRORS = HeadErrors(*[math.inf] * 5)
 UNKNOWN = np.array([-1.0, *[0.0] * 35])  # a covariance
-POSITION, ORIENTATION, ANGULAR, LINEAR = slice(0, 3), slice(3, 7), slice(7, 10), slice(10, 13)
-TORQUES, FORCES, RESISTANCES = (
-    tuple(f"{name}_{axis}" for axis in (1, 2, 3)) for name in ("torque", "force", "resistive")
-)
 
 
 def root_message(parameters: DynamicsParameters) -> TFMessage:

@@ -12,6 +12,8 @@ from eel_model.flow.lattice import lattice_around, velocities_at
 from eel_model.robot.actuators import most_torque
 from eel_model.robot.part import AXES
 
+from eel_dynamics.runs.exchange.message_fields import FIELDS, PROFILES
+
 SECOND = 1_000_000_000  # ns
 
 
@@ -22,10 +24,8 @@ def messages_of_run(run) -> Iterator[tuple[str, SimpleNamespace]]:
     yield "body", _body_of(run)
     yield "curvature_law", SimpleNamespace(name=run.law.name)
     yield "diagnostics", _status(run, start, "computed", {})
-    for k, time in enumerate(run.time):
-        header = SimpleNamespace(stamp=_stamp(time))
-        for topic, fields in _sample(run, k).items():
-            yield topic, SimpleNamespace(header=header, **fields)
+    for k in range(len(run.time)):
+        yield from _sample(run, k)
     yield "diagnostics", _status(run, end, "computed", _checks(run))
 
 
@@ -65,60 +65,43 @@ def _body_of(run) -> SimpleNamespace:
     )
 
 
-def _sample(run, k: int) -> dict[str, dict]:
-    """Fields of each topic at sample `k`."""
-    pose = SimpleNamespace(
-        position=_named("xyz", run.position[k]),
-        orientation=_named("xyzw", run.orientation[k]),
-    )
-    twist = SimpleNamespace(angular=_named("xyz", run.twist[k, :3]), linear=_named("xyz", run.twist[k, 3:]))
-    curvature, rate = run.curvature[k], run.curvature_rate[k]
-    found = {
-        "head_pose": {"pose": pose},
-        "head_twist": {"twist": twist},
-        "odom": {"pose": SimpleNamespace(pose=pose), "twist": SimpleNamespace(twist=twist)},
-        "backbone": {
-            "x": run.x,
-            "position": run.backbone[k].ravel() + 0.0,
-            "orientation": run.section_orientation[k].ravel() + 0.0,
-        },
-        "curvature": {
-            "x": run.x,
-            "pitch": curvature[:, 1],
-            "pitch_rate": rate[:, 1],
-            "yaw": curvature[:, 2],
-            "yaw_rate": rate[:, 2],
-        },
-    }
-    if run.torque is not None:
-        found["internal_wrench"] = {"x": run.x, **_by_axis(torque=run.torque[k], force=run.force[k])}
-    if run.fluid_force is not None:
-        found["hydrodynamic_load"] = {
-            "x": run.x,
-            **_by_axis(force=run.fluid_force[k], resistive=run.resistive_force[k]),
-            "tail_force": _named("xyz", run.tail_force[k]),
-            "nose_force": _named("xyz", run.nose_force[k]),
-            "fin_force": np.zeros(0) if run.fin_force is None else run.fin_force[k].ravel(),
-        }
-        if run.wake_momentum_rate is not None:  # a file of an older version has none
-            found["hydrodynamic_load"]["wake_momentum_rate"] = _named("xyz", run.wake_momentum_rate[k])
-    if run.fin_angle is not None:
-        found["fin_states"] = {"name": [fin.name for fin in run.fins], "position": run.fin_angle[k]}
+def _sample(run, k: int) -> Iterator[tuple[str, SimpleNamespace]]:
+    """Topic and message at sample `k`, of the topics whose quantities the run has."""
+    header = SimpleNamespace(stamp=_stamp(run.time[k]))
+    for topic, fields in FIELDS.items():
+        values = {path: getattr(run, each.quantity) for path, each in fields.items()}
+        if (first := next(iter(values.values()))) is None or not first.size:
+            continue
+        message = SimpleNamespace(header=header, **_besides(run, k, topic))
+        for path, each in fields.items():
+            if values[path] is not None:  # a file of an older version may have none
+                _put(message, path, each.of(values[path][k]) + 0.0, each.parts)
+        yield topic, message
     if run.flow is not None:
         points = lattice_around(run.backbone[k].mean(axis=0), run.body.length, run.flow)
         velocity = velocities_at(run.flow, points, run.time[k]) + run.scene.current
-        found["flow_vectors"] = {"position": points.ravel(), "velocity": velocity.ravel()}
-    if run.fin_angle is not None:
-        found["fin_states"] = {"name": [fin.name for fin in run.fins], "position": run.fin_angle[k]}
-    if run.joint_angle is not None and run.robot.joints:
-        rows = {"position": run.joint_angle[k], "velocity": run.joint_rate[k], "effort": run.joint_torque[k]}
-        found["joint_states"] = {"name": [joint.name for joint in run.robot.joints], **rows}
-        torque, power = run.motor_torque[k], run.motor_power[k]
-        limit = most_torque(run.robot.servos, torque, power)
-        found["motor_states"] = {"torque": torque, "limit": limit, "power": power}
+        yield "flow_vectors", SimpleNamespace(header=header, position=points.ravel(), velocity=velocity.ravel())
     if run.energy is not None:
-        found["energy"] = {name: float(run.energy[name][k]) for name in ENERGY_FIELDS}
-    return found
+        ledger = {name: float(run.energy[name][k]) for name in ENERGY_FIELDS}
+        yield "energy", SimpleNamespace(header=header, **ledger)
+
+
+def _besides(run, k: int, topic: str) -> dict[str, Any]:
+    """What the message of a `topic` has besides the fields that `FIELDS` names."""
+    if topic in ("joint_states", "fin_states"):
+        return {"name": [part.name for part in (run.robot.joints if topic == "joint_states" else run.fins)]}
+    if topic == "motor_states":
+        return {"limit": most_torque(run.robot.servos, run.motor_torque[k], run.motor_power[k])}
+    return {"x": run.x} if topic in PROFILES else {}
+
+
+def _put(message: SimpleNamespace, path: str, numbers: np.ndarray, parts: str) -> None:
+    """Put `numbers` into the field at the `path` of a `message`."""
+    *above, name = path.split(".")
+    for each in above:
+        message = vars(message).setdefault(each, SimpleNamespace())
+    named = dict(zip(parts, numbers.tolist(), strict=True)) if parts else None
+    setattr(message, name, numbers if named is None else SimpleNamespace(**named))
 
 
 def _checks(run) -> dict[str, float]:
@@ -144,12 +127,3 @@ def _status(run, stamp: SimpleNamespace, text: str, values: dict[str, float]) ->
 def _stamp(time: float) -> SimpleNamespace:
     seconds, nanoseconds = divmod(round(time * SECOND), SECOND)
     return SimpleNamespace(sec=seconds, nanosec=nanoseconds)
-
-
-def _named(names: str, values: np.ndarray) -> SimpleNamespace:
-    return SimpleNamespace(**dict(zip(names, (values + 0.0).tolist(), strict=True)))  # + 0.0: no minus zero
-
-
-def _by_axis(**vectors: np.ndarray) -> dict[str, np.ndarray]:
-    """name_1, name_2, name_3 (M,) of each vector (M, 3)."""
-    return {f"{name}_{axis}": values[:, axis - 1] for name, values in vectors.items() for axis in (1, 2, 3)}

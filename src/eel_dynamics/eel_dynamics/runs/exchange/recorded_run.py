@@ -9,6 +9,7 @@ import os
 import warnings
 from collections.abc import Iterable
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -29,12 +30,11 @@ from eel_model.scene import Scene
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.budget import Budget
 from eel_dynamics.runs.exchange.eel_viz_functions import messages_of_bag
+from eel_dynamics.runs.exchange.message_fields import FIELDS, OF_JOINTS, quantities_of
 from eel_dynamics.simulation.energy import WORKS, EnergyLedger
 
 NEEDED = ("head_pose", "head_twist", "backbone", "curvature")
 FURTHER = ("internal_wrench", "hydrodynamic_load", "energy", "fin_states")
-OF_JOINTS = ("joint_states", "motor_states")
-ENDS = ("tail_force", "nose_force", "wake_momentum_rate")
 FEWEST = 4  # samples, for splines through them
 AXIS_OF_NUMBER = {column + 1: name for name, column in SECTION_COLUMN.items()}  # as in CurvatureTerm
 
@@ -78,18 +78,22 @@ def fields_of_messages(
     if len(stamps) < FEWEST:
         raise ValueError(f"there must be {FEWEST} instants or more with a message on each topic, got {len(stamps)}")
     rows = {topic: [samples[topic][stamp] for stamp in stamps] for topic in (*NEEDED, *further)}
+    if OF_JOINTS[0] in rows and robot is not None:
+        rows[OF_JOINTS[0]] = [_in_order(message, robot) for message in rows[OF_JOINTS[0]]]
     scene = replace(
         Scene() if scene is None else scene, internal_wrench="internal_wrench" in rows, ledger="energy" in rows
     )
     found: dict[str, Any] = {"time": 1e-9 * np.array(stamps), "law": _law(once), "scene": scene}
     found["accuracy"] = _accuracy(once, scene)
-    found |= _motion(rows, found["time"]) | ({} if robot is None else _joints(rows, robot))
+    found["x"] = np.array(rows["backbone"][0].x, dtype=float)
+    fins = len(rows["fin_states"][0].position) if "fin_states" in rows else 0
+    joints = 0 if robot is None else len(robot.joints)
+    found |= quantities_of(rows, station=len(found["x"]), fin=fins, joint=joints)
+    found |= {"head_acceleration": _acceleration(found["time"], found["twist"])} | _robot(found, robot)
     found["body"] = _body(once, scene) if body is None else body
     found["center_of_mass"] = _center_of_mass(found["body"], found["x"], found["backbone"])
     found |= dict.fromkeys(("closure_torque", "closure_force")) | dict.fromkeys(("steps", "evaluations", "nodes"), 0)
-    if "fin_states" in rows:
-        found["fin_angle"] = np.array([each.position for each in rows["fin_states"]])
-    return found | _wrench(rows) | _load(rows) | {"energy": _energy(rows, found["time"])}
+    return found | {"energy": _energy(rows, found["time"])}
 
 
 def _collected(messages) -> tuple[dict, dict]:
@@ -114,72 +118,27 @@ def _collected(messages) -> tuple[dict, dict]:
     return once, samples
 
 
-def _joints(rows: dict, robot: Robot) -> dict:
-    """The joints' arrays. No message tells the angle of a motor behind a series spring, nor how tails bend."""
-    found: dict[str, Any] = {"robot": robot}
-    if not robot.joints:
-        return found
-    names = [joint.name for joint in robot.joints]
-    columns = []
-    for message in rows["joint_states"]:
-        missing = [name for name in names if name not in message.name]
-        if missing:
-            raise ValueError(f"joint_states must have the robot's joints, got none of {', '.join(missing)}")
-        columns.append([list(message.name).index(name) for name in names])
-    for name, field in (("joint_angle", "position"), ("joint_rate", "velocity"), ("joint_torque", "effort")):
-        messages = zip(rows["joint_states"], columns, strict=True)
-        found[name] = np.array([np.array(getattr(message, field))[column] for message, column in messages])
-    if "motor_states" in rows:  # in the order of the robot's joints
-        for name, field in (("motor_torque", "torque"), ("motor_power", "power")):
-            found[name] = np.array([getattr(message, field) for message in rows["motor_states"]], dtype=float)
-    if all(servo is None or servo.series_stiffness is None for servo in robot.servos):
-        found["motor_angle"] = found["joint_angle"]
-    return found
+def _in_order(message: Any, robot: Robot) -> Any:
+    """A message of joint_states whose joints are the robot's, in their order. `ValueError` where one is missing."""
+    missing = [joint.name for joint in robot.joints if joint.name not in message.name]
+    if missing:
+        raise ValueError(f"joint_states must have the robot's joints, got none of {', '.join(missing)}")
+    order = [list(message.name).index(joint.name) for joint in robot.joints]
+    names = FIELDS["joint_states"]
+    return SimpleNamespace(**{name: np.array(getattr(message, name))[order] for name in names})
 
 
-def _motion(rows: dict, time: np.ndarray) -> dict:
-    pose = [message.pose for message in rows["head_pose"]]
-    twist = [message.twist for message in rows["head_twist"]]
-    angular = _numbers((each.angular for each in twist), "xyz")
-    linear = _numbers((each.linear for each in twist), "xyz")
-    whole = np.concatenate((angular, linear), axis=1)
-    rate = _spline(time, whole)(time, 1)
-    rate[:, 3:] += np.cross(angular, linear)
-    x = np.array(rows["backbone"][0].x, dtype=float)
-    bend = {name: np.array([getattr(each, name) for each in rows["curvature"]]) for name in ("pitch", "yaw")}
-    bend |= {f"{name}_rate": np.array([getattr(each, f"{name}_rate") for each in rows["curvature"]]) for name in bend}
-    straight = np.zeros_like(bend["pitch"])
-    return {
-        "position": _numbers((each.position for each in pose), "xyz"),
-        "orientation": _numbers((each.orientation for each in pose), "xyzw"),
-        "twist": whole,
-        "head_acceleration": rate,
-        "x": x,
-        "backbone": _along(rows["backbone"], "position", len(x), 3),
-        "section_orientation": _along(rows["backbone"], "orientation", len(x), 4),
-        "curvature": np.stack((straight, bend["pitch"], bend["yaw"]), axis=2),
-        "curvature_rate": np.stack((straight, bend["pitch_rate"], bend["yaw_rate"]), axis=2),
-    }
+def _robot(found: dict, robot: Robot | None) -> dict:
+    """No message tells the angle of a motor behind a series spring, nor how tails bend."""
+    stiff = robot is not None and all(servo is None or servo.series_stiffness is None for servo in robot.servos)
+    return {"robot": robot, "motor_angle": found["joint_angle"] if stiff else None}
 
 
-def _wrench(rows: dict) -> dict:
-    names = ("torque", "force")
-    if "internal_wrench" not in rows:
-        return dict.fromkeys(names)
-    return {name: _by_axes(rows["internal_wrench"], name) for name in names}
-
-
-def _load(rows: dict) -> dict:
-    if "hydrodynamic_load" not in rows:
-        return dict.fromkeys(("fluid_force", "resistive_force", *ENDS))
-    load = rows["hydrodynamic_load"]
-    ends = dict.fromkeys(ENDS) | {  # an older bag has no wake_momentum_rate
-        name: _numbers((getattr(each, name) for each in load), "xyz") for name in ENDS if hasattr(load[0], name)
-    }
-    found = {"fluid_force": _by_axes(load, "force"), "resistive_force": _by_axes(load, "resistive"), **ends}
-    if "fin_states" in rows and hasattr(load[0], "fin_force"):
-        found["fin_force"] = _along(load, "fin_force", len(rows["fin_states"][0].position), 3)
-    return found
+def _acceleration(time: np.ndarray, twist: np.ndarray) -> np.ndarray:
+    """(T, 6), by splines through the head's `twist` (T, 6) at `time` (T,) [s]."""
+    rate = _spline(time, twist)(time, 1)
+    rate[:, 3:] += np.cross(twist[:, :3], twist[:, 3:])
+    return rate
 
 
 def _energy(rows: dict, time: np.ndarray) -> EnergyLedger | None:
@@ -261,15 +220,3 @@ def _spline(x: np.ndarray, values: np.ndarray, axis: int = 0):
     from scipy.interpolate import CubicSpline
 
     return CubicSpline(x, values, axis=axis)
-
-
-def _numbers(parts, names: str) -> np.ndarray:
-    return np.array([[getattr(each, name) for name in names] for each in parts], dtype=float)
-
-
-def _along(messages: list, name: str, stations: int, size: int) -> np.ndarray:
-    return np.array([np.reshape(getattr(each, name), (stations, size)) for each in messages], dtype=float)
-
-
-def _by_axes(messages: list, name: str) -> np.ndarray:
-    return np.array([np.stack([getattr(each, f"{name}_{axis}") for axis in (1, 2, 3)], axis=-1) for each in messages])
