@@ -72,10 +72,12 @@ def test_two_eels(start, fresh_domain, tmp_path):
     follow, nodes = ("-p", "follow_clock:=true"), []
     for space, gait, clock in (("/right", "straight", follow), ("/left", "falling", ())):
         remap = ("--ros-args", "-r", f"__ns:={space}")
-        start("gait_generator", *remap, "-p", f"gait:={gait}")
         pace = ("-p", "duration:=3.0", "-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=1")
         nodes.append(start("dynamics", *remap, *pace, *clock))
         nodes[-1].wait_for_output("waiting for")
+        if space == "/left":  # it goes on without a look at who follows: so it begins once its clock is followed
+            nodes[0].wait_for_output("waiting for /clock, which stands at t = 0 s")
+        start("gait_generator", *remap, "-p", f"gait:={gait}")
     assert listener.wait(120.0) == 0, listener.output()
     received = json.loads([line for line in listener.output().splitlines() if line.startswith("{")][-1])
     assert received["count"] == {"/left": 301, "/right": 301}

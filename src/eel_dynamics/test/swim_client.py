@@ -130,12 +130,18 @@ class SwimClient:
         self.until(lambda: self.received[topic], f"message on {topic}")
         return self.received[topic][-1]
 
-    def until_time(self, seconds, topic="head_pose"):
-        """Spins until a sample at that simulation time or later has come."""
-        self.until(
-            lambda: self.received[topic] and nanoseconds(self.received[topic][-1].header.stamp) >= seconds * 1e9,
-            f"{topic} at {seconds} s",
-        )
+    def until_time(self, seconds, *topics):
+        """Spins until each topic, by default head_pose, has a sample at that simulation time or later: what has come on
+        one topic may still be on its way on another."""
+        for topic in topics or ("head_pose",):
+            self.until(
+                lambda topic=topic: self.received[topic] and self.newest(topic) >= seconds * 1e9,
+                f"{topic} at {seconds} s",
+            )
+
+    def newest(self, topic):
+        """The stamp [ns] of the newest message of a topic."""
+        return nanoseconds(self.received[topic][-1].header.stamp)
 
     def call(self, kind, name, **request):
         answer = answer_of(self._service(kind, name), kind.Request(**request))
@@ -154,24 +160,25 @@ class SwimClient:
         self.until(self._services[name].service_is_ready, f"service {name}")
         return self._services[name]
 
+    def _call_until_done(self, kind, name, **request):
+        """As `call`; on a busy machine it may take longer than the second that the service waits for it."""
+        while "still queued" in (answer := self.call(kind, name, **request)).message:
+            pass
+        return answer
+
     def reset(self):
-        return self.call(Trigger, "dynamics/reset")
+        return self._call_until_done(Trigger, "dynamics/reset")
 
     def pause(self, paused):
-        return self.call(SetBool, "dynamics/pause", data=paused)
+        return self._call_until_done(SetBool, "dynamics/pause", data=paused)
 
-    def stop_the_clock(self, topic):
-        """Pauses the run, and waits until the last sample before it has come; its time [s]."""
-        while not (answer := self.pause(True)).success:
-            assert "soon" in answer.message, answer.message
+    def stop_the_clock(self, *topics):
+        """Pauses the run, and waits until the last sample before it has come on each topic; its time [s]."""
+        answer = self.pause(True)
+        assert answer.success, answer.message
         time_of = float(re.findall(r"t = (\S+) s", answer.message)[0])  # of six digits
-        self.until(
-            lambda: (
-                self.received[topic] and nanoseconds(self.received[topic][-1].header.stamp) >= (time_of - 1e-5) * 1e9
-            ),
-            f"{topic} at {time_of} s",
-        )
-        return nanoseconds(self.received[topic][-1].header.stamp) / 1e9
+        self.until_time(time_of - 1e-5, *topics)
+        return self.newest(topics[0]) / 1e9
 
     def deliver(self, messages):
         """Publishes samples of a controller, and waits until the node has taken them: between two answers to questions

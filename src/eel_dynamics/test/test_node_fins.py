@@ -40,17 +40,18 @@ def test_commands_reach_the_fins_between_two_samples_as_in_the_library(start, cl
     assert commands.wait_for_all_acked(Duration(seconds=LIMIT))
     node.wait_for_output("fin_command refused", LIMIT)
     assert swim.pause(False).success
-    swim.until_time(paused + 0.4)
+    samples = [round(1e9 * paused) + 10_000_000 * k for k in range(1, 21)]
+    swim.until_time(samples[-1] * 1e-9, "head_pose", "fin_states")
     flow, robot = robot and flow_from_text(FLOW), robot_of(robot or "")
     library = Simulation(law=straight(), fins=fins_from_text(f"{PAIR} + {RUDDER}"), robot=robot, flow=flow)
     library.advance(paused)
     library.command_fins({"left_500": 0.3})
-    states = {nanoseconds(m.header.stamp): m for m in swim.received["fin_states"]}
-    later = [pose for pose in swim.received["head_pose"] if nanoseconds(pose.header.stamp) > 1e9 * paused + 1e6]
-    for pose in later[:20]:
-        stamp = nanoseconds(pose.header.stamp)
+    poses, states = (
+        {nanoseconds(m.header.stamp): m for m in swim.received[topic]} for topic in ("head_pose", "fin_states")
+    )
+    for stamp in samples:
         library.advance(round(stamp / 1e7) / 100.0)
-        assert np.array_equal(place(pose), library.head.position)
+        assert np.array_equal(place(poses[stamp]), library.head.position)
         assert list(states[stamp].name) == ["left_200", "right_200", "left_500"]
         assert np.array_equal(states[stamp].position, library.observe(False, False).fin_angle)
     assert states[stamp].position[2] > 0.1

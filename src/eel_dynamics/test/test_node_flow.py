@@ -144,7 +144,8 @@ def test_a_stuck_subscriber_delays_a_run_once_and_costs_the_others_nothing(start
         assert "has been stuck for 10 s" in node.output() and node.output().count("has been stuck") == 1, node.output()
         swim.until(lambda: len(swim.received["backbone"]) >= 13001, "all samples of the same topic")
         assert node.wait(LIMIT) == 0
-        assert any(swim.diagnosis(message)[0] == 1 for message in swim.received["/diagnostics"])
+        warned = lambda: any(swim.diagnosis(message)[0] == 1 for message in swim.received["/diagnostics"])  # noqa: E731
+        swim.until(warned, "warning in the diagnostics")
     finally:
         os.kill(stuck.process.pid, signal.SIGCONT)
 
@@ -253,7 +254,7 @@ def test_dying_controller_brings_the_shape_to_rest_and_may_come_back(start, clie
         *options,
         "-p",
         "wait_for_subscribers:=1",
-        *(("-p", "duration:=400") if factor == "0" else ()),
+        *(("-p", "duration:=1e6") if factor == "0" else ()),  # never reached
     )
     swim.until(lambda: swim.samples.get_subscription_count() == 1, "the node's subscription")
     swim.until(lambda: swim.received["curvature"], "a first sample")

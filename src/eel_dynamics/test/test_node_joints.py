@@ -189,7 +189,7 @@ def test_motors_at_their_limits_are_named_with_how_long(start, client, tmp_path)
     swim.laws.publish(law_to_message(straight()))
     assert node.wait(LIMIT) == 0, node.output()
     assert "at the torque limit at t = " in node.output() and "joint_3 for " in node.output(), node.output()
-    swim.until(lambda: "at_torque_limit" in swim.diagnosis()[2], "the diagnostics")
+    swim.until(lambda: float(swim.diagnosis()[2]["time"]) == 4.0, "the last diagnostics")
     told = swim.diagnosis()[2]["at_torque_limit"]
     times = dict(each.split(" ", 1) for each in told.split(", "))
     assert 0.1 < float(times["joint_3"].split()[0]) < 4.0

@@ -2,6 +2,7 @@
 """Laws over DDS: blended without a jump, good ones taken from anybody, bad ones refused with one clear error."""
 
 import math
+import re
 import time
 
 import numpy as np
@@ -99,7 +100,9 @@ def test_a_volatile_publisher_is_received_and_repeating_changes_nothing(start, c
 
     said_until(0.5)
     message = law_to_message(bend(-1.0, name="other", transition=0.3))
-    said_until(nanoseconds(swim.latest("curvature").header.stamp) / 1e9 + 1.0)
+    said_until(swim.newest("curvature") / 1e9 + 0.1)
+    node.wait_for_output("law 'other' adopted", LIMIT)
+    said_until(float(re.findall(r"law 'other' adopted at t = (\S+) s", node.output())[0]) + 0.5)
     assert np.allclose(swim.latest("curvature").yaw, -1.0)  # repeating did not begin the blend anew
     assert node.output().count("adopted") == 2, node.output()
     assert "incompatible" not in node.output()

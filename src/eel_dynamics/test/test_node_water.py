@@ -114,7 +114,7 @@ def test_a_current_is_followed_held_when_it_stops_and_told(start, client):
     node.wait_for_output("no current since t", LIMIT)
     node.wait_for_output("is held", LIMIT)
     stopped = seconds(swim.received["head_pose"][-1])
-    swim.until_time(stopped + 0.3)
+    swim.until_time(stopped + 0.3, "head_pose", "head_twist", "flow_at_head")
     water = np.array([[seconds(m), *vector(m)] for m in swim.received["flow_at_head"]])
     assert np.allclose(water[-1, 1:], [0.2, 0.1 * sent[-1], 0.0], atol=1e-12)
     water = water[np.r_[True, np.diff(water[:, 0]) > 0.0]]  # sample 0 is repeated
@@ -143,7 +143,7 @@ def test_a_current_in_another_frame_or_with_nan_is_left_out(start, client):
     swim.until(lambda: told("header.frame_id must be odom, got 'base_link'", wrong, (1.0, 0.0, 0.0)), "refusal")
     swim.until(lambda: told("current velocity must be finite", sensor, (np.nan, 0.0, 0.0)), "refusal")
     now = seconds(swim.latest("head_pose"))
-    swim.until_time(now + 0.2)
+    swim.until_time(now + 0.2, "flow_at_head")
     assert vector(swim.received["flow_at_head"][-1]) == [0.0, 0.0, 0.0]
 
 
