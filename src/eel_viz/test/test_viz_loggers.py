@@ -9,6 +9,7 @@ import made_up
 import numpy as np
 import pytest
 from eel_base.attitude import attitude, world_from_body, world_from_section
+from eel_viz.messages import WRENCH_FIELDS, Pose
 from eel_viz.plots import heat_map
 from eel_viz.plots.limit import RECENT
 from eel_viz.recording.dispatcher import Dispatcher
@@ -27,6 +28,7 @@ from eel_viz.scene3d.water import FLOOR, GRID, LABELS, WALLS
 from eel_viz.settings import Settings
 from eel_viz.views.blueprint import arrangement
 from made_up_recording import body
+from made_up_recording import profiles as profiles_of
 
 from eel_viz import entities
 
@@ -403,6 +405,41 @@ def test_notes_say_how_fast_the_head_is_and_where_the_greatest_torque_was(long_s
     for stamp, (words,) in zip(speeds.stamps.tolist(), speeds.values["labels"], strict=True):
         now = np.linalg.norm(samples[stamp]["head_twist"][0].linear)
         assert float(words.split()[1]) == pytest.approx(now, abs=0.006)
+
+
+@pytest.mark.parametrize("lag", [-9, 0, 9])
+def test_the_run_panel_is_true_at_its_time_whatever_comes_first(lag, tmp_path):
+    path, said = tmp_path / "panel.rrd", []
+    destination = FileDestination(Settings(recording=str(path)), said.append, said.append)
+    stream = destination.open(1, "panel")
+    loggers, swimmer = Loggers(stream, Settings(), Rates()), made_up.Swimmer(21)
+    times = [round(k * 20e6) for k in range(201)]
+    given = {
+        "head_pose": lambda t: Pose(**{name: swimmer.head(t)[name] for name in ("position", "orientation")}),
+        "internal_wrench": lambda t: profiles_of(swimmer.wrench(t), WRENCH_FIELDS),
+    }
+    for k in range(-9, len(times) + 9):  # the torques come so many samples after the heads
+        for topic, at in (("head_pose", k), ("internal_wrench", k - lag)):
+            if 0 <= at < len(times):
+                loggers.log(topic, times[at], given[topic](times[at] / 1e9))
+    loggers.flush()
+    destination.close_recording(stream)
+    texts, wrench = read(path, entities.RUN), read(path, entities.WRENCH_NUMBERS)
+    assert set(texts.stamps.tolist()) == set(drawn_stamps(times))
+    at, torque = wrench.stamps, wrench["torque_3"]
+    greatest, heads = np.abs(torque).max(axis=1), read(path, entities.POSITION)["scalars"]
+    shown = dict(
+        zip(texts.stamps_of["text"].tolist(), (text for (text,) in texts["text"]), strict=True)
+    )  # the last of a stamp
+    for stamp in drawn_stamps(times)[1:]:
+        said, k = shown[stamp].replace("*", ""), int(np.searchsorted(at, stamp))
+        where = int(np.abs(torque[k]).argmax())
+        assert f"now {torque[k, where]:+.2g} N m at X = {swimmer.x[where]:.2f} m" in said
+        assert f"in 3 s {greatest[: k + 1][at[: k + 1] >= stamp - RECENT].max():.2g} N m" in said
+        peak = int(greatest[: k + 1].argmax())
+        assert f"since the start {torque[peak, np.abs(torque[peak]).argmax()]:+.2g} N m" in said
+        length = np.linalg.norm(np.diff(heads[: k + 1], axis=0), axis=1).sum()
+        assert f"until {stamp / 1e9:.2f} s: mean speed {length / stamp * 1e9:.3f} m/s, path {length:.2f} m" in said
 
 
 @pytest.fixture(scope="module")

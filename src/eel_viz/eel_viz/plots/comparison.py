@@ -69,13 +69,11 @@ class Comparison:
     def add_head(self, side: "Side", stamp: int, position: np.ndarray) -> None:
         """Take a head's position (3,) [m]; log the distance between the two heads for each complete pair."""
         for pair in self._heads.add(Stamped(stamp, position), of_other=side is self.other):
-            self.this.summary.add_position(pair.stamp, pair.this)
-            self.other.summary.add_position(pair.stamp, pair.other)
-            if self._due("compared", pair.stamp, SUMMARY_PERIOD):
-                text = rr.TextDocument(self._text(), media_type="text/markdown")
-                self._stream.log(pair.stamp, entities.COMPARE_TEXT, text)
             distance = float(np.linalg.norm(pair.this - pair.other))
             self._farthest = max(self._farthest, distance)
+            self.this.summary.add_position(pair.stamp, pair.this)
+            if self.other.summary.add_position(pair.stamp, pair.other):
+                self._write(pair.stamp)
             self._stream.add_scalars(pair.stamp, entities.DISTANCE, [distance])
 
     def add_torque(self, side: "Side", stamp: int, wrench: Profiles) -> None:
@@ -83,8 +81,6 @@ class Comparison:
         torque = wrench.together("torque_1", "torque_2", "torque_3")
         for at, x, this, other in self._torques.add(Stamped(stamp, torque, wrench.x), of_other=side is self.other):
             assert x is not None  # torques have stations
-            self.this.summary.add_torque(at, x, this[:, 2])
-            self.other.summary.add_torque(at, x, other[:, 2])
             difference = this - other
             both = np.stack([other[:, 2], this[:, 2]], axis=1)
             self._both.include(at, x, both)
@@ -92,6 +88,9 @@ class Comparison:
             most = float(np.abs(difference).max())
             self._worst = max(self._worst, most)
             self._greatest = max(self._greatest, float(np.abs(this).max()))
+            self.this.summary.add_torque(at, x, this[:, 2])
+            if self.other.summary.add_torque(at, x, other[:, 2]):
+                self._write(at)
             self._stream.add_scalars(at, entities.TORQUE_DIFFERENCE_MOST, [most])
             if self.is_due("compared torque", at):
                 self._both.draw(at, x, both)
@@ -106,6 +105,11 @@ class Comparison:
         centre, radius = self._frame.follow(stamp, positions, body_length)
         log_frame(self._stream, stamp, entities.BOTH, centre, radius)
         self._water.draw(stamp, centre, radius)
+
+    def _write(self, stamp: int) -> None:
+        if self._due("compared", stamp, SUMMARY_PERIOD):
+            text = rr.TextDocument(self._text(), media_type="text/markdown")
+            self._stream.log(stamp, entities.COMPARE_TEXT, text)
 
     def _text(self) -> str:
         """Markdown: the greatest differences, and the figures of both runs side by side."""

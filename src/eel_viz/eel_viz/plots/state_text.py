@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """The state of a run in a few lines of Markdown.
 
-The path comes from head_pose, the torque from internal_wrench, the rest from diagnostics.
+The path comes from head_pose, the torque from internal_wrench, the rest from diagnostics. Topics come in any order:
+what is written is always of one stamp, the last of which both have come.
 """
 
 import re
+from typing import NamedTuple
 
 import numpy as np
 
 from eel_viz.messages import Body
 from eel_viz.plots.limit import RecentPeak
 from eel_viz.plots.readable import number
+from eel_viz.same_stamp import SameStamp
 from eel_viz.settings import Drawing
 
 MAXIMUM_AGE = 2_000_000_000  # ns: older diagnostics are not shown as the present state
@@ -40,40 +43,87 @@ RINGS = (
 )
 
 
+class Path(NamedTuple):
+    """Of the head, up to a stamp: its length [m], and how long it took [s]."""
+
+    length: float
+    seconds: float
+
+    @property
+    def speed(self) -> float:
+        """The mean [m/s]; 0 at the start."""
+        return self.length / self.seconds if self.seconds > 0 else 0.0
+
+
+class Torque(NamedTuple):
+    """C3 where it is greatest [N m], its place [m] and stamp [ns]."""
+
+    value: float = 0.0
+    x: float = 0.0
+    stamp: int = 0
+
+
+class Torques(NamedTuple):
+    """The greatest C3 of one sample, of the last seconds, and since the start."""
+
+    now: Torque = Torque()
+    recent: Torque = Torque()
+    peak: Torque = Torque()
+
+
 class Summary:
-    """Collects the state of a run, and writes it as Markdown."""
+    """Collects the state of a run, and writes it as Markdown.
+
+    Attributes:
+        stamp: of what is written [ns].
+    """
 
     def __init__(self) -> None:
         self.law: str | None = None
         self.body: Body | None = None
         self._state: tuple[int, str] = (0, "")  # ns, message of the diagnostics
-        self._statuses: list[tuple[int, str, dict[str, str]]] = []  # later than the head's last stamp
+        self._statuses: list[tuple[int, str, dict[str, str]]] = []  # later than `stamp`
         self.values: dict[str, str] = {}  # of the diagnostics
-        self._first: tuple[int, np.ndarray] | None = None
-        self._last: tuple[int, np.ndarray] | None = None
-        self._path = 0.0  # m
-        self._torque: tuple[float, float, int] = (0.0, 0.0, 0)  # N m, m, ns: the greatest of the last sample
-        self._peak = self._torque  # the greatest so far
-        self._recent = RecentPeak()
+        self.stamp = 0
+        self._begin = 0  # ns: of the path
+        self._head: np.ndarray | None = None  # its last position
+        self._length = 0.0  # m: of its path
+        self._peak, self._recent = Torque(), RecentPeak()
+        self._path: Path | None = None  # this and the next: what is written
+        self._torques = Torques()
+        self._has_torque = False
+        self._sample = SameStamp(self._complete)
 
-    def add_position(self, stamp: int, position: np.ndarray) -> None:
-        """Add the head's `position`, (3,) [m] in the world, at `stamp` [ns]."""
-        if self._last is not None:
-            self._path += float(np.linalg.norm(position - self._last[1]))
-        self._last = (stamp, np.array(position))
-        self._first = self._first or self._last
+    def add_position(self, stamp: int, position: np.ndarray) -> bool:
+        """Add the head's `position`, (3,) [m] in the world, at `stamp` [ns]; whether that completes a sample."""
+        if self._head is None:
+            self._begin = stamp
+        else:
+            self._length += float(np.linalg.norm(position - self._head))
+        self._head = np.array(position)
+        path = Path(self._length, (stamp - self._begin) / 1e9)
+        if not self._has_torque:
+            self._complete(stamp, path, self._torques)
+        self._sample.first(stamp, path)
+        return self.stamp == stamp
+
+    def add_torque(self, stamp: int, x: np.ndarray, torque: np.ndarray) -> bool:
+        """Add the yaw torque C3, (M,) [N m], at stations `x` (M,) [m] and `stamp` [ns]; likewise."""
+        self._has_torque = True
+        k = int(np.argmax(np.abs(torque)))
+        now = Torque(float(torque[k]), float(x[k]), stamp)
+        self._recent.include(stamp, abs(now.value), now.x)
+        if abs(now.value) > abs(self._peak.value):
+            self._peak = now
+        self._sample.second(stamp, Torques(now, Torque(self._recent.value, self._recent.place), self._peak))
+        return self.stamp == stamp
+
+    def _complete(self, stamp: int, path: Path, torques: Torques) -> None:
+        self.stamp, self._path, self._torques = stamp, path, torques
         self._take_statuses()
 
-    def add_torque(self, stamp: int, x: np.ndarray, torque: np.ndarray) -> None:
-        """Add the yaw torque C3, (M,) [N m], at stations `x` (M,) [m] and `stamp` [ns]."""
-        k = int(np.argmax(np.abs(torque)))
-        self._torque = (float(torque[k]), float(x[k]), stamp)
-        self._recent.include(stamp, abs(float(torque[k])), float(x[k]))
-        if abs(torque[k]) > abs(self._peak[0]):
-            self._peak = self._torque
-
     def add_status(self, stamp: int, state: str, values: dict[str, str]) -> bool:
-        """Add message and values of the diagnostics at `stamp` [ns]; they apply once the head has reached that stamp.
+        """Add message and values of the diagnostics at `stamp` [ns]; they apply once a sample has reached that stamp.
 
         Returns whether they apply already.
         """
@@ -84,17 +134,12 @@ class Summary:
 
     def _take_statuses(self) -> bool:
         taken = False
-        while self._statuses and self._last is not None and self._statuses[0][0] <= self._last[0]:
+        while self._statuses and self._path is not None and self._statuses[0][0] <= self.stamp:
             stamp, state, values = self._statuses.pop(0)
             self._state = (stamp, state)
             self.values.update(values)
             taken = True
         return taken
-
-    @property
-    def stamp(self) -> int:
-        """Time of the head's last position [ns]."""
-        return 0 if self._last is None else self._last[0]
 
     def text(self) -> str:
         """The state as Markdown, one line per item."""
@@ -103,15 +148,14 @@ class Summary:
         lines = [", ".join(part for part in (law, plain(self._state[1], LONGEST_TEXT) if fresh else "") if part)]
         shown = [key for key in LABELS if self.values.get(key) and (fresh or key not in VOLATILE)]
         lines.append(", ".join(f"{LABELS[key]} {_shown(key, self.values[key])}" for key in shown))
-        if self._last is not None and self._first is not None:
-            seconds = (self._last[0] - self._first[0]) / 1e9
-            mean = self._path / seconds if seconds > 0 else 0.0
-            lines.append(f"until {self._last[0] / 1e9:.1f} s: mean speed **{mean:.3f} m/s**, path {self._path:.2f} m")
-        if self._peak[0]:
-            (torque, x, _), (peak, peak_x, stamp), recent = self._torque, self._peak, self._recent
-            lines.append(f"greatest torque C3 in 3 s **{recent.value:.2g} N m** at X = {recent.place:.2f} m")
-            lines.append(f"now {torque:+.2g} N m at X = {x:.2f} m")
-            lines.append(f"since the start {peak:+.2g} N m at X = {peak_x:.2f} m, {stamp / 1e9:.2f} s")
+        if self._path is not None:
+            path = f"mean speed **{self._path.speed:.3f} m/s**, path {self._path.length:.2f} m"
+            lines.append(f"until {self.stamp / 1e9:.2f} s: {path}")
+        if self._torques.peak.value:
+            now, recent, peak = self._torques
+            lines.append(f"greatest torque C3 in 3 s **{recent.value:.2g} N m** at X = {recent.x:.2f} m")
+            lines.append(f"now {now.value:+.2g} N m at X = {now.x:.2f} m")
+            lines.append(f"since the start {peak.value:+.2g} N m at X = {peak.x:.2f} m, {peak.stamp / 1e9:.2f} s")
         if self.body is not None:
             lines.append(f"body {self.body.length:.3g} m, {self.body.mass:.4g} kg")
         return "  \n".join(line for line in lines if line)
@@ -130,11 +174,10 @@ class Summary:
         """The main figures by name, for the comparison of two runs."""
         shown = {"law": plain(self.law or "")}
         shown |= {LABELS[key]: _shown(key, self.values[key]) for key in COMPARED if self.values.get(key)}
-        if self._last is not None and self._first is not None:
-            seconds = (self._last[0] - self._first[0]) / 1e9
-            shown["mean speed [m/s]"] = f"{self._path / seconds:.4f}" if seconds > 0 else "0"
-            shown["path [m]"] = f"{self._path:.3f}"
-        shown["greatest C3 of the samples [N m]"] = f"{self._peak[0]:+.4f}"
+        if self._path is not None:
+            shown["mean speed [m/s]"] = f"{self._path.speed:.4f}" if self._path.seconds > 0 else "0"
+            shown["path [m]"] = f"{self._path.length:.3f}"
+        shown["greatest C3 of the samples [N m]"] = f"{self._torques.peak.value:+.4f}"
         shown["warnings"] = str(len(self.values["warnings"].split("; "))) if self.values.get("warnings") else "none"
         return shown
 

@@ -33,7 +33,6 @@ from eel_viz.settings import Settings
 
 ENVELOPE_PERIOD = 500_000_000  # ns
 HEAT_MAP_PERIOD = 200_000_000
-SUMMARY_PERIOD = 200_000_000
 SHORT = reprlib.Repr()
 SHORT.maxstring = 220  # characters of a law's name, which is not checked before
 BESIDES = {
@@ -127,7 +126,8 @@ class Loggers:
 
     def head_pose(self, stamp: int, pose: Pose) -> None:
         """Log path, attitude and depth of the head."""
-        self.summary.add_position(stamp, pose.position)
+        if self.summary.add_position(stamp, pose.position):
+            self._summarise_if_due(stamp)
         if self._due("head_pose", stamp, self._number_period):
             scalars = self._stream.add_scalars
             scalars(stamp, entities.POSITION, pose.position)
@@ -136,8 +136,6 @@ class Loggers:
             scalars(stamp, entities.DEPTH, -pose.position[2:])
         if self._due("track", stamp, self._drawing_period):
             self._scene.head(stamp, pose)
-        if self._due("summary", stamp, SUMMARY_PERIOD):
-            self._summarise(stamp)
 
     def head_twist(self, stamp: int, twist: Twist) -> None:
         """Log the head's speed, and its velocities in base_link."""
@@ -166,7 +164,8 @@ class Loggers:
         """Log torques and forces along the body; C3 colours the flanks and makes the heat map."""
         torque = wrench.together("torque_1", "torque_2", "torque_3")
         force = wrench.together("force_1", "force_2", "force_3")
-        self.summary.add_torque(stamp, wrench.x, torque[:, 2])
+        if self.summary.add_torque(stamp, wrench.x, torque[:, 2]):
+            self._summarise_if_due(stamp)
         self._torque.include(stamp, wrench.x, torque)
         self._force.include(stamp, wrench.x, force)
         if self._due("wrench", stamp, self._number_period):
@@ -237,7 +236,7 @@ class Loggers:
         """Log each status whose level or message has changed; the values go into the summary."""
         for status in statuses:
             if self.summary.add_status(stamp, status.message, status.values):
-                self._summarise(self.summary.stamp)
+                self._summarise()
             if self._statuses.get(status.name) != (status.level, status.message):
                 self._statuses[status.name] = (status.level, status.message)
                 self._event(stamp, f"{status.name}: {status.message}", LEVELS[min(status.level, len(LEVELS) - 1)])
@@ -260,5 +259,10 @@ class Loggers:
     def _event(self, stamp: int, text: str, level: str) -> None:
         self._stream.log(stamp, entities.LOG, rr.TextLog(text, level=level))
 
-    def _summarise(self, stamp: int) -> None:
-        self._stream.log(stamp, entities.RUN, rr.TextDocument(self.summary.text(), media_type="text/markdown"))
+    def _summarise_if_due(self, stamp: int) -> None:
+        if self._due("summary", stamp, self._drawing_period):
+            self._summarise()
+
+    def _summarise(self) -> None:
+        text = rr.TextDocument(self.summary.text(), media_type="text/markdown")
+        self._stream.log(self.summary.stamp, entities.RUN, text)

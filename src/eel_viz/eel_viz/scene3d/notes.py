@@ -11,7 +11,7 @@ from eel_viz.same_stamp import SameStamp
 from eel_viz.scene3d import camera, colours
 from eel_viz.scene3d.lettering import standing_texts
 
-PERIOD = 400_000_000  # ns: words that changed faster could not be read
+PERIOD = 400_000_000  # ns: a speed that changed faster could not be read
 LETTERS = 0.043  # height of a capital [radii]
 AHEAD = (0.06, 0.26)  # from head to begin and end of the arrow [body lengths]
 NEARER = 0.25
@@ -58,17 +58,22 @@ class Notes:
             begin, end = (backbone.position[0] + share * length / speed * velocity for share in AHEAD)
             ends = {"origins": begin[None].astype(np.float32), "vectors": (end - begin)[None].astype(np.float32)}
             self._stream.add_row(stamp, entities.HEADING, rr.Arrows3D, **ends)
-            self._write(stamp, entities.SPEED_NOTE, f"swims {head_speed:.2f} m/s", end, frame, BESIDE)
+            words = f"swims {head_speed:.2f} m/s"
+            self._write(stamp, entities.SPEED_NOTE, words, end, frame, above=BESIDE, period=PERIOD)
 
     def _draw_torque(self, stamp: int, body: tuple[Backbone, Frame], peak: tuple[float, float]) -> None:
         (backbone, frame), (x, torque) = body, peak
         if torque > 0.0:
             place = np.array([np.interp(x, backbone.x, column) for column in backbone.position.T])
             words = f"{torque:.2g} N m at X = {x:.2f} m"
-            self._write(stamp, entities.TORQUE_NOTE, words, place, frame, ABOVE)
+            self._write(stamp, entities.TORQUE_NOTE, words, place, frame, above=ABOVE, period=0)
 
-    def _write(self, stamp: int, path: str, words: str, place: np.ndarray, frame: Frame, above: float) -> None:
+    def _write(
+        self, stamp: int, path: str, words: str, place: np.ndarray, frame: Frame, *, above: float, period: int
+    ) -> None:
         """Move the `words` before `place` (3,) [m]; log their letters if they are new, `above` [radii] it.
+
+        period: for how long words stay at least [ns].
 
         They are nearer to the eye by the share `NEARER`, and smaller, so that the body does not hide them.
         """
@@ -76,8 +81,8 @@ class Notes:
         near = place + NEARER * (centre + radius * camera.EYE - place)
         scale = np.full((1, 3), (1.0 - NEARER) * radius, dtype=np.float32)
         self._stream.add_row(stamp, path, rr.Transform3D, translation=near[None], scale=scale)
-        written, when = self._words.get(path, ("", stamp - PERIOD))
-        if words != written and stamp - when >= PERIOD:
+        written, when = self._words.get(path, ("", stamp - period))
+        if words != written and stamp - when >= period:
             self._words[path] = words, stamp
             self._stream.log(stamp, f"{path}/words", _written(words, above))
 
