@@ -31,6 +31,7 @@ PICTURE = OUT / "falling.png"
 DURATION, RATE = 10.0, 100.0  # s, Hz
 LISTENERS = 2  # the visualiser and the recorder
 RESIDUAL_LIMIT = 1e-3  # of the energy ledger, by the actuators' work
+PICTURED = 0.7  # of the swim: from here on
 CLOSURE_LIMIT = 1e-10  # of the internal force and torque at the nose, by their greatest values
 
 
@@ -53,7 +54,7 @@ def main() -> int:
         if found := failures(run, told):
             raise DemoError("; ".join(found))
         say(f"the library alone runs it {library_speed():,.0f} times faster than real time")
-        draw()
+        draw(run)
     except (DemoError, ValueError) as error:
         print(f"[demo] failed: {error}", file=sys.stderr)
         return 1
@@ -163,9 +164,11 @@ def library_speed() -> float:
     return statistics.median(speeds[1:])
 
 
-def draw() -> None:
-    """The picture: by the viewer, where it can draw without a display, else a plain one."""
-    command = ["eel", "render", str(RECORDING), str(PICTURE)]
+def draw(run: Run) -> None:
+    """The picture, of a strong bend: by the viewer, where it can draw without a display, else a plain one."""
+    late = run.time > PICTURED * DURATION
+    moment = run.time[late][np.abs(run.torque[late, :, 2]).max(axis=1).argmax()]
+    command = ["eel", "render", str(RECORDING), str(PICTURE), "--at", f"{moment:.2f}"]
     try:
         drawn = subprocess.run(command, capture_output=True, text=True, timeout=60)
         reason = (drawn.stderr or drawn.stdout).strip().splitlines()[-1:] if drawn.returncode else []

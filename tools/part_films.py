@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Films of what robots have: a torque limit that is lowered until a robot cannot follow; fins that hold the roll.
+"""A robot whose torque limit is lowered until it cannot follow: the film `docs/images/servos.webp` (`make pictures`).
 
-`docs/images/servos.webp` and `fins.webp` (`make pictures`). Rerun's viewer draws them; status 3 where it cannot.
+Rerun's viewer draws it; status 3 where it cannot.
 """
 
 import sys
@@ -13,20 +13,20 @@ from typing import Any
 import numpy as np
 from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
 from eel_gym.episode_recording import STACKED
-from eel_viz.pictures.drawing import Drawing, SideBySide, drawn, drawn_beside
+from eel_viz.pictures.drawing import Drawing, drawn
 from eel_viz.pictures.film import film
 from eel_viz.pictures.render import frames, times
 from eel_viz.recording.library import to_rerun
 from eel_viz.viewer import CannotRender
 from PIL import Image
 
-from eel_dynamics import Fin, Robot, RollHold, Run, Simulation, simulate
-from eel_gaits import Law, falling, straight
+from eel_dynamics import Robot, Run, Simulation
+from eel_gaits import Law, straight
 
 FOLDER = Path(__file__).resolve().parent.parent / "docs" / "images"
 LIMITS = ((1.0, 3.0), (0.3, 6.0), (0.2, 9.0), (0.1, 12.0))  # N m, and until when [s]
 STEP = 0.02  # s, between samples
-WHOLE, HALF = (1080, 640), (720, 504)  # pixels: of a window, of one of two pictures
+WHOLE = (1080, 640)  # pixels: of a window
 WIDTH = 760  # pixels of a film, at most
 FPS, QUALITY = 6.0, 24
 BAR = 60  # pixels: the empty bar at the top of a window, and its tabs
@@ -58,7 +58,7 @@ def stacked(rows: list[Any]) -> Any:
     return None if rows[0] is None else np.array(rows)
 
 
-def draw(drawing: Drawing | SideBySide, folder: Path, name: str, *, start: float, end: float, top: int = 0) -> None:
+def draw(drawing: Drawing, folder: Path, name: str, *, start: float, end: float, top: int = 0) -> None:
     """Write the film `name` of `drawing`, without the `top` pixels of each picture, and print its size."""
     at = times(drawing, fps=FPS, start=start, end=end, speed=1.0)
     for path in frames(drawing, folder, at):
@@ -71,19 +71,13 @@ def draw(drawing: Drawing | SideBySide, folder: Path, name: str, *, start: float
 
 
 def main() -> int:
-    """Draw both."""
-    pair = Fin.pair(station=0.2, area=2e-3, aspect_ratio=2.5, angle=RollHold(2.0, 0.15), time_constant=0.05)
+    """Draw it."""
     try:
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             to_rerun(folder / "servos.rrd", [weakened()], ["eight servos"], blueprint="robot")
             with drawn(folder / "servos.rrd", size=WHOLE) as drawing:
                 draw(drawing, folder, "servos.webp", start=2.0, end=LIMITS[-1][1] - STEP, top=BAR)
-            for kind, fins in (("without", None), ("with", [pair])):
-                run = simulate(falling(), 10.0, sample_period=STEP, load=True, fins=fins)
-                run.to_rerun(folder / f"{kind}.rrd")
-            with drawn_beside(folder / "without.rrd", folder / "with.rrd", size=HALF, bare=True) as both:
-                draw(both, folder, "fins.webp", start=2.0, end=9.9)
     except CannotRender as reason:
         print(f"part films: {reason}", file=sys.stderr)
         return 3

@@ -15,6 +15,8 @@ from eel_viz.plots.state_text import Summary
 from eel_viz.recording.reading import read
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.lettering import strokes_of
+from eel_viz.views.blueprint import power_name
+from eel_viz.views.views import Look
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -327,3 +329,10 @@ def test_the_summary_counts_path_speed_and_greatest_torque():
     assert "in 3 s **0.6 N m** at X = 0.00 m" in summary.text()  # that of 2 s is forgotten
     assert "accuracy standard, real-time factor 0, closure 1.23e-14" in text
     assert "warnings" not in text
+
+
+def test_the_names_of_the_powers_fit_a_small_window():
+    for fins, joints in ((False, False), (True, False), (False, True), (True, True)):
+        name = power_name(Look(fins=fins, joints=joints))
+        assert ("fins lime" in name, "dampers brown" in name) == (fins, joints)
+        assert len(name) <= 80  # letters of some 6 pixels: 480 of a window of 1280

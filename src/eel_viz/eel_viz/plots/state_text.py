@@ -37,11 +37,6 @@ LONGEST_NAME, LONGEST_TEXT = 60, 400  # characters
 MOST_WAITING = 100  # statuses, the earliest ones
 VOLATILE = ("warnings", "real_time_factor")  # keys that are shown only while they are fresh
 
-RINGS = (
-    "Rings are its **joints**: the whiter, the more of what it can does the motor give; thick and red at its limit. "
-    "The tab *robot* has all motors over time."
-)
-
 
 class Path(NamedTuple):
     """Of the head, up to a stamp: its length [m], and how long it took [s]."""
@@ -145,7 +140,8 @@ class Summary:
         """The state as Markdown, one line per item."""
         law = "" if self.law is None else f"law **{plain(self.law)}**"
         fresh = self.stamp - self._state[0] <= MAXIMUM_AGE
-        lines = [", ".join(part for part in (law, plain(self._state[1], LONGEST_TEXT) if fresh else "") if part)]
+        body = "" if self.body is None else f"body {self.body.length:.3g} m, {self.body.mass:.4g} kg"
+        lines = [", ".join(part for part in (law, plain(self._state[1], LONGEST_TEXT) if fresh else "", body) if part)]
         shown = [key for key in LABELS if self.values.get(key) and (fresh or key not in VOLATILE)]
         lines.append(", ".join(f"{LABELS[key]} {_shown(key, self.values[key])}" for key in shown))
         if self._path is not None:
@@ -156,8 +152,6 @@ class Summary:
             lines.append(f"greatest torque C3 in 3 s **{recent.value:.2g} N m** at X = {recent.x:.2f} m")
             lines.append(f"now {now.value:+.2g} N m at X = {now.x:.2f} m")
             lines.append(f"since the start {peak.value:+.2g} N m at X = {peak.x:.2f} m, {peak.stamp / 1e9:.2f} s")
-        if self.body is not None:
-            lines.append(f"body {self.body.length:.3g} m, {self.body.mass:.4g} kg")
         return "  \n".join(line for line in lines if line)
 
     def numbers(self) -> dict[str, float | str]:
@@ -185,17 +179,17 @@ class Summary:
 def look_text(scales: Drawing, body: Body | None = None) -> str:
     """Markdown: what to look at, a sentence each, and the scales of the arrows; with what `body` has of parts."""
     lines = [
-        "The eel swims towards its eyes, along the white arrow: bends run from nose to tail and push the water back.",
-        "Colour on its flanks is the torque **C3** that bends it sideways, red one way and blue the other, on the "
-        "scale of the bar below the picture.",
-        "Arrows are the **force of the water** (yellow; magenta at nose and tail), the violet ribbon what the tail "
-        "leaves in the **wake**.",
-        *(["Lime plates are its **fins**, as large and turned as they are."] if body and body.fins else []),
-        *([RINGS] if body and body.joints else []),
-        "",
-        f"Lengths: {scales.load_scale:g} m for 1 N/m along the body, {scales.end_force_scale:g} m for 1 N at its ends.",
+        "The eel swims towards its eyes, along the white arrow; bends run from nose to tail.",
+        "Red and blue on its flanks: the torque **C3** that bends it sideways, on the scale below the picture.",
+        f"Arrows: the **force of the water**, {scales.load_scale:g} m for 1 N/m; magenta at nose and tail, "
+        f"{scales.end_force_scale:g} m for 1 N. Violet ribbon: what the tail leaves in the **wake**.",
     ]
-    return "\n".join(lines)
+    parts = {
+        "Lime: **fins**.": body and body.fins,
+        "Rings: **joints**, the whiter, the more the motor gives (tab *robot*).": body and body.joints,
+    }
+    lines.append(" ".join(text for text, there in parts.items() if there))
+    return "  \n".join(line for line in lines if line)
 
 
 def plain(name: str, longest: int = LONGEST_NAME) -> str:

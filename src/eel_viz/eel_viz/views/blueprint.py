@@ -29,7 +29,6 @@ from eel_viz.views.views import (
 
 SETTLED = 0.4  # of a run: from here on it is repeated, for the swim is settled by then
 POWER_SHOWN = 4.0  # s: duration of the last power that is shown, so that its scale fits the swim and not its start
-POWER = "Power [W]: actuators red, drag yellow, wake violet, nose magenta"
 HARDEST = "Motor nearest to its limit [N m]: torque red, limit white"
 XYZ = "x orange, y green, z blue"
 
@@ -37,26 +36,34 @@ XYZ = "x orange, y green, z blue"
 def overview(look: Look) -> rrb.Container:
     """The swimmer, its torque, its power, its speed, and what to look at."""
     return rrb.Horizontal(
-        rrb.Vertical(rrb.Tabs(following_view(look), path_view(look)), texts(look), row_shares=[2.5, 1.0]),
+        rrb.Vertical(rrb.Tabs(following_view(look), path_view(look)), texts(look), row_shares=[2.3, 1.0]),
         rrb.Vertical(
             heat_map_view(),
             profile_view(entities.TORQUE, "Internal torque C(X)"),
-            series_view(look, _power(look), entities.POWER, entities.POWER_BESIDES, last=POWER_SHOWN),
+            series_view(look, power_name(look), entities.POWER, entities.POWER_BESIDES, last=POWER_SHOWN),
             rrb.Horizontal(
                 series_view(look, "Speed of the head [m/s]", entities.SPEED),
                 series_view(look, "Depth of the head [m]", entities.DEPTH),
             ),
-            row_shares=[1.0, 0.95, 1.1, 1.05],
+            row_shares=[0.95, 0.85, 1.3, 1.1],
         ),
         column_shares=[1.15, 1.0],
         name="overview",
     )
 
 
-def _power(look: Look) -> str:
-    """The name of the plot of powers; that of a flow is blue, where there is one."""
-    named = {", fins lime": look.fins, ", dampers brown": look.joints}
-    return POWER + "".join(name for name, there in named.items() if there)
+def power_name(look: Look) -> str:
+    """The name of the plot of powers, as long as a window of 1280 pixels shows; a flow's is blue, where there is one.
+
+    Beside fins and dampers the nose is not named: its colour is that in the scene's legend.
+    """
+    named = {
+        "nose magenta": not (look.fins and look.joints),
+        "fins lime": look.fins,
+        "dampers brown": look.joints,
+    }
+    words = ("actuators red", "drag yellow", "wake violet", *(name for name, there in named.items() if there))
+    return f"Power [W]: {', '.join(words)}"
 
 
 def torques(look: Look) -> rrb.Container:
@@ -75,7 +82,7 @@ def torques(look: Look) -> rrb.Container:
 def robot(look: Look) -> rrb.Container:
     """The motors: how hard they work, the one nearest to its limit, power and work."""
     return rrb.Horizontal(
-        rrb.Vertical(following_view(look), texts(look), row_shares=[2.5, 1.0]),
+        rrb.Vertical(following_view(look), texts(look), row_shares=[2.3, 1.0]),
         rrb.Vertical(
             load_map_view(),
             series_view(look, HARDEST, entities.HARDEST_MOTOR),
