@@ -167,6 +167,7 @@ def library_speed() -> float:
 def draw(run: Run) -> None:
     """The picture, of a strong bend: by the viewer, where it can draw without a display, else a plain one."""
     late = run.time > PICTURED * DURATION
+    assert run.torque is not None
     moment = run.time[late][np.abs(run.torque[late, :, 2]).max(axis=1).argmax()]
     command = ["eel", "render", str(RECORDING), str(PICTURE), "--at", f"{moment:.2f}"]
     try:
