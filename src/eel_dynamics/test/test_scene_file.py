@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A scene in a file: what is read is what is swum, what is written comes back equal, nodes take it, bad input."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import yaml
@@ -11,7 +13,7 @@ from eel_gaits.gaits.settings import Settings
 from eel_model.fins.fins import Fin, RollHold
 from swim_client import LIMIT
 
-from eel_dynamics import Accuracy, Body, Gust, Robot, Scene, Shear, Swim, load_scene, save_scene, simulate
+from eel_dynamics import Accuracy, Body, Gust, Robot, Run, Scene, Shear, Swim, load_scene, save_scene, simulate
 from eel_gaits import straight
 
 SCENE = """
@@ -135,13 +137,19 @@ def test_bad_input_is_one_line_that_names_it(tmp_path, text, named, capsys):
     assert named in said and said.startswith("eel simulate: scene '") and said.count("\n") == 1
 
 
-@pytest.mark.parametrize(
-    "words, named",
-    [("--set period=1", "period=1"), ("--scene planar=on", "planar=on"), ("--body kern2006", "kern2006")],
-)
-def test_what_a_scene_has_itself_is_not_given_beside_it(tmp_path, words, named, capsys):
-    assert command.main([str(scene_in(tmp_path)), *words.split()]) == 2
-    assert f"has gait, body and scene of its own, got '{named}' too" in capsys.readouterr().err
+def test_options_change_the_scene_of_a_file(tmp_path):
+    path, out = scene_in(tmp_path), tmp_path / "run.nc"
+    words = "--set period=0.9 --scene planar=on --body kern2006 --duration 1 --accuracy 1e-2"
+    assert command.main([str(path), *words.split(), "--out", str(out)]) == 0
+    run, swim = Run.load(out), load_scene(path).with_gait(period=0.9)
+    assert run.law == swim.law and run.body == Body.kern2006()
+    assert run.scene == replace(swim.scene, planar=True)
+    assert command.main([str(path), "--set", "periode=1"]) == 2
+
+
+def test_a_motion_takes_no_place_in_a_scene(tmp_path, capsys):
+    assert command.main([str(scene_in(tmp_path)), "--file", "midlines.csv"]) == 2
+    assert "has a gait of its own, got 'midlines.csv' too" in capsys.readouterr().err
 
 
 def test_duration_and_accuracy_of_the_command_come_first(tmp_path, capsys):

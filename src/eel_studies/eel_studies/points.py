@@ -43,7 +43,7 @@ from eel_model.initial_state import InitialState
 from eel_model.robot.robot import Robot, checked_robot, robot_of
 from eel_model.scene import Scene
 
-Gait = str | Callable[..., Law]  # its name, or a function of numbers
+Gait = str | Callable[..., Law] | Swim  # its name, a function of numbers, or a whole swim, as of a scene's file
 Numbers = dict[str, Any]  # by the names above
 Measure = Callable[[Run], dict[str, Any]]  # run -> {name: number}
 AccuracyLike = str | float | Accuracy
@@ -104,25 +104,33 @@ def base_point(
     accuracy: Accuracy,
     friction: str = "printed",
     robot: Robot | str | None = None,
+    gait: Gait = "straight",
 ) -> Swim:
-    """What the points of a study share: without a `body`, that of the robot. friction: of the default scene.
+    """What the points of a study share: all that a `gait` which is a whole swim has, and what replaces it.
 
-    `ValueError` names what does not fit.
+    Without a `body` it is that of the robot. friction: of the default scene. `ValueError` names what does not fit.
     """
-    scene = Scene(friction=friction) if scene is None else checked_instance("scene", scene, Scene)
+    base = gait if isinstance(gait, Swim) else Swim(None, checked_body(None), Scene(friction=friction), accuracy)
     found = checked_robot(robot_of(robot) if isinstance(robot, str) else robot)
-    if body is None and found is not None:
-        body = found.body
-    return Swim(None, checked_body(body), scene, accuracy, robot=found)
+    if found is not None:
+        base = base._replace(robot=found, body=found.body or base.body)
+    if body is not None:
+        base = base._replace(body=checked_body(body))
+    if scene is not None:
+        base = base._replace(scene=checked_instance("scene", scene, Scene))
+    return base._replace(accuracy=accuracy)
 
 
 def point_at(values: Numbers, gait: Gait, numbers: Numbers, base: Swim) -> Swim:
     """The swim of these `values` by name; all else is as in `numbers`, by the same names, and in `base`.
 
-    gait: its name, or a function of numbers that returns a law. `ValueError` tells the point and what does not fit.
+    gait: its name, a function of numbers that returns a law, or a whole swim. `ValueError` tells the point and what
+    does not fit.
     """
-    if not (isinstance(gait, str) or callable(gait)):
-        raise ValueError(f"gait must be the name of a gait, or a function that returns a law, got {shown(gait)}")
+    if not (isinstance(gait, (str, Swim)) or callable(gait)):
+        raise ValueError(
+            f"gait must be the name of a gait, a function that returns a law, or a Swim, got {shown(gait)}"
+        )
     try:
         return _point({**numbers, **values}, gait, base)
     except (ValueError, TypeError) as error:
@@ -174,7 +182,11 @@ def _point(values: Numbers, gait: Gait, base: Swim) -> Swim:
     if groups["robot"]:
         robot = _robot_with(robot, groups["robot"])
     try:
-        law = (find(gait) if isinstance(gait, str) else gait)(**own)
+        if isinstance(gait, Swim):
+            gait = gait.with_gait(**own) if own else gait
+            law, base = gait.law, base._replace(gait=gait.gait)
+        else:
+            law = (find(gait) if isinstance(gait, str) else gait)(**own)
     except (ValueError, TypeError) as error:
         raise ValueError(f"{error}{_of_robot(robot, own)}") from None
     body = body.changed(**groups["body"]) if groups["body"] else body

@@ -24,7 +24,7 @@ from eel_base.wording import shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.runs.swim import Swim
 
-from eel_studies.points import FINS, FLOW, GROUPS, ROBOT, point_at
+from eel_studies.points import point_at
 
 RESOLUTION = 36.0  # points per body length where a setting in time is given: the error in space stays below 1e-3
 
@@ -32,13 +32,7 @@ RESOLUTION = 36.0  # points per body length where a setting in time is given: th
 def varied(swim: Swim, values: dict[str, Any]) -> Swim:
     """The `swim` with these `values` by name. `ValueError` for what does not fit."""
     period = _longest_period(swim)
-    begins = (*GROUPS, FLOW, FINS, ROBOT)
-    shared = {name: value for name, value in values.items() if name.startswith(begins) or name == "accuracy"}
-    gait = {name: value for name, value in values.items() if name not in {*shared, *OWN}}
-    if gait:
-        swim = swim.with_gait(**{name: number(name, value) for name, value in gait.items()})
-    if shared:
-        swim = point_at(shared, lambda: swim.law, {}, swim)
+    swim = point_at({name: value for name, value in values.items() if name not in OWN}, swim, {}, swim)
     for name, value in values.items():
         if name in OWN:
             swim = swim._replace(**OWN[name](swim, value))

@@ -5,6 +5,7 @@ import csv
 
 import numpy as np
 import pytest
+from eel_dynamics.runs.scene_file import save_scene, swim_of
 from eel_studies.optimisation.command import main
 
 from eel_dynamics import Scene, simulate_batch
@@ -105,6 +106,21 @@ def test_bad_input_is_refused_in_one_line(given, words):
     with pytest.raises(ValueError, match=words) as error:
         optimise(**given, scene=PLANE)
     assert "\n" not in str(error.value)
+
+
+def test_the_scene_of_a_file_is_optimised(tmp_path, capsys):
+    words = {"gait": "straight", "amplitude_2": 1.0, "scene": {"planar": True, "friction": "laminar"}}
+    swim = swim_of({**words, "flow": "uniform velocity=0.1,0,0"})
+    path = tmp_path / "scene.yaml"
+    save_scene(swim, path)
+    out = tmp_path / "a.csv"
+    told = ["--bound", "period=0.6:2.5", "--speeds", "0.45", "--periods", "8", "--accuracy", "1e-2"]
+    assert main([str(path), *told, "--out", str(out)]) == 0
+    front = optimise({"period": (0.6, 2.5)}, [0.45], gait=swim, periods=8, accuracy=1e-2)
+    rows = list(csv.DictReader(out.open()))
+    (run,) = front.runs
+    assert float(rows[0]["period"]) == front.values[0, 0]
+    assert run.scene.friction == "laminar" and run.flow == swim.flow and run.law.terms[0].amplitude[2] == 1.0
 
 
 @pytest.mark.fault(

@@ -20,7 +20,7 @@ from eel_studies.sweeps import command as sweep_command
 from eel_studies.sweeps.command import main
 from eel_studies.sweeps.sweep_key import key_of
 
-from eel_dynamics import Accuracy, Batch, Body, Fin, FlowField, RollHold, Run, Scene, Shear, simulate
+from eel_dynamics import Accuracy, Batch, Body, Fin, FlowField, Gust, RollHold, Run, Scene, Shear, load_scene, simulate
 from eel_gaits import Law, Term, sampled, straight
 from eel_studies import sweep
 
@@ -59,6 +59,36 @@ def test_labelled_and_equal_to_single_runs(client, tmp_path):
     assert not out.with_name("periods.nc.parts").exists()
     # what is complete is not simulated again
     assert sweep(grid, scheduler="tcp://127.0.0.1:1", out=out, **SHORT).head_x.equals(data.head_x)
+
+
+SCENE = """
+gait: straight
+period: 0.8
+duration: 1.2
+accuracy: 1e-2
+stations: 11
+scene: {planar: true}
+initial_linear_velocity: [0.2, 0, 0]
+flow: gust velocity=0.1,0,0
+"""
+
+
+def test_a_scene_of_a_file_is_swept(tmp_path, capsys):
+    scene, out = tmp_path / "scene.yaml", tmp_path / "out.nc"
+    scene.write_text(SCENE)
+    swim = load_scene(scene)
+    words = "--vary period=0.6,0.8 --vary flow.rise=0.5,1 --measures mean_speed,greatest_torque"
+    assert main([str(scene), *words.split(), "--scene", "friction=laminar", "--out", str(out)]) == 0
+    kept = xarray.load_dataset(out, engine="scipy")
+    assert kept.attrs["gait"] == "straight" and kept.attrs["duration"] == 1.2
+    laminar = swim.with_gait(period=0.6)._replace(scene=Scene(planar=True, friction="laminar"))
+    alone = measures_of(laminar._replace(flow=Gust(velocity=(0.1, 0.0, 0.0), rise=0.5)).run())
+    for name in ("mean_speed", "greatest_torque"):
+        assert float(kept[name].sel({"period": 0.6, "flow.rise": 0.5})) == alone[name]
+    data = sweep({"period": [0.6]}, gait=swim, accuracy=1e-3, measure=("mean_speed",))  # what is given comes first
+    assert float(data.mean_speed[0]) == swim.with_gait(period=0.6).run(accuracy=1e-3).mean_speed
+    assert main([str(scene), "--vary", "periode=1,2", "--out", str(tmp_path / "no.nc")]) == 2
+    assert "did you mean 'period'?" in capsys.readouterr().err
 
 
 def test_a_gait_may_return_rows(tmp_path):
@@ -276,7 +306,9 @@ def test_a_sample_period_above_the_duration_is_refused():
 
 
 def test_a_law_in_place_of_a_gait_is_refused():
-    with pytest.raises(ValueError, match=r"gait must be the name of a gait, or a function that returns a law, got Law"):
+    with pytest.raises(
+        ValueError, match=r"gait must be the name of a gait, a function that returns a law, or a Swim, got Law"
+    ):
         sweep({"period": [0.5]}, gait=straight(), **SHORT)
 
 

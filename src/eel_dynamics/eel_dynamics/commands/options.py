@@ -105,10 +105,12 @@ def duration_option(text: str) -> float | str:
 
 
 def scene_of(texts: list[str], base: Scene | None = None) -> Scene:
-    """The scene that --scene gives. `ValueError` names the field that there is not, or whose value does not fit.
+    """The scene `base`, or the default one, with what --scene gives. `ValueError` as of `scene_fields`."""
+    return replace(base or Scene(), **scene_fields(texts))
 
-    base: the scene that they change.
-    """
+
+def scene_fields(texts: list[str]) -> dict[str, Any]:
+    """The fields of a `Scene` that --scene gives, by name. `ValueError` names one that there is not."""
     known = {item.name: item for item in fields(Scene)}
     found: dict[str, Any] = {}
     for name, text in named_texts("--scene", texts):
@@ -122,7 +124,7 @@ def scene_of(texts: list[str], base: Scene | None = None) -> Scene:
         else:
             values = [value_of(part) for part in text.split(",")]
             found[name] = values[0] if len(values) == 1 else tuple(values)
-    return replace(base or Scene(), **found)
+    return found
 
 
 def varied_values(text: str, check_count: Callable[[int], None]) -> list:

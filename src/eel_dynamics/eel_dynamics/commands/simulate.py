@@ -38,9 +38,9 @@ from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.joint_demand import MOST_JOINTS
 from eel_dynamics.commands.filmed import EEL, add_film_options, beat_from, body_for, effect_of_fit
 from eel_dynamics.commands.options import add_options, scene_of, set_numbers
+from eel_dynamics.commands.scene_options import swim_from
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.scene_file import SUFFIXES as SCENES
-from eel_dynamics.runs.scene_file import load_scene
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, until_settled
 from eel_dynamics.runs.storage.run_contents import contents_of_run
 from eel_dynamics.runs.storage.tables import columns_of, write_columns
@@ -117,22 +117,11 @@ def _swim_of(options, beat: Beat | None) -> Swim:
 
 
 def _scene_of_file(options) -> Swim:
-    """The swim of a scene's file, with the duration, accuracy and samples of the options where they are given."""
-    others = [
-        *options.set,
-        *options.scene,
-        options.flow,
-        options.robot,
-        options.fins,
-        options.body,
-        options.file,
-        options.midlines,
-        options.sequence,
-    ]
-    for given in filter(None, others):
-        raise ValueError(f"{options.gait} has gait, body and scene of its own, got {shown(given)} too")
-    found = {name: getattr(options, name) for name in ("duration", "accuracy", "sample_period", "stations")}
-    return load_scene(options.gait)._replace(**{name: value for name, value in found.items() if value is not None})
+    """The swim of a scene's file, with what the options change."""
+    for given in filter(None, (options.file, options.midlines, options.sequence)):
+        raise ValueError(f"{options.gait} has a gait of its own, got {shown(given)} too")
+    swim, numbers = swim_from(options.gait, options), set_numbers(options.set)
+    return swim.with_gait(**numbers) if numbers else swim
 
 
 def _law(options, body: Body, beat: Beat | None) -> Law | SampledLaw:

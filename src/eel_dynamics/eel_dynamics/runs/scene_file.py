@@ -19,7 +19,7 @@ A further word is a line of `WORDS`.
 
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -66,8 +66,8 @@ def save_scene(swim: Swim, path: str | os.PathLike[str]) -> None:
         draft.write_text(ABOUT + text, encoding="utf-8")
 
 
-def swim_of(words: Any) -> Swim:
-    """The swim of these `words`. `ValueError` names the one that does not fit."""
+def swim_of(words: Any, base: Swim | None = None) -> Swim:
+    """The swim of these `words`, or `base` with what they change. `ValueError` names the one that does not fit."""
     words = checked_instance("its content", words, Mapping)
     for level in (FOR_ALL, PARAMETERS):
         words = checked_instance(level, words.get(level, words), Mapping)
@@ -77,7 +77,9 @@ def swim_of(words: Any) -> Swim:
             hint = did_you_mean(word, (*WORDS, *known))
             raise ValueError(f"unknown word {shown(word)}{hint}, must be gait, its numbers, or {', '.join(WORDS)}")
     settings = Settings().changed(gait)
-    swim = Swim(settings.law(), Body.boyer2010(), Scene(), Accuracy.of("standard"), gait=settings)
+    swim = base or Swim(settings.law(), Body.boyer2010(), Scene(), Accuracy.of("standard"), gait=settings)
+    if base is not None and gait:
+        swim = swim.with_gait(**gait)
     for word, about in WORDS.items():
         swim = swim._replace(**about.given(swim, words[word])) if word in words else swim
     return swim
@@ -111,7 +113,7 @@ def _scene(swim: Swim, value: Any) -> dict[str, Any]:
     for name in given:
         if name not in known:
             raise ValueError(f"scene has no field {shown(name)}{did_you_mean(name, known)}, it has: {', '.join(known)}")
-    return {"scene": Scene(**given)}
+    return {"scene": replace(swim.scene, **given)}
 
 
 def _plain_scene(swim: Swim) -> dict[str, Any]:

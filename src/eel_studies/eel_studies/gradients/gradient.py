@@ -128,7 +128,7 @@ def gradient(
     if not isinstance(parameters, dict) or not parameters:
         raise ValueError(f"parameters must be a dict of names and values, got {shown(parameters)}")
     at = {name: number(f"parameter {name}", value) for name, value in parameters.items()}
-    base = base_point(body, scene, fixed_steps(accuracy), robot=robot)
+    base = base_point(body, scene, fixed_steps(accuracy), robot=robot, gait=gait)
     point = _point(at, gait, numbers, base)
     settings = point.accuracy.in_scene(point.scene)
     if sample_period is None:

@@ -27,7 +27,7 @@ from eel_model.robot.robot import Robot
 
 from eel_studies.motors.drawing import FORMATS, draw_comparisons
 from eel_studies.motors.motor_figures import Comparison, comparison, motor_swim, with_number
-from eel_studies.scene_options import add_scene_options, swim_from
+from eel_studies.scene_options import add_scene_options, chosen
 from eel_studies.table import Table
 
 NAME = "eel motors"
@@ -48,7 +48,7 @@ def _motors(options: argparse.Namespace) -> int:
         raise ValueError(f"--vary must be given {MOST_VARIED} times at most, got {len(options.vary)}")
     robot, swim = _robot(options), _swim(options)
     for note in robot.notes:
-        print(f"{options.robot}: {note}")
+        print(f"{options.swimmer}: {note}")
     if options.vary:
         pairs = [(name, _values(name, text)) for name, text in named_texts("--vary", options.vary)]
         found = _compared(robot, swim, *pairs)
@@ -87,7 +87,7 @@ def _swim(options: argparse.Namespace) -> Swim:
     """The swim of a scene or a gait; of a run or a bag its law, body and duration, and what an imposed swim takes."""
     name = options.swim or "straight"
     if Path(name).suffix not in RECORDED and not Path(name).is_dir():
-        return swim_from(name, options)
+        return chosen(name, options)
     run = Run.load(name) if Path(name).suffix == ".nc" else Run.from_bag(name)
     if not isinstance(run.law, Law) or not run.law.terms:
         raise ValueError(f"{shown(name)}: it holds no law of terms that servos could follow")
@@ -96,7 +96,7 @@ def _swim(options: argparse.Namespace) -> Swim:
         axes = {axis: float(getattr(demand, axis).peak["torque"].max()) for axis in ("yaw", "pitch")}
         told = ", ".join(f"{torque:.3g} N m in {axis}" for axis, torque in axes.items())
         print(f"{name}: the imposed swim takes at most {told} of {DEMAND} joints an axis\n")
-    base = swim_from(None, options)
+    base = chosen(None, options)
     body = run.body if options.body is None else base.body
     scene = scene_of(options.scene, run.scene)
     duration = float(run.time[-1]) if options.duration is None else base.duration
@@ -105,9 +105,9 @@ def _swim(options: argparse.Namespace) -> Swim:
 
 def _robot(options: argparse.Namespace) -> Robot:
     gains: dict[str, Any] = {name: float(text) for name, text in named_texts("--servo", options.servo)}
-    if Path(options.robot).suffix:
-        return Robot.from_file(options.robot, Servo(**gains) if gains else None)
-    robot = Robot.named(options.robot)
+    if Path(options.swimmer).suffix:
+        return Robot.from_file(options.swimmer, Servo(**gains) if gains else None)
+    robot = Robot.named(options.swimmer)
     return robot.changed(**gains)
 
 
@@ -124,8 +124,8 @@ def _parser() -> Parser:
         description="Swim a robot, and print what each joint does in the steady part: the angle that the gait asks "
         "for, the servo's error, rate, torque against its limit, and power. With --vary a row for each value.",
     )
-    parser.add_argument("robot", metavar="ROBOT", help="a robot by name, or a .yaml or URDF file")
-    add_scene_options(parser)
+    parser.add_argument("swimmer", metavar="ROBOT", help="a robot by name, or a .yaml or URDF file")
+    add_scene_options(parser, "--robot")
     parser.add_argument(
         "--servo",
         nargs="+",

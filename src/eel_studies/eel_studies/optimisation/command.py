@@ -2,6 +2,7 @@
 """`eel optimise`: find the gait of least cost of transport at each speed.
 
 eel optimise straight --bound period=0.4:3 --bound amplitude_0=0:2 --bound amplitude_2=0:6 --speeds 0.2:0.6:5
+eel optimise scene.yaml --bound period=0.4:3 --speeds 0.3
 eel optimise kern_fast --body kern2006 --bound period=0.5:2 --bound bend_tail=0:8 --speeds 0.3,0.4 --out front.png
 """
 
@@ -14,10 +15,10 @@ from eel_base.command.run_command import checked_out, run_command
 from eel_base.files.output_file import written_as
 from eel_base.wording import shown
 from eel_dynamics.analysis.measures import MEASURES
-from eel_dynamics.commands.options import add_options, add_repeated, named_texts, scene_of, set_numbers, varied_values
+from eel_dynamics.commands.options import add_options, add_repeated, named_texts, set_numbers, varied_values
+from eel_dynamics.commands.scene_options import add_changes, swim_from
+from eel_dynamics.runs.scene_file import SUFFIXES as SCENES
 from eel_dynamics.runs.storage.tables import write_columns
-from eel_model.body.body import body_of
-from eel_model.scene import Scene
 
 from eel_studies.optimisation.front import FORMATS
 from eel_studies.optimisation.optimise import optimise
@@ -26,6 +27,7 @@ from eel_studies.optimisation.searches import METHODS
 NAME = "eel optimise"
 SUFFIXES = (*FORMATS, ".csv")
 MOST_SPEEDS = 1000
+ACCURACY = 1e-3
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -37,16 +39,16 @@ def _optimise(options: argparse.Namespace) -> int:
     start = time.perf_counter()
     outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
     bounds = {name: _bounds(name, text) for name, text in named_texts("--bound", options.bound)}
+    smooth = {} if options.gait.endswith(SCENES) else {"scene": {"friction": "blended"}}
+    swim = swim_from(options.gait, options, **smooth)
     front = optimise(
         bounds,
         _speeds(options.speeds),
-        gait=options.gait,
-        numbers={**set_numbers(options.set), **({"robot": options.robot} if options.robot else {})},
-        body=body_of(options.body),
-        scene=scene_of(options.scene, Scene(friction="blended")),
+        gait=swim,
+        numbers=set_numbers(options.set),
         cost=options.cost,
         periods=options.periods,
-        accuracy=options.accuracy,
+        accuracy=swim.accuracy if options.accuracy else ACCURACY,
         method=options.method,
         starts=options.starts,
         seed=options.seed,
@@ -90,13 +92,15 @@ def _check_count(count: int) -> None:
 def _parser() -> Parser:
     parser = Parser(
         prog=NAME,
-        description="Find the gait of least cost at each speed. The friction is blended unless --scene says otherwise.",
+        description="Find the gait of least cost at each speed, of a gait by name or the scene in a file. The friction "
+        "is blended, unless the file or --scene says otherwise.",
     )
     add_options(parser, "gait", gait="straight")
     about = "a parameter and its bounds: a number of the gait, scene.FIELD, body.FIELD, robot.FIELD"
     add_repeated(parser, "--bound", "NAME=LOW:HIGH", about, required=True)
     parser.add_argument("--speeds", required=True, metavar="SPEEDS", help="m/s: a,b,c or start:end:count")
-    add_options(parser, "--set", "--scene", "--body", "--robot", "--accuracy", "--out", accuracy=1e-3)
+    add_options(parser, "--set", "--out")
+    add_changes(parser, "--duration", "--sample-period", accuracy=(None, f"{ACCURACY:g}"))
     parser.add_argument("--cost", default="cost_of_transport", help=f"one of {', '.join(MEASURES)} (cost_of_transport)")
     parser.add_argument("--method", default="gradient", help=f"{' or '.join(METHODS)} (gradient); cma needs cma")
     parser.add_argument("--periods", type=int, default=10, metavar="N", help="of each swim (10)")

@@ -59,8 +59,9 @@ def optimise(
 ) -> Front:
     """The gaits of least `cost` at `speeds` (S,) [m/s] over the water, by parameters within their `bounds`.
 
-    bounds: (low, high) by name, with the names of `studies.points`. gait: its name, or a function of numbers that
-    returns a law. numbers: what else is held fixed, by the same names. body, accuracy, threads: as in `gradient`.
+    bounds: (low, high) by name, with the names of `studies.points`. gait: its name, a function of numbers that
+    returns a law, or a `Swim`, as of `load_scene`, with all that it has. numbers: what else is held fixed, by the same
+    names. body, accuracy, threads: as in `gradient`.
     scene: by default that of the library with blended friction, whose derivatives have no jump; a current is left out.
     cost: the name of a measure (`analysis.measures.MEASURES`). periods: of each swim, which begins at the wanted speed;
     its later half is measured. method: "gradient" (SLSQP), or "cma", which needs the package cma, of the extra `[cma]`.
@@ -81,7 +82,7 @@ def optimise(
         if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
             raise ValueError(f"{name} must be a whole number >= {least}, got {shown(value)}")
     (cost,) = checked_measures("cost", checked_instance("cost", cost, str), estimate=False)
-    base = base_point(body, scene, fixed_steps(accuracy), friction="blended", robot=robot)
+    base = base_point(body, scene, fixed_steps(accuracy), friction="blended", robot=robot, gait=gait)
     wrench = base.scene.internal_wrench or cost == "greatest_torque"
     base = base._replace(scene=replace(base.scene, current=(0.0, 0.0, 0.0), internal_wrench=wrench))
     problem = GaitProblem(tuple(bounds), low, high, gait, dict(numbers or {}), base, cost, int(periods), threads)

@@ -17,7 +17,7 @@ from eel_model.fins.text import fins_from_text
 from eel_studies.outputs import Outputs, add_output_options
 from eel_studies.roll_hold.page import PARTS, SIZE, draw_windows, page_parts
 from eel_studies.roll_hold.study import PAIR, linearised, roll_window
-from eel_studies.scene_options import add_scene_options, swim_from
+from eel_studies.scene_options import add_scene_options, chosen
 from eel_studies.stability.command import axis_from
 
 NAME = "eel roll-hold"
@@ -36,7 +36,7 @@ def _study(options: argparse.Namespace) -> int:
         outputs = Outputs(NAME, options, PARTS)
         outputs.write(page_parts(outputs, options.points))
         return 0
-    swim = swim_from(options.swim or "straight", options)
+    swim = chosen(options.swim or "straight", options)
     swim = swim if swim.fins else swim._replace(fins=fins_from_text(PAIR))
     axes = [axis_from(name, text) for name, text in named_texts("--over", options.over or OVER)]
     window = roll_window(swim, {axis.name: (axis.low, axis.high) for axis in axes}, options.points)

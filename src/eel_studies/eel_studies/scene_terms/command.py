@@ -12,7 +12,7 @@ from eel_base.command.run_command import checked_out, run_command
 from eel_base.files.output_file import written_as
 from eel_dynamics.runs.scene_file import SUFFIXES, save_scene
 
-from eel_studies.scene_options import add_scene_options, swim_from
+from eel_studies.scene_options import add_scene_options, chosen
 from eel_studies.scene_terms.study import terms
 
 NAME = "eel terms"
@@ -26,7 +26,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _terms(options: argparse.Namespace) -> int:
     out = None if options.out is None else checked_out(NAME, options.out, SUFFIXES)
-    found = terms(swim_from(options.swim, options), options.tolerance)
+    found = terms(chosen(options.swim, options), options.tolerance)
     print(found.table().text(), found.about(), sep="\n\n")
     if out is not None:
         save_scene(found.recommended, out)

@@ -17,7 +17,7 @@ from eel_base.wording import shown
 from eel_dynamics.commands.options import add_repeated, named_texts
 
 from eel_studies.outputs import Outputs, add_output_options
-from eel_studies.scene_options import add_scene_options, swim_from
+from eel_studies.scene_options import add_scene_options, chosen
 from eel_studies.stability.maps import OUTCOMES, Axis, Map, measure
 from eel_studies.stability.report import STUDIES, counts, report
 from eel_studies.varied import NAMES, varied
@@ -51,7 +51,7 @@ def _map(options: argparse.Namespace) -> int:
         raise ValueError(f"--over must be given for two numbers of the scene, got {len(axes)}")
     if options.study:
         raise ValueError(f"--study goes without a scene, got {shown(options.study[0])}")
-    swim = swim_from(options.swim, options)
+    swim = chosen(options.swim, options)
     for axis in axes:
         varied(swim, {axis.name: axis.low})  # what there is not is refused before the map
     scene = Path(options.swim or "falling").stem

@@ -2,6 +2,7 @@
 """`eel sweep`: swim a grid of parameters, on all cores, into one file.
 
 eel sweep straight --vary period=0.5:2:16 --vary scene.friction=printed,laminar --out periods.nc
+eel sweep scene.yaml --vary robot.kp=5,10,20 --out gains.nc
 eel sweep straight --robot passive_tail --vary robot.bending_stiffness=0.1,0.2,0.4,0.8 --out tails.nc
 eel sweep straight --vary body=boyer2010,kern2006 --vary wavelength=0.6:1.2:7 --scheduler tcp://host:8786 --out waves.nc
 """
@@ -9,7 +10,6 @@ eel sweep straight --vary body=boyer2010,kern2006 --vary wavelength=0.6:1.2:7 --
 import argparse
 import time
 from functools import partial
-from typing import Any
 
 import numpy as np
 from eel_base.command.command_line import Parser
@@ -25,8 +25,9 @@ from eel_dynamics.commands.options import (
     set_numbers,
     varied_values,
 )
+from eel_dynamics.commands.scene_options import add_changes, swim_from
+from eel_dynamics.runs.scene_file import SUFFIXES
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED
-from eel_model.body.body import body_of
 
 from eel_studies.sweeps.sweep import check_points, sweep
 
@@ -40,19 +41,16 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _sweep(options: argparse.Namespace) -> int:
     start = time.perf_counter()
-    numbers: dict[str, Any] = set_numbers(options.set)
-    numbers |= {name: text for name in ("flow", "fins", "robot") if (text := getattr(options, name))}
+    numbers = set_numbers(options.set)
     vary = named_texts("--vary", options.vary)
     check_names([*numbers, *(name for name, _ in vary)])
     grid = {name: varied_values(text, partial(check_points, name)) for name, text in vary}
+    until = {} if options.gait.endswith(SUFFIXES) else {"duration": UNTIL_SETTLED}
+    swim = swim_from(options.gait, options, **until)
     data = sweep(
         grid,
-        gait=options.gait,
+        gait=swim,
         numbers=numbers,
-        duration=options.duration,
-        body=body_of(options.body),
-        accuracy=options.accuracy,
-        sample_period=options.sample_period,
         out=options.out,
         scheduler=options.scheduler,
         workers=options.workers,
@@ -79,26 +77,15 @@ def _sweep(options: argparse.Namespace) -> int:
 def _parser() -> Parser:
     parser = Parser(
         prog=NAME,
-        description="Simulate every combination of parameters, and keep the measures of each run in a NetCDF file. "
-        "After an interruption the same command resumes.",
+        description="Simulate every combination of parameters of a gait, or of the scene in a file, and keep the "
+        "measures of each run in a NetCDF file. After an interruption the same command resumes.",
     )
     about = "a number of the gait, a FIELD of scene., body., flow., fins. or robot., body, accuracy; a,b,c or "
     about += "start:end:count"
     add_options(parser, "gait", gait="straight")
     add_repeated(parser, "--vary", "NAME=VALUES", about, required=True)
-    add_options(
-        parser,
-        "--set",
-        "--flow",
-        "--fins",
-        "--robot",
-        "--duration",
-        "--accuracy",
-        "--body",
-        "--bare",
-        "--sample-period",
-        duration=UNTIL_SETTLED,
-    )
+    add_options(parser, "--set", "--bare")
+    add_changes(parser, duration=(None, f"the scene's; of a gait: {UNTIL_SETTLED}"))
     parser.add_argument("--measures", metavar="NAMES", help=f"what to keep, with commas: {', '.join(MEASURES)} (all)")
     parser.add_argument("-o", "--out", required=True, metavar="FILE.nc", help="NetCDF file; parts lie in FILE.nc.parts")
     parser.add_argument("--overwrite", action="store_true", help="replace what the output holds of another sweep")

@@ -69,13 +69,13 @@ def sweep(
     *,
     gait: Gait = "straight",
     numbers: Numbers | None = None,
-    duration: float | str = UNTIL_SETTLED,
+    duration: float | str | None = None,
     body: Body | None = None,
     scene: Scene | None = None,
     robot: Robot | str | None = None,
-    accuracy: AccuracyLike = "standard",
+    accuracy: AccuracyLike | None = None,
     sample_period: float | None = None,
-    stations: Stations = 51,
+    stations: Stations | None = None,
     estimate: bool = True,
     measure: Measure | tuple[str, ...] | None = None,
     out: str | Path | None = None,
@@ -97,9 +97,10 @@ def sweep(
             initial state ("scene.friction", "body.lateral_drag", "initial.v_x"), of flow and fins ("fins.area",
             "fins.k_p"), of a robot ("robot.kp", "robot.tails.bending_stiffness", "robot.joint_3.stiffness"), "robot",
             "body" and "accuracy".
-        gait: its name, or a function of `numbers` and the grid's that returns a law.
+        gait: its name, a function of `numbers` and the grid's that returns a law, or a `Swim`, as of `load_scene`,
+            which gives all that is not given here.
         numbers: by the same names, for all points, such as those of the gait, or "fins".
-        duration: [s], or "settled": each point swims until its gait has settled, as in `simulate`.
+        duration: [s], or "settled" (None without a `Swim`): until its gait has settled, as in `simulate`.
         body, scene, robot, accuracy: as in `simulate`, for all points; a robot may be given by name or file.
         sample_period: [s], as in `simulate`.
         stations: as in `simulate`.
@@ -124,6 +125,10 @@ def sweep(
     """
     xarray = needed("xarray", "a sweep")
     names, axes = _checked_grid(grid)
+    own = gait if isinstance(gait, Swim) else Swim(None, Body.boyer2010(), Scene(), "standard", duration=UNTIL_SETTLED)
+    duration = own.duration if duration is None else duration
+    sample_period = own.sample_period if sample_period is None else sample_period
+    stations = own.stations if stations is None else stations
     if not until_settled(duration):
         checked_times(duration, default_sample_period([], duration) if sample_period is None else sample_period)
     if not callable(measure):
@@ -131,10 +136,11 @@ def sweep(
     limit = positive("most_evaluations", most_evaluations, "per simulated second")
     _check_count("workers", workers)
     _check_count("chunk", chunk)
-    base = base_point(body, scene, Accuracy.of(accuracy), robot=robot)
+    settings = Accuracy.of(own.accuracy if accuracy is None else accuracy)
+    base = base_point(body, scene, settings, robot=robot, gait=gait)
     try:
         points = [
-            point_at(dict(zip(names, values, strict=True)), gait, numbers or {}, base)
+            point_at(dict(zip(names, values, strict=True)), gait, numbers or {}, base)._replace(gait=None)
             for values in itertools.product(*axes)
         ]
         for point in points if until_settled(duration) else ():
@@ -254,7 +260,7 @@ def _dataset(
     variables["error"] = names, np.reshape(np.array(errors, dtype=object), shape), {"long_name": "what stopped it"}
     coordinates = {name: [label_of(value) for value in values] for name, values in zip(names, axes, strict=True)}
     attributes = {
-        "gait": gait if isinstance(gait, str) else getattr(gait, "__name__", "law"),
+        "gait": gait if isinstance(gait, str) else getattr(gait, "__name__", points[0].law.name),
         "duration": how.duration if until_settled(how.duration) else float(how.duration),
         "estimate": int(how.estimate),
         "axes": REP103,

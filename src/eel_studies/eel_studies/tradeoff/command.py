@@ -19,7 +19,7 @@ from eel_base.files.output_file import written_as
 from eel_dynamics.accuracy.budget import Budget
 
 from eel_studies.outputs import Outputs, add_output_options
-from eel_studies.scene_options import add_scene_options, swim_from
+from eel_studies.scene_options import add_scene_options, chosen
 from eel_studies.tradeoff.delivered import COUNT, SEED, deliver, delivered_table, draw_delivered
 from eel_studies.tradeoff.drawing import SIZE, draw_trade
 from eel_studies.tradeoff.measuring import SAMPLE_PERIOD, affordable, bare, measure
@@ -41,7 +41,7 @@ def main(arguments: list[str] | None = None) -> int:
 def _trade(options: argparse.Namespace) -> int:
     progress, names = Progress(NAME, "settings"), options.swim or ["falling"]
     budget = options.within and Budget.of(f"fastest within {options.within} per second")
-    swims = {Path(name).stem: swim_from(name, options) for name in names}
+    swims = {Path(name).stem: chosen(name, options) for name in names}
     for swim in swims.values():
         if isinstance(swim.duration, float) and not swim.duration >= (least := swim.sample_period or SAMPLE_PERIOD):
             raise ValueError(f"--duration must be >= {least} s, got {swim.duration}")
