@@ -500,12 +500,14 @@ class SampledMarches:
         """Has a swimmer stand at its start, straight, at time 0, where its sample has the values (6, n). Kinetic and
         potential energy [J]. flow: how its water moves, no function of Python."""
 
-    def advance(self, times: Buffer, values: Buffer, status: Buffer, heads: Buffer) -> None:
-        """Marches each to its own of the times (N,) [s], where its sample has its values (N, 6, n).
+    def advance(self, times: Buffer, values: Buffer, status: Buffer, heads: Buffer) -> bool:
+        """Marches each to its own of the times (N,) [s], where its sample has its values (N, 6, n). Whether all marched
+        that are not left out.
 
         status (N,), signed 64 bits: swimmers below 0 are left out; then how each came back, an index of `STATUSES`. One
         that is unfinished goes on with the same time and values. heads (13, N): position [m], orientation, and twist
-        over ground [rad/s, m/s] of each that marched.
+        over ground [rad/s, m/s] of each that marched. In the plane the twist is that of the steps: `observe` shows the
+        one in space, where the rate of bending is integrated over the nodes.
         """
 
     def put_head(self, index: int, heads: Buffer) -> bool:

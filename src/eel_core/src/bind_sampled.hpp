@@ -36,7 +36,8 @@ class PySampledMarches {
         return marches_[index].start(bounds, vector_from(position, "position"), orientation_from(orientation),
                                      twist_from(twist, "twist"), sample.data());
     }
-    void advance(const py::object& times, const py::object& values, const py::object& status, const py::object& heads)
+    // Whether all that are not left out have marched.
+    bool advance(const py::object& times, const py::object& values, const py::object& status, const py::object& heads)
     {
         const std::size_t n = marches_.size();
         const Numbers instants = sized(times, "times", n), into = sized(heads, "heads", 13 * n, true),
@@ -46,6 +47,7 @@ class PySampledMarches {
         const InUse in_use(in_use_, these);
         const py::gil_scoped_release unlocked;
         marches_.advance(instants.data(), samples.data(), found.data(), into.data());
+        return std::all_of(found.data(), found.data() + n, [](std::int64_t each) { return each <= 0; });
     }
     bool put_head(std::size_t index, const py::object& heads)
     {
@@ -107,7 +109,8 @@ inline void bind_sampled_marches(py::module_& module)
             const Numbers by_point(weights, "weights"), from(values, "values"), into(rows, "rows", true);
             const std::size_t points = by_point.length(0), columns = by_point.length(1);
             from.check_size(sample_rows * points, "values"), into.check_size(sample_rows * columns, "rows");
-            tabulate(by_point.data(), points, columns, from.data(), into.data());
+            for (const std::size_t row : {std::size_t{0}, rows_of_axis})
+                tabulate(by_point.data(), points, columns, from.data() + row * points, into.data() + row * columns);
         },
         py::arg("weights"), py::arg("values"), py::arg("rows"));
 

@@ -112,7 +112,7 @@ class LawAction:
     def state(self) -> list[Any]:
         """Each number and its rate, then sine and cosine of the wave's phase; of N swimmers (N,) each."""
         found = [value for name in self.names for value in self._steered.values[name][:2]]
-        phase = 2.0 * math.pi * np.fmod(self._steered.own_time / self.period, 1.0)
+        phase = 2.0 * math.pi * (self._steered.own_time / self.period % 1.0)
         return [*found, np.sin(phase), np.cos(phase)]
 
 

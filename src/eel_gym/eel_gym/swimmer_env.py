@@ -16,6 +16,7 @@ from eel_model.body.body import Body
 from eel_model.flow.flow import Flow
 from eel_model.initial_state import level_orientation
 from eel_model.scene import Scene
+from numpy.typing import NDArray
 
 from eel_gym.episode_recording import EpisodeRecording
 from eel_gym.joint_action import JointAction
@@ -91,8 +92,8 @@ class SwimmerEnv(Task):
         self._recordings = [EpisodeRecording(recordings, self.name) for _ in range(recorded)]
         self._mean_heading = MeanHeading(max(1, round(self.action.period / self.numbers.control_period)), self.shape)
         self.ticks: np.ndarray = np.zeros(count, dtype=int)  #: (N,) control steps of the present episodes
-        self._trim: Array = np.zeros(count)  # rad/m
-        self._under_way: np.ndarray = np.zeros(count, dtype=bool)  # from `reset` on, unless a swimmer has stopped
+        self._trim: Array = np.zeros((count, 1))  # rad/m
+        self._status: NDArray[np.int64] = np.full(count, LEFT_OUT)  # 0 from `reset` on, until a swimmer stops
         self._stopped: dict[int, str] = {}  # in the last control step
         self.starts = [Start()] * count  #: of the present episodes
         self.restart(np.zeros(self.shape))
@@ -113,7 +114,7 @@ class SwimmerEnv(Task):
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """One control step: observation, reward, terminated, truncated, info."""
-        if not self._under_way[0]:
+        if self._status[0] == LEFT_OUT:
             raise gymnasium.error.ResetNeeded("the environment must be reset before step")
         self.march(self.checked_action(action))
         observation = self.observation()
@@ -152,11 +153,11 @@ class SwimmerEnv(Task):
         self._end(index)
         self.starts[index] = start = self.begin(options)
         rows = self.action.begin_one(index, start.own_time) if self.shape else self.restart(start.own_time)
-        self._add_trim(rows, np.asarray(start.left_trim))
+        self._add_trim(rows[None], start.left_trim)
         twist = (start.roll_rate, 0.0, 0.0, start.speed, 0.0, 0.0)
         flow = self.flow if self.flow is None or isinstance(self.flow, Flow) else self.flow(self.np_random)
         self.swimmers.start(index, start.position, level_orientation(start.heading), twist, rows, flow)
-        self._trim[index], self.ticks[index], self._under_way[index] = start.left_trim, 0, True
+        self._trim[index], self.ticks[index], self._status[index] = start.left_trim, 0, 0
         if len(start.goal) != len(self.goal):
             self.goal = np.zeros((len(start.goal), *self.shape))
         self._look()
@@ -171,11 +172,10 @@ class SwimmerEnv(Task):
     def march(self, actions: Array) -> None:
         """March all swimmers that are under way through a control step with their `actions`."""
         rows = self.action.advance(actions, self.numbers.control_period)
-        self._add_trim(rows, self._trim if self.shape else self._trim[0])
         rows = rows if self.shape else rows[None]
+        self._add_trim(rows, self._trim)
         self.ticks += 1
-        status = np.where(self._under_way, 0, LEFT_OUT)
-        stopped = self.swimmers.advance(self.ticks * self.numbers.control_period, rows, status)
+        stopped = self.swimmers.advance(self.ticks * self.numbers.control_period, rows, self._status)
         self._look()
         self.heading = self._mean_heading.add(self.head.heading)
         self._stopped = {index: one_line(reason) for index, reason in stopped.items()}
@@ -207,7 +207,7 @@ class SwimmerEnv(Task):
 
     def picture_of(self, index: int) -> Any:
         """What `render` returns, of swimmer `index`."""
-        if not self._under_way[index]:
+        if self._status[index] == LEFT_OUT:
             raise gymnasium.error.ResetNeeded("the environment must be reset before render")
         if self.render_mode != "rgb_array":
             return None
@@ -215,25 +215,23 @@ class SwimmerEnv(Task):
 
     def _look(self) -> None:
         """Take in the motion of the heads, and of the joints."""
-        heads = self.swimmers.heads.copy()
-        if not self.shape:
-            heads = heads[:, 0]
+        heads = self.swimmers.heads.copy() if self.shape else self.swimmers.heads[:, 0].copy()
         self.head = HeadMotion(heads[:3], heads[3:7], heads[7:10], heads[10:])
         if isinstance(self.swimmers, CommandedRobots) and isinstance(self.action, JointAction):
             self.action.see(self.swimmers.joints.copy() if self.shape else self.swimmers.joints[..., 0].copy())
 
-    def _add_trim(self, rows: Array, left_trim: Any) -> None:
-        """Bend the body by `left_trim` [rad/m], () or (N,), beside what the action asks of it."""
+    def _add_trim(self, rows: Array, left_trim: Array | float) -> None:
+        """Bend each body by `left_trim` [rad/m], one or (N, 1), beside what its action asks in `rows` (N, ...)."""
         if not isinstance(self.action, JointAction):
-            rows[..., 3, :] -= np.asarray(left_trim)[..., None]
+            rows[:, 3] -= left_trim
         elif self.action.kind == "position":
-            rows += np.asarray(left_trim)[..., None] * self.body.length / self.action.size
+            rows += left_trim * self.body.length / self.action.size
 
     def _record(self, index: int) -> None:
-        if self._recordings and self._under_way[index]:
+        if self._recordings and self._status[index] != LEFT_OUT:
             self._recordings[index].add(self.swimmers.observe(index, load=False))
 
     def _end(self, index: int) -> None:
-        if self._recordings and self._under_way[index]:
+        if self._recordings and self._status[index] != LEFT_OUT:
             self._recordings[index].finish(self.swimmers, index)
-        self._under_way[index] = False
+        self._status[index] = LEFT_OUT

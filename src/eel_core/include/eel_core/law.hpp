@@ -91,14 +91,15 @@ struct Quintic {
     static constexpr std::size_t none = static_cast<std::size_t>(-1);
     std::size_t row = none;  // the first
     double start = 0.0, end = 0.0;
+    std::size_t of_start = 0, of_end = 3;  // of a segment: where the rows of an axis hold either end
 
     void set_segment(std::vector<Jet>& factor, double time) const
     {
         if (row == none) return;
         const double length = end - start, part = std::clamp((time - start) / length, 0.0, 1.0);
         for (std::size_t axis = 0; axis < 2; ++axis) {
-            set_quintic(factor, row + 6 * axis, part, length, 1.0);
-            set_quintic(factor, row + 6 * axis + 3, 1.0 - part, length, -1.0);
+            set_quintic(factor, row + 6 * axis + of_start, part, length, 1.0);
+            set_quintic(factor, row + 6 * axis + of_end, 1.0 - part, length, -1.0);
         }
     }
     void set_blend(std::vector<Jet>& factor, double time) const
@@ -137,10 +138,6 @@ struct RowTable {
                 if (here < width) std::copy_n(from, here, filled_up.begin());
                 lanes[row * blocks + block][part] = Lanes::load(here < width ? filled_up.data() : from);
             }
-    }
-    void copy(std::size_t from, std::size_t to)
-    {
-        std::copy_n(lanes.data() + from * blocks, blocks, lanes.data() + to * blocks);
     }
 };
 
@@ -182,11 +179,6 @@ struct LawTables {
             for (std::size_t lane = 0; lane < width; ++lane) lanes[lane] = sum += moments.at(row, block)[0][lane];
             angle.lanes[row * angle.blocks + block] = {Lanes::load(lanes.data())};
         }
-    }
-    void copy(std::size_t from, std::size_t to)
-    {
-        node.copy(from, to), angle.copy(from, to), moments.copy(from, to);
-        station.copy(from, to), station_moments.copy(from, to);
     }
 
   private:

@@ -69,7 +69,7 @@ class CommandedRobots:
     def advance(self, times: Array, commands: Array, status: NDArray[np.int64]) -> dict[int, SimulationStopped]:
         """March each robot to its own of the `times` (N,) [s] under its `commands` (N, n).
 
-        status (N,): robots with `LEFT_OUT` stay; it is written to. Returns why robots stopped, by their index.
+        status (N,): robots with `LEFT_OUT` stay. Returns why robots stopped, by their index.
         """
         stopped: dict[int, SimulationStopped] = {}
 
@@ -80,7 +80,6 @@ class CommandedRobots:
                 self._look(index)
             except SimulationStopped as error:
                 stopped[index] = error
-                status[index] = LEFT_OUT
 
         marched = np.flatnonzero(status != LEFT_OUT).tolist()
         list((map if self._pool is None else self._pool.map)(march, marched))

@@ -48,7 +48,8 @@ class SampledSwimmers:
     Attributes:
         accuracy: the settings in force, see `Accuracy.for_control_steps`.
         heads: (13, N) position [m], orientation x y z w, angular velocity [rad/s] and velocity [m/s] of each, as of
-            `Simulation.head`.
+            `Simulation.head`. In the plane the velocities are those of the steps, which integrate the rate of bending
+            exactly.
     """
 
     def __init__(
@@ -126,18 +127,21 @@ class SampledSwimmers:
     def advance(self, times: Array, rows: Array, status: NDArray[np.int64]) -> dict[int, SimulationStopped]:
         """March each swimmer to its own of the `times` (N,) [s], where its sample has its `rows` (N, 6, n).
 
-        status (N,): swimmers with `LEFT_OUT` stay; it is written to. Returns why swimmers stopped, by their index.
+        status (N,): `LEFT_OUT` of those that stay, 0 of the others; it stays so. Returns why swimmers stopped, by their
+        index.
         """
         stopped: dict[int, SimulationStopped] = {}
+        if self._marches.advance(times, rows, status, self.heads):
+            return stopped
+        found = status.copy()
+        status[status > MARCHED] = MARCHED
         while True:
-            self._marches.advance(times, rows, status, self.heads)
-            if not (status > MARCHED).any():
+            for index in np.flatnonzero((found > MARCHED) & (found != UNFINISHED)).tolist():
+                stopped[index] = self._stopped(index, int(found[index]))
+            found[found != UNFINISHED] = LEFT_OUT
+            if (found == LEFT_OUT).all():
                 return stopped
-            for index in np.flatnonzero((status > MARCHED) & (status != UNFINISHED)).tolist():
-                stopped[index] = self._stopped(index, int(status[index]))
-            status[status != UNFINISHED] = LEFT_OUT
-            if not np.any(status == UNFINISHED):
-                return stopped
+            self._marches.advance(times, rows, found, self.heads)
 
     def observe(self, index: int, *, wrench: bool = True, load: bool = True) -> Snapshot:
         """The snapshot of a swimmer at present, as of `Simulation.observe`."""

@@ -62,12 +62,13 @@ class SteeredLaw:
         self.values: dict[str, Any] = dict(self._rest)  # of each number: value, rate, acceleration
         self.greatest_curvature = float(np.max(sum(np.hypot(*_rows(term, self.x)) for term in law.terms)))  # rad/m
         self.own_time: Any = 0.0  # s, tau
+        self._swimmers: tuple[int, ...] = ()  # (N,), or () of one
         self.begin()
 
     def begin(self, own_time: Any = 0.0, **values: float) -> np.ndarray:
         """Start anew with the law at its `own_time` [s], or (N,) of N swimmers, and all numbers at rest, or at these
         `values`; the curvature as of `advance`."""
-        self.own_time = own_time
+        self.own_time, self._swimmers = own_time, np.shape(own_time)
         self.values = self._rest | {name: (value, 0.0, 0.0) for name, value in values.items()}
         return self._curvature()
 
@@ -97,14 +98,14 @@ class SteeredLaw:
 
     def _curvature(self) -> np.ndarray:
         size, speed = self.values["amplitude"], self.values["tempo"]
-        swimmers = np.shape(self.own_time)
-        factors = np.zeros((2, 3, len(self._rows), *swimmers))
+        zero: Any = np.zeros(self._swimmers) if self._swimmers else 0.0
+        factors = [zero] * (6 * len(self._rows))  # of the rows, axis by axis and derivative by derivative
         for k, (frequency, axis) in enumerate(self._waves):
             s, c = np.sin(frequency * self.own_time), np.cos(frequency * self.own_time)
-            if not swimmers:
+            if not self._swimmers:
                 s, c = float(s), float(c)
-            _add(factors, axis, 2 * k, _product(size, c, -frequency * s, frequency, speed))
-            _add(factors, axis, 2 * k + 1, _product(size, -s, -frequency * c, frequency, speed))
+            self._add(factors, axis, 2 * k, _product(size, c, -frequency * s, frequency, speed))
+            self._add(factors, axis, 2 * k + 1, _product(size, -s, -frequency * c, frequency, speed))
             if frequency and axis == LAW_ROW["yaw"]:
                 for name, (now, later) in ROLLING.items():
                     number = self.values[name]
@@ -112,20 +113,22 @@ class SteeredLaw:
                         f, g = now * c + later * s, later * c - now * s
                         for row, (value, slope) in enumerate(((f, frequency * g), (g, -frequency * f))):
                             of_wave = _product(number, value, slope, frequency, speed)
-                            _add(factors, LAW_ROW["pitch"], 2 * k + row, of_wave)
+                            self._add(factors, LAW_ROW["pitch"], 2 * k + row, of_wave)
         for name, bent in BENDS.items():
             if self.values[name] is not self._rest[name]:
                 value, rate, acceleration = self.values[name]
-                _add(factors, LAW_ROW[bent], -1, (-value, -rate, -acceleration))
-        by_swimmer = np.ascontiguousarray(np.moveaxis(factors, -1, 0)) if swimmers else factors
-        return np.asarray(by_swimmer.reshape(*swimmers, 6, -1) @ self._rows)
+                self._add(factors, LAW_ROW[bent], len(self._rows) - 1, (-value, -rate, -acceleration))
+        by_swimmer = np.array(factors).reshape(6, len(self._rows), *self._swimmers)
+        if self._swimmers:
+            by_swimmer = np.ascontiguousarray(by_swimmer.transpose(2, 0, 1))
+        return np.asarray(by_swimmer @ self._rows)
 
-
-def _add(factors: np.ndarray, axis: int, row: int, jet: Jet) -> None:
-    """Add value, rate and acceleration to a row of the `factors` (2, 3, rows, ...)."""
-    factors[axis, 0, row] += jet[0]
-    factors[axis, 1, row] += jet[1]
-    factors[axis, 2, row] += jet[2]
+    def _add(self, factors: list[Any], axis: int, row: int, jet: Jet) -> None:
+        """Add value, rate and acceleration to a row of an axis."""
+        count = len(self._rows)
+        for derivative, value in enumerate(jet):
+            place = (3 * axis + derivative) * count + row
+            factors[place] = factors[place] + value
 
 
 def _product(number: Jet, f: Any, f1: Any, frequency: float, speed: Jet) -> tuple[Any, Any, Any]:

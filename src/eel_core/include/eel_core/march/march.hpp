@@ -56,12 +56,21 @@ class March : public Marching<March, Stepper> {
     // the inertia is not positive definite.
     std::optional<HeadMotion> head()
     {
-        if (!find_head()) return {};
-        const Workspace<Space>& work = workspace();
+        std::optional<Twist<Space, double>> twist = std::visit(
+            [&](const auto& stepper) -> std::optional<Twist<Space, double>> {
+                const auto found = stepper.twist_at_end(time_);
+                if (!found) return {};
+                return in_space(*found);
+            },
+            stepper_);
+        if (!twist) {
+            if (!find_head()) return {};
+            twist = workspace().twist;
+        }
         HeadMotion head;
         std::copy_n(state_.begin(), 7, head.begin());
-        put(work.twist.angular, head.data() + 7);
-        put(work.twist.linear + work.head.local(settings_.water.current), head.data() + 10);
+        put(twist->angular, head.data() + 7);
+        put(twist->linear + head_frame(state_, Space()).local(settings_.water.current), head.data() + 10);
         return head;
     }
 

@@ -11,7 +11,8 @@
 
 namespace eel_core {
 
-inline constexpr std::size_t sample_rows = 6;  // pitch, its rate and its acceleration, then yaw
+inline constexpr std::size_t rows_of_axis = 3;  // of a sample: the curvature, its rate and its acceleration
+inline constexpr std::size_t sample_rows = 2 * rows_of_axis;  // pitch, then yaw
 
 // Takes values at the points of a sample to the columns of a law's tables.
 struct SampleWeights {
@@ -19,26 +20,26 @@ struct SampleWeights {
     std::vector<double> weight;  // (points, columns)
 };
 
-// result (sample_rows, columns) of the values (sample_rows, points), by the weights (points, columns), summed from the
-// first point to the last.
+// result (rows_of_axis, columns) of the values (rows_of_axis, points), by the weights (points, columns), summed from
+// the first point to the last. The rows' sums do not wait for each other.
 inline void tabulate(const double* weights, std::size_t points, std::size_t columns, const double* values,
                      double* result)
 {
-    std::fill_n(result, sample_rows * columns, 0.0);
-    for (std::size_t row = 0; row < sample_rows; ++row) {
-        const double* const of_row = values + row * points;
-        double* const to = result + row * columns;
-        if (std::all_of(of_row, of_row + points, [](double value) { return value == 0.0; })) continue;
-        const auto sum = [&]<class T>(T total, const auto& load) {
-            for (std::size_t point = 0; point < points; ++point)
-                total += of_row[point] * load(weights + point * columns);
-            return total;
-        };
-        std::size_t k = 0;
-        for (; k + width <= columns; k += width)
-            sum(Lanes(0.0), [k](const double* from) { return Lanes::load(from + k); }).store(to + k);
-        for (; k < columns; ++k) to[k] = sum(0.0, [k](const double* from) { return from[k]; });
-    }
+    const auto put_sums = [&]<class T>(std::size_t k, T zero, const auto& load, const auto& store) {
+        std::array<T, rows_of_axis> total{zero, zero, zero};
+        for (std::size_t point = 0; point < points; ++point) {
+            const T weight = load(weights + point * columns + k);
+            for (std::size_t row = 0; row < rows_of_axis; ++row) total[row] += values[row * points + point] * weight;
+        }
+        for (std::size_t row = 0; row < rows_of_axis; ++row) store(total[row], result + row * columns + k);
+    };
+    std::size_t k = 0;
+    for (; k + width <= columns; k += width)
+        put_sums(
+            k, Lanes(0.0), [](const double* from) { return Lanes::load(from); },
+            [](Lanes sum, double* to) { sum.store(to); });
+    for (; k < columns; ++k)
+        put_sums(k, 0.0, [](const double* from) { return *from; }, [](double sum, double* to) { *to = sum; });
 }
 
 // What does not differ from swimmer to swimmer.
@@ -72,6 +73,7 @@ class SampledMarch {
         static const std::vector<std::size_t> axes{0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 1, 1};
         tables_ = std::make_shared<LawTables>(axes, kind_->swimmer->grid.nodes, kind_->swimmer->stations);
         law_ = {tables_, 0.0, {}, {}, {}, {}};
+        still_ = {true, true}, rows_.assign(rows_.size(), 0.0);
         bounds_ = bounds, under_way_ = unfinished_ = false;
         tabulate_sample(values);
         follow({}, false);
@@ -96,16 +98,17 @@ class SampledMarch {
     {
         const double start = march_.time();
         const bool begins = !under_way_;
-        if (begins)
-            set_ends(0);
-        else
-            for (const std::size_t axis : {0u, 1u})
-                for (const std::size_t row : {0u, 1u, 2u})
-                    tables_->copy(axes_rows * axis + 3 + row, axes_rows * axis + row);
-        law_.segment = {0, start, time};
-        if (begins) begin_blend(start);
+        law_.segment.row = 0, law_.segment.start = start, law_.segment.end = time;
+        if (begins) {
+            set_ends(law_.segment.of_start);
+            begin_blend(start);
+        } else {  // what was the end is the start
+            std::swap(law_.segment.of_start, law_.segment.of_end);
+            for (auto& rows : tables_->rows_of)
+                std::rotate(rows.begin(), rows.begin() + rows_of_axis, rows.begin() + axes_rows);
+        }
         tabulate_sample(values);
-        set_ends(3);
+        set_ends(law_.segment.of_end);
         if (law_.blend.row != Quintic::none && start >= law_.blend.end) end_blend();
         std::vector<double> breakpoints{start, time};
         if (law_.blend.row != Quintic::none) breakpoints.push_back(law_.blend.end);
@@ -114,16 +117,26 @@ class SampledMarch {
         under_way_ = true;
     }
 
+    // To `rows_`; an axis that has not bent yet has rows of 0, here and in the tables.
     void tabulate_sample(const double* values)
     {
-        tabulate(kind_->weights.weight.data(), kind_->weights.points, columns(), values, rows_.data());
+        const std::size_t points = kind_->weights.points;
+        for (const std::size_t axis : {0u, 1u}) {
+            const double* const given = values + rows_of_axis * points * axis;
+            still_[axis] =
+                still_[axis] && std::all_of(given, given + rows_of_axis * points, [](double x) { return x == 0.0; });
+            if (!still_[axis]) tabulate(kind_->weights.weight.data(), points, columns(), given, rows_of(axis));
+        }
     }
+
+    double* rows_of(std::size_t axis) { return rows_.data() + rows_of_axis * axis * columns(); }
 
     // Sets the rows of one end of the quintic, `first` of each axis and the two behind it.
     void set_ends(std::size_t first)
     {
-        for (std::size_t row = 0; row < sample_rows; ++row)
-            tables_->set(axes_rows * (row / 3) + first + row % 3, rows_.data() + row * columns());
+        for (const std::size_t axis : {0u, 1u})
+            for (std::size_t row = 0; row < rows_of_axis && !still_[axis]; ++row)
+                tables_->set(axes_rows * axis + first + row, rows_of(axis) + row * columns());
     }
 
     // Has the difference between the straight body and the first sample, whose rows are in `rows_`, die out.
@@ -165,7 +178,8 @@ class SampledMarch {
     std::shared_ptr<LawTables> tables_;  // of the quintic, then of the blend
     LawOnGrid law_;
     StepBounds bounds_{};
-    std::vector<double> rows_;  // (sample_rows, columns) of the last sample
+    std::vector<double> rows_;     // (sample_rows, columns) of the last sample
+    std::array<bool, 2> still_{};  // axes that have not bent since the start
     bool under_way_ = false, unfinished_ = false;
 };
 

@@ -5,6 +5,8 @@
 // method's dense output, so that the steps do not depend on when the run is sampled.
 #pragma once
 
+#include <optional>
+
 #include "eel_core/algorithm.hpp"
 #include "eel_core/steppers/adams.hpp"
 #include "eel_core/steppers/ledger.hpp"
@@ -51,6 +53,13 @@ class Stepper {
     const Counts& counts() const { return counts_; }
     double end_time() const { return start_ + length_; }
 
+    // The head's twist relative to the water at `time` [s], where the last step ends there: it is known already.
+    std::optional<Twist<M, double>> twist_at_end(double time) const
+    {
+        if (anew_ || !ends_at(time)) return {};
+        return end_twist_;
+    }
+
     // Forgets what was before the first of all steps.
     void forget(const State& y, double spare_steps)
     {
@@ -92,7 +101,7 @@ class Stepper {
     void state_at(double time, bool ledger, State& y, WorkDone& works) const
     {
         double theta = 1.0;
-        if (std::abs(end_time() - time) <= 1e-12 * std::max(1.0, std::abs(time))) {
+        if (ends_at(time)) {
             y = end_;
         } else {
             theta = std::clamp((time - start_) / length_, 0.0, 1.0);
@@ -104,6 +113,8 @@ class Stepper {
   private:
     template <class>
     friend class Stepper;
+
+    bool ends_at(double time) const { return std::abs(end_time() - time) <= 1e-12 * std::max(1.0, std::abs(time)); }
 
     static void normalise(State& y)
     {
@@ -213,7 +224,7 @@ class Stepper {
             works_ = powers_.works_until(works_, length_, 1.0);
             powers_.at[0] = powers_.at[3];
         }
-        begin_ = end_, end_ = trial_;
+        begin_ = end_, end_ = trial_, end_twist_ = work_.twist;  // its end was evaluated last
         start_ = start, length_ = length, anew_ = false;
         ++counts_.steps;
         budget_ = std::min(settings.bounds.spare_steps, budget_ + settings.bounds.most_steps * length) - 1.0;
@@ -241,6 +252,7 @@ class Stepper {
     Workspace<M> work_;
     double start_ = 0.0, length_ = 0.0, proposed_ = 0.0;  // [s]
     State begin_{}, end_{}, trial_{};
+    Twist<M, double> end_twist_{};
     std::array<State, Method::most_stages> rate_{};
     WorkDone works_{};  // at the start of the step
     StepPowers powers_;
