@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page docs/reference/manoeuvres.md and its pictures in docs/images/manoeuvres: `make manoeuvres`.
+"""The page docs/reference/manoeuvres.md, its .csv, and pictures in docs/images/manoeuvres: `make manoeuvres`.
 
 Every gait swims with its own numbers on the robot of the paper. Figures and pictures are those of that swim. The page's
 text outside the marker lines is written by hand.
 """
 
-import inspect
 import io
 import math
 import sys
@@ -17,6 +16,7 @@ from eel_base.attitude import heading
 from eel_base.files import markdown
 from eel_gaits.gaits.registry import GAITS
 from eel_studies.pictures import BLUE, ORANGE, SETTINGS
+from eel_studies.table import Table
 from PIL import Image
 
 from eel_dynamics import simulate
@@ -26,14 +26,7 @@ ROOT = Path(__file__).resolve().parent.parent
 PAGE, PICTURES = ROOT / "docs/reference/manoeuvres.md", ROOT / "docs/images/manoeuvres"
 DURATION, SAMPLE = 20.0, 0.05  # s
 COLOURS = 64
-FAMILIES = {  # heading: gaits
-    "In the plane": ("straight", "backward", "turning", "still"),
-    "Robots and oscillators": ("serpenoid", "joint_wave", "cpg"),
-    "Fish": ("carangiform", "anguilliform", "kern_fast", "kern_efficient"),
-    "Starts and bursts": ("c_start", "burst_and_coast"),
-    "In depth": ("falling", "rising", "diving", "spiral"),
-    "About the backbone": ("rolling", "roll_over", "helix"),
-}
+HEAD = ("gait", "displacement [m]", "heading", "roll", "speed [m/s]", "Strouhal", "cost of transport [J/m/kg]")
 
 
 class Swim:
@@ -72,7 +65,7 @@ class Swim:
         moved = ", ".join(f"{value:+.2f}" for value in self.path[-1] - self.path[0])
         figures = ("-" if value is None else f"{round(value, 9):.3g}" for value in self.figures)
         turned = (f"{self.change(angle) + 0.0:+.0f}°" for angle in (self.heading, self.roll))
-        return [f"[{self.name}](#{self.name})", moved, *turned, *figures]
+        return [self.name, moved, *turned, *figures]
 
     def picture(self):
         """Shape, path, torque surface and speed, as the bytes of a PNG."""
@@ -210,32 +203,18 @@ NOTES = {  # what was measured, beside the table
 }
 
 
-def section(swim, swims):
-    """What the page says of one gait."""
-    about = (inspect.getdoc(GAITS[swim.name]) or "").split("\n\n")[0]
-    note = f" {NOTES[swim.name](swim, swims)}" if swim.name in NOTES else ""
-    return f"### {swim.name}\n{about}{note}\n\n![{swim.name}](../images/manoeuvres/{swim.name}.png)\n\n"
-
-
 def main() -> int:
     """Write pictures and page."""
     PICTURES.mkdir(parents=True, exist_ok=True)
-    assert sorted(name for row in FAMILIES.values() for name in row) == sorted(GAITS)
-    swims = {name: Swim(name) for row in FAMILIES.values() for name in row}
+    swims = {name: Swim(name) for name in GAITS}
     for name, swim in swims.items():
         (PICTURES / f"{name}.png").write_bytes(swim.picture())
-    gaits = ""
-    for family, names in FAMILIES.items():
-        gaits += f"## {family}\n" + "".join(section(swims[name], swims) for name in names)
-    head = ("gait", "displacement [m]", "heading", "roll", "speed [m/s]", "Strouhal", "cost of transport [J/m/kg]")
-    parts = {
-        "table": markdown.table(head, [swim.row() for swim in swims.values()]),
-        "gaits": gaits.rstrip(),
-    }
-    page = PAGE.read_text()
-    for name, text in parts.items():
-        page = markdown.with_part(page, name, text)
-    PAGE.write_text(page)
+    rows = {name: swim.row() for name, swim in swims.items()}
+    told = [(*row, NOTES[name](swims[name], swims) if name in NOTES else "") for name, row in rows.items()]
+    Table((*HEAD, "note"), told).write_csv(PAGE.with_suffix(".csv"))
+    short = [(f"[{name}](../images/manoeuvres/{name}.png)", *row[-3:]) for name, row in rows.items()]
+    text = markdown.table((HEAD[0], *HEAD[-3:]), short)
+    markdown.write_page(PAGE, markdown.with_part(PAGE.read_text(), "table", text))
     print(f"{PAGE.relative_to(ROOT)}: {len(swims)} gaits")
     return 0
 

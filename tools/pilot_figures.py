@@ -54,11 +54,25 @@ QUANTITIES = (  # of a task: values; what is counted as good, with its limit; wh
 )
 
 
-def table(swimmers: dict, courses: int, processes: int) -> str:
-    """The figures of so many `courses`, held courses and stations of each of the `swimmers`, as Markdown."""
+def swim(swimmers: dict, courses: int, processes: int) -> list:
+    """The figures of so many `courses`, held courses and stations of each of the `swimmers`."""
     with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
-        found = [list(pool.map(partial(figures_of, **each), range(courses))) for each in swimmers.values()]
-    cells = []
+        return [list(pool.map(partial(figures_of, **each), range(courses))) for each in swimmers.values()]
+
+
+def sentence(swimmers: dict, courses: int, processes: int) -> str:
+    """How many of the tasks of the first of the `swimmers` are met, as a sentence."""
+    tasks, told = swim(swimmers, courses, processes)[0], []
+    for values_of, counted, _ in QUANTITIES:
+        if counted:
+            values = np.array([value for each in tasks for value in values_of(each)])
+            told.append(f"{counted[0]}: {np.sum(values < counted[1])} of {len(values)}")
+    return f"Of {courses} random tasks of each kind, {', '.join(told)}."
+
+
+def table(swimmers: dict, courses: int, processes: int) -> str:
+    """The figures of all `swimmers`, as Markdown."""
+    found, cells = swim(swimmers, courses, processes), []
     for values_of, counted, told in QUANTITIES:
         values = [np.array([value for each in tasks for value in values_of(each)]) for tasks in found]
         if counted:
@@ -128,7 +142,7 @@ def main() -> int:
         draw(PICTURE)
     parts: dict[str, tuple[Callable[[int, int], str], int]] = {
         "pilot": (partial(table, KEELS), options.courses),
-        "fins": (partial(table, FINS), options.fins),
+        "fins": (partial(sentence, FINS), options.fins),
         "water": (water_table, options.water),
     }
     for part, (made, count) in parts.items():

@@ -5,6 +5,7 @@ The messages are their files. Parameters come from the dataclasses that the node
 tell their own `--help`. The pages are not kept in the repository.
 """
 
+import csv
 import inspect
 import subprocess
 import sys
@@ -100,10 +101,22 @@ def commands() -> str:
 
 
 def formulas() -> str:
-    """The docstring of each file of gaits: formulas and sources."""
-    modules = dict.fromkeys(inspect.getmodule(inspect.unwrap(gait)) for gait in GAITS.values())
-    blocks = [f"```text\n{(inspect.getdoc(module) or '').strip()}\n```\n" for module in modules]
-    return "\n".join(["# Formulas of the gaits", "", "Each block is the docstring of a file of gaits.", "", *blocks])
+    """The docstring of each file of gaits: formulas and sources; below it their swims, by manoeuvres.csv."""
+    with (REFERENCE / "manoeuvres.csv").open(encoding="utf-8", newline="") as file:
+        notes = {row["gait"]: row["note"] for row in csv.DictReader(file)}
+    parts = [
+        "# Formulas of the gaits",
+        "",
+        "Each block is the docstring of a file of gaits; its gaits swim for 20 s.",
+        "",
+    ]
+    module = None
+    for name, gait in GAITS.items():
+        if (of_gait := inspect.getmodule(inspect.unwrap(gait))) is not module:
+            module = of_gait
+            parts += [f"```text\n{(inspect.getdoc(module) or '').strip()}\n```\n"]
+        parts += [f"**{name}**. {notes[name]}".strip() + "\n", f"![{name}](../images/manoeuvres/{name}.png)\n"]
+    return "\n".join(parts)
 
 
 def main() -> int:

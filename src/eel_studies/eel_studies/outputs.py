@@ -13,6 +13,7 @@ from eel_base.files.output_file import check_output, written_as
 from eel_dynamics.runs.storage.tables import needed
 
 from eel_studies.pictures import write_picture
+from eel_studies.table import Table
 
 NEW = "<!-- {name}: written by `{command}` -->\n<!-- end of {name} -->\n\n"  # a part of a page that there is not yet
 
@@ -60,6 +61,13 @@ class Outputs:
         for path in paths:
             print(f"written to {written_as(path)}")
         return f"![{title}]({os.path.relpath(paths[-1], self.page.parent if self.page else '.')})"
+
+    def write_table(self, name: str, table: Table) -> None:
+        """Write the `table` that the page summarises beside it, as `name`.csv. Without a page, nothing is written."""
+        if self.page:
+            path = self.page.with_name(f"{name}.csv")
+            table.write_csv(path)
+            print(f"written to {written_as(path)}")
 
     def write(self, parts: dict[str, str], values: dict[str, str] | None = None) -> None:
         """Write the `parts` of the page, and the `values` within its sentences, by name.

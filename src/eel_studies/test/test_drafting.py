@@ -49,7 +49,8 @@ def test_the_command_writes_table_picture_and_numbers(short, tmp_path, monkeypat
     assert "spacing 1 m: cylinder 0.24 m" in capsys.readouterr().out
     text = page.read_text()
     assert (tmp_path / "drafting.png").is_file() and "![Behind a cylinder](drafting.png)" in text
-    assert "| 1 | 0.24 | 0.12 |" in text and "| 2 | 0.47 | 0.24 |" in text
+    table = page.with_name("drafting.csv").read_text()
+    assert "1,0.24,0.12," in table and "2,0.47,0.24," in table
     assert command.main(["--phases", "0"]) == 2
 
 

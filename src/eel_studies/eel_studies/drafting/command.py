@@ -11,14 +11,14 @@ import numpy as np
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
 from eel_base.command.run_command import run_command
-from eel_base.files.markdown import table
 
 from eel_studies.drafting.drawing import SIZE, draw_study
 from eel_studies.drafting.study import Study, Wake
 from eel_studies.outputs import Outputs, add_output_options
+from eel_studies.table import Table
 
 NAME = "eel drafting"
-PARTS = "swims", "picture"
+PARTS = ("picture",)
 SPACINGS = (0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 1.0, 1.1, 1.25, 1.5, 2.0, 3.0)  # m
 PHASES = 6
 LOCKED = 5e-3  # part of the speed of one spacing a beat, within which a swim is locked
@@ -47,7 +47,8 @@ def _study(options: argparse.Namespace) -> int:
         "drafting": f"{study.drafting.speed / still.speed:.2f}",
         "least_power": f"{study.table('power').min() / still.power:.2f}",
     }
-    outputs.write({"swims": table(head, rows), "picture": picture}, values)
+    outputs.write_table("drafting", Table(head, rows))
+    outputs.write({"picture": picture}, values)
     return 0
 
 

@@ -53,9 +53,12 @@ def _figures(options: argparse.Namespace) -> int:
     control = simulate(straight(), runs[readings.OWN].time[-1], accuracy=options.accuracy).in_axes("paper")
     kern = readings.swim_kern()
     draw(outputs, runs, options.format, options.columns)
-    parts = {"corrections": readings.table_of_readings(runs), "kern": readings.table_of_kern(*kern)}
-    print(*parts.values(), sep="\n\n")
-    outputs.write(parts, notes.values_of(runs, control, kern[0]))
+    tables = {"corrections": readings.table_of_readings(runs), "kern": readings.table_of_kern(*kern)}
+    for name, table in tables.items():
+        print(f"{table.text()}\n")
+        outputs.write_table(name, table)
+    if outputs.page.exists():
+        outputs.write({}, notes.values_of(runs, control, kern[0]))
     return 0
 
 

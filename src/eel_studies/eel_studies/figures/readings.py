@@ -10,7 +10,6 @@ flow from the Navier-Stokes equations in three dimensions.
 from typing import Any
 
 import numpy as np
-from eel_base.files.markdown import table
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.simulate import simulate
@@ -19,6 +18,7 @@ from eel_model.scene import Scene
 
 from eel_gaits import falling, kern_efficient, kern_fast
 from eel_studies.points import AccuracyLike
+from eel_studies.table import Table
 
 READINGS: dict[str, dict[str, Any]] = {  # label: what differs from the library's own reading
     "the library's own: perimeter and added mass corrected, friction as printed": {},
@@ -61,8 +61,8 @@ def swim_readings(accuracy: AccuracyLike = "fine", sample_period: float = 0.02, 
     }
 
 
-def table_of_readings(runs: dict[str, Run]) -> str:
-    """The readings as a Markdown table."""
+def table_of_readings(runs: dict[str, Run]) -> Table:
+    """The readings as a table."""
     cells = []
     for label, run in runs.items():
         apart = np.linalg.norm(run.position[-1] - runs[OWN].position[-1])
@@ -71,7 +71,7 @@ def table_of_readings(runs: dict[str, Run]) -> str:
         end = ", ".join(f"{each:+.3f}" for each in run.position[-1])
         figures = f"{apart:.3f}", f"{found.mean_speed:.3f}", peak, f"{found.peak_torque.max():.3f}"
         cells.append((label, f"({end})", *figures))
-    return table(COLUMNS, cells)
+    return Table(COLUMNS, cells)
 
 
 def swim_kern(periods: float = 20.0, accuracy: AccuracyLike = "standard") -> tuple[Analysis, Analysis]:
@@ -81,10 +81,10 @@ def swim_kern(periods: float = 20.0, accuracy: AccuracyLike = "standard") -> tup
     return fast, efficient
 
 
-def table_of_kern(fast: Analysis, efficient: Analysis) -> str:
-    """Our results beside the published ones, as a Markdown table."""
+def table_of_kern(fast: Analysis, efficient: Analysis) -> Table:
+    """Our results beside the published ones."""
     rows = []
     for name, (words, theirs) in THEIRS.items():
         one, other = getattr(fast, name), getattr(efficient, name)
         rows.append((words, f"{one:.4g}", f"{other:.4g}", f"{one / other - 1.0:+.1%}", theirs))
-    return table(("quantity", "`kern_fast`", "`kern_efficient`", "the former by the latter", "computed flow"), rows)
+    return Table(("quantity", "kern_fast", "kern_efficient", "the former by the latter", "computed flow"), rows)

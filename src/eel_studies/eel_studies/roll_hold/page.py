@@ -16,8 +16,9 @@ from eel_studies.outputs import Outputs
 from eel_studies.points import base_point
 from eel_studies.roll_hold.study import PAIR, RollWindow, holding, linearised, roll_window, swum
 from eel_studies.stability.drawing import draw_map
+from eel_studies.table import Table
 
-PARTS = "swims", "gaits", "window"
+PARTS = "gaits", "window"
 SIZE = 9.0, 4.0  # inches
 PUSH, LONG, DIVE = 0.05, 40.0, 10.0  # rad/s of roll at the start; s, of the straight and of the falling gait
 EXPECTED = {  # area [m^2], k_p of a pair at X = 0.2 m: roll, depth, way to the side by an independent prototype
@@ -47,7 +48,8 @@ def page_parts(outputs: Outputs, points: int) -> dict[str, str]:
     picture = outputs.draw(
         "roll_hold", "Growth over area and gain", lambda figure: draw_windows(figure, windows), SIZE, ("png",)
     )
-    return {"swims": _swims(amidships), "gaits": _gaits(ahead, amidships), "window": picture}
+    outputs.write_table("fins", _swims(amidships))
+    return {"gaits": _gaits(ahead, amidships), "window": picture}
 
 
 def draw_windows(figure: Any, windows: list[RollWindow]) -> None:
@@ -65,7 +67,7 @@ def _swim(law: Law, fins: tuple[Fin, ...]) -> Swim:
     return base_point(None, None, Accuracy.of(1e-3))._replace(law=law, fins=fins)
 
 
-def _swims(amidships: tuple[Fin, ...]) -> str:
+def _swims(amidships: tuple[Fin, ...]) -> Table:
     rows = []
     cases = [(holding(area, k_p) if area else (), *expected) for (area, k_p), expected in EXPECTED.items()]
     for fins, roll, depth, side in (*cases, (amidships, "", "", "")):
@@ -76,7 +78,7 @@ def _swims(amidships: tuple[Fin, ...]) -> str:
         own = f"{growth:.2f}", f"{rolled:.2g} rad", roll, f"{sunk:.2g} m", depth, f"{aside:.2g} m", side
         rows.append((*(about or [("none", "", "")])[0], *own))
     head = "X", "area a side", "k_p", "growth", "roll", "expected", "depth", "expected", "to the side", "expected"
-    return table(head, rows)
+    return Table(head, rows)
 
 
 def _gaits(ahead: tuple[Fin, ...], amidships: tuple[Fin, ...]) -> str:

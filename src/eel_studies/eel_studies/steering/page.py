@@ -18,9 +18,11 @@ from eel_studies.steering.study import (
     sideways_acceleration,
     sway,
 )
+from eel_studies.table import Table
 
-PARTS = "free", "kicks", "recovered", "ballast", "gaits", "picture"
-HEIGHTS = (0.0, 0.01)  # m, of the tables of the first gait
+PARTS = "kicks", "recovered", "gaits", "picture"
+HEIGHTS = (0.0, 0.01)  # m, of the table of modes, of the first gait
+MODES = "metacentric height", "multiplier", "magnitude", "motion", "held by yaw", "by pitch", "by both"
 SHOWN = (0.0, 0.005, 0.01, 0.02)  # m, of the table of all gaits
 LEANS = (5.0, 20.0)  # degrees
 BEND = 0.3  # rad/m, that counts as much as a roll of 1 rad
@@ -40,7 +42,11 @@ def write_outputs(outputs: Outputs, scans: list[Scan]) -> None:
     free, ballast = (linearised(law, height, estimate=True) for height in HEIGHTS)
     gyration, (whole, tail) = radius_of_gyration(free.body), sideways_acceleration(law)
     recovered = _recovered(dict(zip(HEIGHTS, (free, ballast), strict=True)))
-    tables = _modes(free), _kicks(law), recovered, _modes(ballast), _gaits(scans), picture
+    modes = [
+        (f"{1e3 * h:g} mm", *row) for h, swim in zip(HEIGHTS, (free, ballast), strict=True) for row in _modes(swim)
+    ]
+    outputs.write_table("steering", Table(MODES, modes))
+    tables = _kicks(law), recovered, _gaits(scans), picture
     values = {
         "growth": f"{free.growth:.2f}",
         "exponent": f"{np.log(free.growth):.3f}",
@@ -54,8 +60,8 @@ def write_outputs(outputs: Outputs, scans: list[Scan]) -> None:
     outputs.write(dict(zip(PARTS, tables, strict=True)), values)
 
 
-def _modes(found: PeriodicLinearisation) -> str:
-    """The modes as a table; a conjugate pair takes one line."""
+def _modes(found: PeriodicLinearisation) -> list[tuple[str, ...]]:
+    """The modes as rows; a conjugate pair takes one."""
     rows = []
     held = [found.controllability(inputs) for inputs in (YAW, PITCH, INPUTS)]
     attitude = list(np.flatnonzero(found.neutral))
@@ -67,7 +73,7 @@ def _modes(found: PeriodicLinearisation) -> str:
         if mode in attitude and len(attitude) > 1:
             value, motion = f"{value}, three times", "roll, pitch, heading"
         rows.append((value, f"{abs(multiplier):.3f}", motion, *(_rounded(each[mode]) for each in held)))
-    return table(("multiplier", "magnitude", "motion", "held by yaw", "by pitch", "by both"), rows)
+    return rows
 
 
 def _kicks(law: Law) -> str:
