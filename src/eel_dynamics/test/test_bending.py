@@ -248,5 +248,26 @@ def test_a_copy_with_a_lower_limit_goes_on_from_the_present_and_keeps_it():
         torque = greatest([row["motor_torque"] for row in joints])
         assert torque <= 0.1 if each is weak else torque > 0.2
     assert greatest(swum[1] - swum[0]) < 1e-6 and greatest(swum[2] - swum[0]) > 0.1
-    with pytest.raises(ValueError, match="the same parts at the same places"):
-        simulation.copy_with(robot=chain(torque_limit=1.0, kp=5.0).changed("joint_1", position=0.09))
+    other = chain(torque_limit=1.0, kp=5.0).changed("joint_1", position=0.09)
+    for change in (lambda: simulation.copy_with(robot=other), lambda: simulation.change_robot(other)):
+        with pytest.raises(ValueError, match="the same parts at the same places"):
+            change()
+
+
+def test_a_robot_that_is_changed_goes_on_as_a_copy_does_and_is_the_same_after_a_reset():
+    robot = Robot.named("eight_servos")
+    weak = robot.changed("servos", torque_limit=0.1)
+    simulation = Simulation(law=straight(), robot=robot, accuracy=1e-3, measure_error=True)
+    simulation.advance(0.8)
+    simulation.command("joint_2", position=0.4)
+    copied = simulation.copy_with(robot=weak)
+    simulation.change_robot(weak)
+    for each in (simulation, copied):
+        each.advance(1.6)
+    assert np.array_equal(simulation.observe().joints["joint_angle"], copied.observe().joints["joint_angle"])
+    assert 1e-9 < simulation.error_estimate.position < 1e-3  # the companion has changed too
+    simulation.reset()
+    simulation.advance(0.8)
+    begun = Simulation(law=straight(), robot=weak, accuracy=1e-3)
+    begun.advance(0.8)
+    assert np.array_equal(simulation.observe().joints["joint_angle"], begun.observe().joints["joint_angle"])

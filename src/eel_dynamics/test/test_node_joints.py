@@ -196,6 +196,47 @@ def test_motors_at_their_limits_are_named_with_how_long(start, client, tmp_path)
     assert max(abs(effort) for message in swim.received["joint_states"] for effort in message.effort) <= 0.2 + 1e-12
 
 
+@pytest.mark.fault(
+    "parameters", "a torque limit of servos where there are none", "refused with the number; at the start status 2"
+)
+def test_a_torque_limit_is_lowered_in_mid_run_until_the_robot_cannot_follow(start, client):
+    """As the library does it, to round-off; it stays over a reset, and is given back."""
+    swim = client(topics=("joint_states",))
+    swim.laws.publish(law_to_message(straight()))
+    node = start("dynamics", *FAST, "-p", "estimate_error:=false")
+    swim.until_time(0.5, "joint_states")
+    times, limits = [], (0.3, 0.1)
+    for limit in limits:
+        times.append(swim.stop_the_clock("joint_states"))
+        assert swim.set(servo_torque_limit=limit)[0].successful and swim.pause(False).success
+        swim.until_time(times[-1] + 2.0, "joint_states")
+    robot = Robot.named("eight_servos")
+    simulation = Simulation(robot=robot, law=straight())
+    for stamp, message in sorted(by_stamp(swim.received["joint_states"]).items()):
+        if stamp * 1e-9 > times[-1] + 2.0:
+            break
+        simulation.advance(stamp * 1e-9)
+        assert message.position == pytest.approx(simulation.observe().joints["joint_angle"], abs=1e-11)
+        for time, limit in zip(times, limits, strict=True):
+            if abs(stamp * 1e-9 - time) < 1e-6:
+                simulation.change_robot(robot.changed(torque_limit=limit))
+    assert simulation.robot.servos[0].torque_limit == 0.1
+    assert node.output().count("the torque limit of each servo is 0.1 N m from t = ") == 1
+    swim.until(lambda: "at_torque_limit" in swim.diagnosis()[2], "servos at their limits")
+    assert swim.pause(True).success and swim.reset().success
+    begun = len(swim.received["joint_states"])
+    assert swim.pause(False).success
+    swim.until(lambda: len(swim.received["joint_states"]) > begun + 100, "a second run")
+    again = [message for message in swim.received["joint_states"][begun:] if nanoseconds(message.header.stamp) < 2e9]
+    assert 0.1 - 1e-9 < max(abs(effort) for message in again for effort in message.effort) < 0.1 + 1e-9
+    assert swim.set(servo_torque_limit=0.0)[0].successful
+    swim.until(lambda: max(map(abs, swim.received["joint_states"][-1].effort)) > 0.3, "the servos' own torques")
+    (answer,) = swim.set(robot="passive_tail")
+    assert answer.successful
+    (answer,) = swim.set(servo_torque_limit=0.2)
+    assert answer.reason == "servo_torque_limit must be 0 without servos, got 0.2 N m with robot 'passive_tail'"
+
+
 @pytest.mark.fault("parameters", "a robot that there is not, or interfaces that do not fit", "status 2, with one line")
 @pytest.mark.parametrize(
     ("words", "told"),
@@ -205,6 +246,7 @@ def test_motors_at_their_limits_are_named_with_how_long(start, client, tmp_path)
             "robot must be one of eight_servos, sixteen_servos, series_elastic, passive_tail, a file",
         ),
         (("robot:=none.yaml",), "robot file 'none.yaml': there is no such file"),
+        (("servo_torque_limit:=0.2",), "servo_torque_limit must be 0 without servos, got 0.2 N m with robot ''"),
         (("robot:=eight_servos", "yaw_joints:=3"), "yaw_joints and pitch_joints must be 0 with a robot"),
         (
             ("robot:=eight_servos", "command_interfaces:=[force]"),

@@ -9,7 +9,6 @@ from eel_base.quantity import checked
 from eel_model.body.body import body_of
 from eel_model.flow.plain import flow_of
 from eel_model.flow.text import flow_from_text, text_of_flow
-from eel_model.robot.robot import robot_of
 from eel_model.scene import Scene
 from eel_ros.frames import frame_in
 from eel_ros.parameter_node import ParameterNode
@@ -19,6 +18,7 @@ from rclpy.parameter import Parameter
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.ros.parameters import FRAMES, ROOT, DynamicsParameters
+from eel_dynamics.ros.simulation_from_parameters import robot_from_parameters
 
 SCENE, FLOW, USE_SIM_TIME = "scene.", "flow.", "use_sim_time"
 
@@ -86,8 +86,8 @@ class Declaration:
             self._check_clock(values, given.get(USE_SIM_TIME, self._node.get_parameter(USE_SIM_TIME).value))
             if "body" in found:
                 body_of(values.body)
-            if "robot" in found:
-                robot_of(values.robot)
+            if found.keys() & {"robot", "servo_torque_limit"}:
+                robot_from_parameters(values)
             if "flow" in found:
                 flow_from_text(values.flow)
             if "accuracy" in found:

@@ -80,6 +80,13 @@ class DynamicsParameters(Quantities):
         0.0,
         **NOW,
     )
+    servo_torque_limit: float = quantity(
+        0.0,
+        "N m",
+        "greatest torque of each servo of the robot, in place of its own limit, from the next sample on; 0: its own",
+        0.0,
+        **NOW,
+    )
     fins: str = quantity(
         "",
         "",

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes the simulation from the node's parameters."""
 
+from eel_base.wording import shown
 from eel_model.body.body import body_of
 from eel_model.fins.text import fins_from_text
 from eel_model.flow.text import flow_from_text
-from eel_model.robot.robot import robot_of
+from eel_model.robot.robot import Robot, robot_of
 from eel_model.scene import Scene
 
 from eel_dynamics.ros.parameters import DynamicsParameters
@@ -12,8 +13,8 @@ from eel_dynamics.simulation.simulation import Simulation
 
 
 def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene) -> Simulation:
-    """The simulation at t = 0; `ValueError` names what does not fit."""
-    robot = robot_of(parameters.robot)
+    """The simulation at t = 0, with the robot's own limits; `ValueError` names what does not fit."""
+    robot = robot_from_parameters(parameters)
     own = robot is not None and robot.body is not None and parameters.body == DynamicsParameters.body
     return Simulation(
         body=None if own else body_of(parameters.body),
@@ -30,3 +31,17 @@ def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene) -> 
         flow=flow_from_text(parameters.flow),
         fins=fins_from_text(parameters.fins),
     )
+
+
+def robot_from_parameters(parameters: DynamicsParameters) -> Robot | None:
+    """The robot, with its own limits; `ValueError` also where there are no servos whose torque is to be limited."""
+    robot, limit = robot_of(parameters.robot), parameters.servo_torque_limit
+    if limit > 0.0 and (robot is None or not has_servos(robot)):
+        given = f"{limit:g} N m with robot {shown(parameters.robot)}"
+        raise ValueError(f"servo_torque_limit must be 0 without servos, got {given}")
+    return robot
+
+
+def has_servos(robot: Robot) -> bool:
+    """Whether a joint of the robot has a servo."""
+    return any(servo is not None for servo in robot.servos)

@@ -12,6 +12,7 @@ from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.fins.fins import given_angles, knots_of, servo_time
 from eel_model.flow.flow import Flow
 from eel_model.initial_state import InitialState, time_scale
+from eel_model.robot.robot import Robot
 
 import eel_core
 from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
@@ -120,6 +121,11 @@ class March:
         self.setup = replace(self.setup, flow=flow)
         self._use(self.settings.at_least(self.setup.grid_for(self._needs)))
         self._hand_over_law()
+
+    def change_robot(self, robot: Robot):
+        """Go on with a robot that differs in its numbers alone."""
+        self.setup = replace(self.setup, robot=robot)
+        self._change_grid(self.settings)
 
     def command_fins(self, commands: dict[str, float]):
         """Have the servos of fins follow these angles [rad] from now on."""

@@ -238,12 +238,27 @@ class Simulation(Present):
         """
         changes = {"accuracy": accuracy, "robot": robot}
         other = Simulation(**self._setup.arguments | {name: each for name, each in changes.items() if each is not None})
-        if robot is not None and [*map(_place, robot.parts)] != [*map(_place, self.robot.parts if self.robot else ())]:
-            raise ValueError("robot must have the same parts at the same places to go on")
+        if robot is not None:
+            self._check_parts(robot)
         other._march = self._march.copy_with(replace(other._setup, flow=self._march.setup.flow))
         other.currents = deepcopy(self.currents)
         other.ready, other._started = self.ready, self._started
         return other
+
+    def change_robot(self, robot: Robot) -> None:
+        """Go on with other numbers of the robot, as of `copy_with`, from the present time on, and after a reset too.
+
+        Commands hold. `ValueError` for other parts, or at other places.
+        """
+        self._check_parts(robot)
+        self._on_both(lambda march: march.change_robot(robot))
+        self._setup, self.robot = replace(self._setup, robot=robot), robot
+        if self._meter is not None:
+            self._meter.due = True
+
+    def _check_parts(self, robot: Robot) -> None:
+        if [*map(_place, robot.parts)] != [*map(_place, self.robot.parts if self.robot else ())]:
+            raise ValueError("robot must have the same parts at the same places to go on")
 
     # -- march
 

@@ -31,6 +31,7 @@ from eel_dynamics.ros.loop.joint_commander import Command, JointCommander
 from eel_dynamics.ros.loop.law_adopter import LawAdopter
 from eel_dynamics.ros.loop.run_gate import RunGate
 from eel_dynamics.ros.loop.sample_output import SampleOutput, nanoseconds
+from eel_dynamics.ros.loop.servo_limit import ServoLimit
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.publishers import Publishers
 from eel_dynamics.simulation.simulation import Simulation
@@ -52,7 +53,8 @@ class RunLoop:
         standing: what the simulation waits for, as text; empty while it runs.
         requests: RequestQueue, for other threads.
         wall_time: [s] spent on samples.
-        gate: RunGate. laws: LawAdopter. commands: JointCommander. output: SampleOutput. pace: Pace.
+        gate: RunGate. laws: LawAdopter. commands: JointCommander. servo_limit: ServoLimit. output: SampleOutput.
+        pace: Pace.
     """
 
     def __init__(
@@ -70,7 +72,7 @@ class RunLoop:
         self.gate = RunGate(simulation, publishers, values.wait_for_subscribers)
         self.pace = (FollowedClock if values.follow_clock else Pace)(1.0 / values.rate, values.real_time_factor)
         self.laws, self._current = LawAdopter(simulation, report), CurrentTaker(report)
-        self.commands = JointCommander(simulation, report)
+        self.commands, self.servo_limit = JointCommander(simulation, report), ServoLimit(simulation, report)
         self.output = SampleOutput(simulation, parameters, publishers, report)
         self._sample_begun: float | None = None  # s, steady clock: when the computation of the next sample began
         self.time, self.samples_published, self.standing = 0.0, 0, ""
@@ -97,6 +99,8 @@ class RunLoop:
                 self._execute(self.laws.add_samples, samples, self.pace.period)
             for request in self.requests.take():
                 request.answer.give(*self._execute(request.action, *request.arguments))
+            if self._parameters.values.servo_torque_limit != self.servo_limit.present:
+                self._execute(self._limit_servos, self._parameters.values.servo_torque_limit)
             reason = self.gate.held_by(self.time) or self.pace.held_by(self.samples_published)
             if reason:
                 self._idle(reason)
@@ -239,6 +243,10 @@ class RunLoop:
         """Have joints of the robot do so from its time on."""
         self.commands.add(command)
 
+    def _limit_servos(self, torque: float) -> None:
+        self.servo_limit.change(torque)
+        self.output.forget_start()
+
     def command_fins(self, commands: dict[str, float]) -> None:
         """Have fins follow these angles [rad], as `Simulation.command_fins` does."""
         try:
@@ -283,6 +291,7 @@ class RunLoop:
             self._publishers.begin(simulation)
             self._simulation = self.gate.simulation = simulation
             self.laws.simulation = self.commands.simulation = simulation
+            self.servo_limit.begin(simulation)
             self.pace.period = 1.0 / values.rate
         now = time.monotonic()
         self.time, self.samples_published = 0.0, 0

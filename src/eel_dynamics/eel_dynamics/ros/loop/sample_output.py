@@ -41,8 +41,7 @@ class SampleOutput:
         self._start_audience: tuple[int, ...] | None = None  # who had it
 
     def _watch(self) -> SaturationMonitor | None:
-        robot = self._simulation.robot
-        return None if robot is None else SaturationMonitor(robot, self._report)
+        return None if self._simulation.robot is None else SaturationMonitor(self._simulation, self._report)
 
     def request_whole_snapshot(self) -> None:
         """Let the next snapshot hold everything that the totals use, even without subscribers."""

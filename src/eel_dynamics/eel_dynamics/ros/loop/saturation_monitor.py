@@ -5,26 +5,28 @@ from typing import Any
 
 import numpy as np
 from eel_model.robot.actuators import at_limit
-from eel_model.robot.robot import Robot
 from eel_ros.loop.diagnostics import Report
 
 from eel_dynamics.simulation.observations import Snapshot
+from eel_dynamics.simulation.simulation import Simulation
 
 
 class SaturationMonitor:
-    """Watches the servos of a `robot`. A servo counts as at its limit from one sample to the next."""
+    """Watches the servos of the robot of a `simulation`. A servo counts as at its limit from one sample to the next."""
 
-    def __init__(self, robot: Robot, report: Report) -> None:
-        self._servos = robot.servos
-        self._names = [joint.name for joint in robot.joints]
+    def __init__(self, simulation: Simulation, report: Report) -> None:
+        robot = simulation.robot
+        assert robot is not None
+        self._simulation, self._names = simulation, [joint.name for joint in robot.joints]
         self._report, count = report, len(self._names)
         self._total, self._lasting = np.zeros(count), np.zeros(count)  # s
         self._before, self._time = np.zeros(count, dtype=bool), 0.0
 
     def add(self, snapshot: Snapshot) -> None:
         """Look at the motors of an instant."""
-        joints, step = snapshot.joints, snapshot.time - self._time
-        here = at_limit(self._servos, joints["motor_torque"], joints["motor_power"])
+        joints, step, robot = snapshot.joints, snapshot.time - self._time, self._simulation.robot
+        assert robot is not None
+        here = at_limit(robot.servos, joints["motor_torque"], joints["motor_power"])
         self._total += step * self._before
         self._lasting = np.where(here, self._lasting + step * self._before, 0.0)
         self._before, self._time = here, snapshot.time
