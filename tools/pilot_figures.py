@@ -20,6 +20,7 @@ from eel_studies.pictures import BLUE, ORANGE, write_picture
 from eel_studies.pilot.courses import figures_of, random_path, swim_path
 from eel_studies.pilot.moving_water import figures_in
 from eel_studies.roll_hold.study import PAIR
+from eel_studies.table import Table
 from matplotlib.patches import Circle
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -60,27 +61,31 @@ def swim(swimmers: dict, courses: int, processes: int) -> list:
         return [list(pool.map(partial(figures_of, **each), range(courses))) for each in swimmers.values()]
 
 
-def sentence(swimmers: dict, courses: int, processes: int) -> str:
-    """How many of the tasks of the first of the `swimmers` are met, as a sentence."""
-    tasks, told = swim(swimmers, courses, processes)[0], []
-    for values_of, counted, _ in QUANTITIES:
-        if counted:
-            values = np.array([value for each in tasks for value in values_of(each)])
-            told.append(f"{counted[0]}: {np.sum(values < counted[1])} of {len(values)}")
-    return f"Of {courses} random tasks of each kind, {', '.join(told)}."
-
-
-def table(swimmers: dict, courses: int, processes: int) -> str:
-    """The figures of all `swimmers`, as Markdown."""
-    found, cells = swim(swimmers, courses, processes), []
+def figures(swimmers: dict, courses: int, processes: int, path: Path) -> tuple[list[list[str]], list[list[str]]]:
+    """Rows of what is met, and of its greatest errors, by the first and second column; all of them in `path`."""
+    found, met, errors = swim(swimmers, courses, processes), [], []
     for values_of, counted, told in QUANTITIES:
         values = [np.array([value for each in tasks for value in values_of(each)]) for tasks in found]
         if counted:
-            cells.append([counted[0], *(f"{np.sum(each < counted[1])} of {len(each)}" for each in values)])
+            met.append([counted[0], *(f"{np.sum(each < counted[1])} of {len(each)}" for each in values)])
         spread = (f"{np.median(each):.2g}, {np.max(each):.2g}" for each in values)
-        cells.append([told.format("median and greatest"), *spread])
+        errors.append([told.format("median and greatest"), *spread])
+    Table(("", *swimmers), [*met, *errors]).write_csv(path)
+    return met, errors
+
+
+def sentence(swimmers: dict, courses: int, processes: int) -> str:
+    """How many of the tasks of the first of the `swimmers` are met, as a sentence."""
+    met, _ = figures(swimmers, courses, processes, PAGE.with_name("pilot_fins.csv"))
+    return f"Of {courses} random tasks of each kind, {', '.join(f'{told}: {count}' for told, count, *_ in met)}."
+
+
+def table(swimmers: dict, courses: int, processes: int) -> str:
+    """What is met, and the rolls, of all `swimmers`, as Markdown."""
+    met, errors = figures(swimmers, courses, processes, PAGE.with_name("pilot.csv"))
+    rows = [*met, *(row for row in errors if row[0].startswith("greatest roll"))]
     told = f"{courses} random tasks of each kind, seeds 0 to {courses - 1}."
-    return f"{told}\n\n{markdown.table(['', *swimmers], cells)}"
+    return f"{told}\n\n{markdown.table(['', *swimmers], rows)}"
 
 
 WATER = (  # figures of WaterFigures: name, factor of the unit
