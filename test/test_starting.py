@@ -89,6 +89,14 @@ def test_an_interrupt_of_a_module_that_python_runs_is_silent(module, start_until
     assert (node.interrupt(timeout=LIMIT), node.output()) == (-signal.SIGINT, "")
 
 
+def test_nodes_and_commands_begin_without_scipy(start):
+    """To import its interpolation takes as long as all else of the dynamics node: what needs it imports it then."""
+    modules = [f"eel_gaits.ros.{name}" for name in ("node", "heading_controller", "pilot")]
+    modules += ["eel_dynamics.ros.node", "eel_dynamics.commands.simulate", "eel_viz.ros.node", "eel_studies", "eel_gym"]
+    process = start("python", "-c", f"import {', '.join(modules)}, sys; assert 'scipy' not in sys.modules")
+    assert process.wait(90.0) == 0, process.output()
+
+
 def test_as_a_library_a_package_leaves_the_handler_of_signals_alone(start):
     code = "import signal, eel_gaits, eel_dynamics, eel_viz; "
     code += "assert signal.getsignal(signal.SIGINT) is signal.default_int_handler"

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from eel_base.quantity import Quantities, checked_row, documented, numbers, quantity
 from eel_base.wording import shown
-from scipy.interpolate import CubicSpline
 
 from eel_model.flow.flow import Flow
 
@@ -44,6 +43,8 @@ class Uniform(Flow):
     def sources(self, planar: bool) -> list[tuple[Any, ...]]:
         if self.time is None:
             return [("ramped", np.array(self.velocity), [])]
+        from scipy.interpolate import CubicSpline
+
         spline = CubicSpline(self.time, self.velocity, bc_type="clamped")
         coefficients = np.ascontiguousarray(spline.c[::-1].transpose(1, 0, 2))  # from the constant one on
         return [("spline", np.array(self.time), coefficients)]

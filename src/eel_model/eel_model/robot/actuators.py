@@ -22,7 +22,6 @@ from typing import Any, ClassVar
 import numpy as np
 from eel_base.quantity import checked_row, documented, is_finite, quantity
 from eel_base.wording import shown
-from scipy.interpolate import CubicSpline
 
 from eel_model.robot.part import Part
 
@@ -96,8 +95,10 @@ class Torque(Part):
         object.__setattr__(self, "torque", tuple(values.tolist()))
 
     @cached_property
-    def spline(self) -> CubicSpline | None:
+    def spline(self) -> Any:
         """The spline through the values; None of a function."""
+        from scipy.interpolate import CubicSpline
+
         return None if self.time is None else CubicSpline(self.time, self.torque)
 
     def at(self, time: Any) -> np.ndarray:

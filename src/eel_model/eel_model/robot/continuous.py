@@ -16,7 +16,6 @@ import numpy as np
 from eel_base.quantity import checked_instance, checked_row, documented, quantity
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
-from scipy.interpolate import pchip_interpolate
 
 from eel_model.robot.part import MOST_MODES, Part, checked_axis, required
 
@@ -41,6 +40,8 @@ class ProfileTable:
 
     def __call__(self, x: Any) -> np.ndarray:
         """At `x` [m]; the first and the last value are held."""
+        from scipy.interpolate import pchip_interpolate
+
         return np.asarray(pchip_interpolate(self.x, self.values, np.clip(x, self.x[0], self.x[-1])))
 
 
