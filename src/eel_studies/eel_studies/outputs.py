@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the command of a study leaves behind: pictures in a folder, and the parts of a page that it writes anew."""
+"""What the command of a study leaves behind: pictures, tables, and the parts of a page that it writes anew."""
 
 import argparse
 import os
@@ -22,6 +22,13 @@ def add_output_options(parser: Parser, folder: str = "out") -> None:
     """Add the options of `Outputs` to the `parser` of a command. folder: where pictures go by default."""
     parser.add_argument("-o", "--out", default=folder, metavar="FOLDER", help=f"where pictures go ({folder})")
     parser.add_argument("--page", metavar="FILE.md", help="page whose parts are written anew, or a new one")
+
+
+def write_files(paths: list[Path], csv: Callable[[Path], object], draw: Callable[[Path], object]) -> None:
+    """Write each of the `paths` by csv(path) or draw(path), as its suffix says, and tell so."""
+    for path in paths:
+        (csv if path.suffix == ".csv" else draw)(path)
+        print(f"written to {written_as(path)}")
 
 
 class Outputs:

@@ -7,18 +7,16 @@ bash: eval "$(eel completion bash)"     zsh: eval "$(eel completion zsh)"
 import argparse
 
 from eel_base.command.command_line import Parser
-from eel_base.command.run_command import run_command
+from eel_base.command.run_command import command
 from eel_base.command.suite import commands
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`."""
-    parser = Parser(prog="eel completion", description="Print a shell's completion of eel, for eval in its start file.")
+def _add_options(parser: Parser) -> None:
     parser.add_argument("shell", choices=("bash", "zsh"))
-    return run_command(parser, _print_script, arguments)
 
 
-def _print_script(options: argparse.Namespace) -> int:
+@command("eel completion", "Print a shell's completion of eel, for eval in its start file.", add_options=_add_options)
+def main(options: argparse.Namespace) -> None:
     """Without argcomplete, the names of the commands are completed alone."""
     try:
         from argcomplete import shellcode
@@ -27,4 +25,3 @@ def _print_script(options: argparse.Namespace) -> int:
         print(f"{first}complete -o default -W '{' '.join(commands())}' eel")
     else:
         print(shellcode(["eel"], shell=options.shell))
-    return 0

@@ -11,10 +11,31 @@ from eel_base.files.output_file import NotWritten, check_output, command_begins
 from eel_base.wording import shown
 from eel_base.work_stopped import WorkStopped
 
+Work = Callable[[argparse.Namespace], int | None]  # of a command: returns its exit status, None for 0
+
+
+def command(
+    name: str, description: str, *, add_options: Callable[[Parser], None], epilog: str = "", interrupted: str = ""
+) -> Callable[[Work], Callable[..., int]]:
+    """Decorator: makes main(arguments) of the command `name` of what it does with its options.
+
+    description, epilog: of its help. add_options(parser) adds its options. The rest as of `run_command`.
+    """
+
+    def main_of(work: Work) -> Callable[..., int]:
+        def main(arguments: list[str] | None = None) -> int:
+            parser = Parser(prog=name, description=description, epilog=epilog)
+            add_options(parser)
+            return run_command(parser, work, arguments, interrupted)
+
+        return main
+
+    return main_of
+
 
 def run_command(
     parser: Parser,
-    work: Callable[[argparse.Namespace], int],
+    work: Work,
     arguments: list[str] | None,
     interrupted: str = "",
 ) -> int:
@@ -27,7 +48,7 @@ def run_command(
     options, name = parser.parse_args(arguments), parser.prog
     try:
         with one_line_warnings(name), command_begins(), interruptible() if interrupted else contextlib.nullcontext():
-            return work(options)
+            return work(options) or 0
     except NotWritten as error:
         print_to_stderr(name, error)
         return 1

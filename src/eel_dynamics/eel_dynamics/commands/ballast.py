@@ -5,9 +5,11 @@ eel ballast --body fish.csv
 eel ballast --scene density=850 --offset 0.02 --out level.csv
 """
 
+import argparse
+
 import numpy as np
 from eel_base.command.command_line import Parser
-from eel_base.command.run_command import checked_out, run_command
+from eel_base.command.run_command import checked_out, command
 from eel_base.files.output_file import written_as
 from eel_model.body.body import COLUMNS, MASSES, Body, body_of
 
@@ -19,24 +21,19 @@ NAME = "eel ballast"
 POINTS = 401  # of a body file
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`."""
-    return run_command(_parser(), _ballast, arguments)
-
-
-def _parser() -> Parser:
-    parser = Parser(
-        prog=NAME,
-        description="Find the ballast with which a straight body floats level: its mass and its place along the body.",
-    )
+def _add_options(parser: Parser) -> None:
     add_options(parser, "--body", "--scene")
     parser.add_argument("--length", type=float, metavar="M", help="m that the ballast takes (a tenth of the body)")
     parser.add_argument("--offset", type=float, default=0.0, metavar="M", help="m below the axis (0)")
     parser.add_argument("--out", metavar="FILE", help=".csv: the body with its ballast, for --body of other commands")
-    return parser
 
 
-def _ballast(options) -> int:
+@command(
+    NAME,
+    "Find the ballast with which a straight body floats level: its mass and its place along the body.",
+    add_options=_add_options,
+)
+def main(options: argparse.Namespace) -> None:
     body, scene = body_of(options.body), scene_of(options.scene)
     out = None if options.out is None else checked_out(NAME, options.out, (".csv",))
     print(f"without ballast     {trim_of(body, scene).about()}")
@@ -49,7 +46,6 @@ def _ballast(options) -> int:
     if out is not None:
         write_columns(table_of(found.body), out)
         print(f"written to          {written_as(out)}")
-    return 0
 
 
 def table_of(body: Body) -> dict[str, np.ndarray]:

@@ -10,6 +10,7 @@ eel simulate --midlines lamprey.csv --units mm
 eel simulate straight --set wavelength=0.8 --scene friction=laminar --accuracy 1e-6 --out run.npz
 """
 
+import argparse
 import time
 from importlib.util import find_spec
 from pathlib import Path
@@ -18,7 +19,7 @@ from typing import Any
 import numpy as np
 from eel_base.command.command_line import Parser, print_to_stderr
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import checked_out, run_command
+from eel_base.command.run_command import checked_out, command
 from eel_base.files.output_file import replacing, written_as
 from eel_base.quantity import described_fields
 from eel_base.wording import one_line, shown
@@ -52,12 +53,66 @@ DURATION, STATIONS = 10.0, 51  # s, and points along the body, by default
 SUFFIXES = (".nc", ".npz", ".csv", ".rrd")
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`; the samples of a run that stopped are written."""
-    return run_command(_parser(), _swim, arguments)
+def _add_options(parser: Parser) -> None:
+    add_options(parser, "gait", "--set", gait=(None, "falling; or the .yaml file of a scene"))
+    parser.add_argument(
+        "--sequence",
+        metavar="FILE",
+        help="a YAML file of gaits that follow one another, in place of a gait: docs/reference/manoeuvres.md",
+    )
+    parser.add_argument(
+        "--file",
+        metavar="FILE",
+        help="a measured motion in place of a gait: .csv or .npz with columns time and x, y (midlines), yaw_1, "
+        "yaw_2 ... (joint angles), or arc_length, yaw (curvature); yaw > 0 bends the tail to the right, and x, y are "
+        "seen from above: docs/howto/motions.md",
+    )
+    parser.add_argument(
+        "--midlines",
+        metavar="FILE",
+        help="a filmed swimmer in place of a gait: tracked points as published, or of DeepLabCut or SLEAP; it swims by "
+        "the mean beat: docs/howto/motions.md",
+    )
+    add_film_options(parser)
+    parser.add_argument("--unsmoothed", action="store_true", help="do not smooth what was measured")
+    duration = None, f"{DURATION:g}; of a file: all of it; of midlines: {UNTIL_SETTLED}"
+    add_options(
+        parser, "--scale", "--duration", "--accuracy", "--bare", "--body", "--scene", "--flow", "--robot", "--fins",
+        "--sample-period",
+        duration=duration, accuracy=(None, "standard"),
+        body=(None, f"boyer2010; with --midlines {EEL}, as long as the swimmer in the film"),
+    )  # fmt: skip
+    parser.add_argument("--stations", type=int, help=f"points along the body ({STATIONS})")
+    parser.add_argument(
+        "--most-evaluations",
+        type=float,
+        default=MOST_EVALUATIONS,
+        metavar="N",
+        help=f"of the head's dynamics per simulated second; a swim that takes more ends ({MOST_EVALUATIONS:g})",
+    )
+    parser.add_argument("--load", action="store_true", help="keep the water's load along the body too")
+    parser.add_argument(
+        "--periods", type=int, metavar="N", help="figures of the gait over the last N whole periods (later half)"
+    )
+    parser.add_argument(
+        "--actuators", type=int, metavar="N", help="print the demand on a robot of N motors in pitch and N in yaw"
+    )
+    parser.add_argument(
+        "-o",
+        "--out",
+        metavar="FILE",
+        help=".nc: the whole run, for Run.load; .npz: its arrays; .csv: head, energies, one line "
+        "per sample; .rrd: for Rerun's viewer, as the visualiser shows it (needs eel_viz)",
+    )
 
 
-def _swim(options) -> int:
+@command(
+    NAME,
+    "Simulate a gait, a sequence of gaits or a measured motion without ROS, and print a summary.",
+    epilog=f"fields of the scene, with default, meaning, unit, and bounds or choices:\n{described_fields(Scene)}",
+    add_options=_add_options,
+)
+def main(options: argparse.Namespace) -> int:
     """Simulate, print the summary and write the run; returns the exit status: 0, or 3 for a run that stopped."""
     out = _checked_out(options.out)
     beat = None if options.midlines is None else beat_from(options.midlines, options)
@@ -156,65 +211,6 @@ def _print_smoothing(run: Run):
         effect = f"without it the motion cannot be swum: {one_line(error)}"
     if effect is not None:
         print(f"smoothing           {effect}")
-
-
-def _parser() -> Parser:
-    parser = Parser(
-        prog=NAME,
-        description="Simulate a gait, a sequence of gaits or a measured motion without ROS, and print a summary.",
-        epilog=f"fields of the scene, with default, meaning, unit, and bounds or choices:\n{described_fields(Scene)}",
-    )
-    add_options(parser, "gait", "--set", gait=(None, "falling; or the .yaml file of a scene"))
-    parser.add_argument(
-        "--sequence",
-        metavar="FILE",
-        help="a YAML file of gaits that follow one another, in place of a gait: docs/reference/manoeuvres.md",
-    )
-    parser.add_argument(
-        "--file",
-        metavar="FILE",
-        help="a measured motion in place of a gait: .csv or .npz with columns time and x, y (midlines), yaw_1, "
-        "yaw_2 ... (joint angles), or arc_length, yaw (curvature); yaw > 0 bends the tail to the right, and x, y are "
-        "seen from above: docs/howto/motions.md",
-    )
-    parser.add_argument(
-        "--midlines",
-        metavar="FILE",
-        help="a filmed swimmer in place of a gait: tracked points as published, or of DeepLabCut or SLEAP; it swims by "
-        "the mean beat: docs/howto/motions.md",
-    )
-    add_film_options(parser)
-    parser.add_argument("--unsmoothed", action="store_true", help="do not smooth what was measured")
-    duration = None, f"{DURATION:g}; of a file: all of it; of midlines: {UNTIL_SETTLED}"
-    add_options(
-        parser, "--scale", "--duration", "--accuracy", "--bare", "--body", "--scene", "--flow", "--robot", "--fins",
-        "--sample-period",
-        duration=duration, accuracy=(None, "standard"),
-        body=(None, f"boyer2010; with --midlines {EEL}, as long as the swimmer in the film"),
-    )  # fmt: skip
-    parser.add_argument("--stations", type=int, help=f"points along the body ({STATIONS})")
-    parser.add_argument(
-        "--most-evaluations",
-        type=float,
-        default=MOST_EVALUATIONS,
-        metavar="N",
-        help=f"of the head's dynamics per simulated second; a swim that takes more ends ({MOST_EVALUATIONS:g})",
-    )
-    parser.add_argument("--load", action="store_true", help="keep the water's load along the body too")
-    parser.add_argument(
-        "--periods", type=int, metavar="N", help="figures of the gait over the last N whole periods (later half)"
-    )
-    parser.add_argument(
-        "--actuators", type=int, metavar="N", help="print the demand on a robot of N motors in pitch and N in yaw"
-    )
-    parser.add_argument(
-        "-o",
-        "--out",
-        metavar="FILE",
-        help=".nc: the whole run, for Run.load; .npz: its arrays; .csv: head, energies, one line "
-        "per sample; .rrd: for Rerun's viewer, as the visualiser shows it (needs eel_viz)",
-    )
-    return parser
 
 
 def _check_actuators(options, scene: Scene):

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import checked_out, run_command
+from eel_base.command.run_command import checked_out, command
 from eel_base.files.output_file import written_as
 from eel_dynamics.analysis.measures import MEASURES, measures_of
 from eel_dynamics.commands.options import add_options, scene_of, set_numbers
@@ -35,12 +35,25 @@ SIZE = 6.8, 6.4  # inches
 STYLES: tuple[dict[str, Any], ...] = ({"color": BLUE}, {"color": ORANGE, "linestyle": (0, (4, 2))})
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`."""
-    return run_command(_parser(), _compare, arguments)
+def _add_options(parser: Parser) -> None:
+    for name in ("first", "second"):
+        parser.add_argument(name, metavar="RUN", help="a run (.nc, of eel simulate --out), or a gait")
+    add_options(
+        parser, "--set", "--duration", "--accuracy", "--bare", "--body", "--scene",
+        duration=(None, f"of a file, or {DURATION:g}"), body=(None, "of a file, or boyer2010"),
+    )  # fmt: skip
+    parser.add_argument(
+        "-o", "--out", metavar="FILE", help=".rrd: for Rerun's viewer (needs eel_viz); .png, .svg, .pdf"
+    )
 
 
-def _compare(options: argparse.Namespace) -> int:
+@command(
+    NAME,
+    "Draw two runs over one another, and print the measures of both with their difference. A gait "
+    "beside a file swims in the body and scene of the file, and as long.",
+    add_options=_add_options,
+)
+def main(options: argparse.Namespace) -> None:
     out = None if options.out is None else checked_out(NAME, options.out, (".rrd", *PICTURES))
     if out is not None and out.suffix == ".rrd" and find_spec("eel_viz") is None:
         raise ValueError("--out .rrd needs the package eel_viz, with rerun-sdk, which is not installed")
@@ -55,7 +68,6 @@ def _compare(options: argparse.Namespace) -> int:
         else:
             write_picture(lambda figure: draw(figure, (first, second), names), SIZE, out)
         print(f"written to {written_as(out)}")
-    return 0
 
 
 def _swum(options: argparse.Namespace, name: str, like: Run | None) -> Run:
@@ -106,21 +118,3 @@ def draw(figure: Figure, runs: tuple[Run, Run], names: list[str]) -> None:
     plain(speed)
     plain(torque)
     legend_above(figure)
-
-
-def _parser() -> Parser:
-    parser = Parser(
-        prog=NAME,
-        description="Draw two runs over one another, and print the measures of both with their difference. A gait "
-        "beside a file swims in the body and scene of the file, and as long.",
-    )
-    for name in ("first", "second"):
-        parser.add_argument(name, metavar="RUN", help="a run (.nc, of eel simulate --out), or a gait")
-    add_options(
-        parser, "--set", "--duration", "--accuracy", "--bare", "--body", "--scene",
-        duration=(None, f"of a file, or {DURATION:g}"), body=(None, "of a file, or boyer2010"),
-    )  # fmt: skip
-    parser.add_argument(
-        "-o", "--out", metavar="FILE", help=".rrd: for Rerun's viewer (needs eel_viz); .png, .svg, .pdf"
-    )
-    return parser

@@ -10,7 +10,7 @@ import argparse
 import numpy as np
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import run_command
+from eel_base.command.run_command import command
 
 from eel_studies.drafting.drawing import SIZE, draw_study
 from eel_studies.drafting.study import Study, Wake
@@ -24,12 +24,18 @@ PHASES = 6
 LOCKED = 5e-3  # part of the speed of one spacing a beat, within which a swim is locked
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`."""
-    return run_command(_parser(), _study, arguments)
+def _add_options(parser: Parser) -> None:
+    add_output_options(parser)
+    parser.add_argument("--phases", type=int, default=PHASES, metavar="N", help=f"at the start, of each ({PHASES})")
 
 
-def _study(options: argparse.Namespace) -> int:
+@command(
+    NAME,
+    "Swim the straight gait in the street of vortices behind a cylinder that moves as fast as the "
+    "swimmer does in still water, over spacing and phase: speed and power against still water.",
+    add_options=_add_options,
+)
+def main(options: argparse.Namespace) -> None:
     if options.phases < 1:
         raise ValueError(f"--phases must be 1 or more, got {options.phases}")
     outputs, progress = Outputs(NAME, options, PARTS), Progress(NAME, "swims")
@@ -49,7 +55,6 @@ def _study(options: argparse.Namespace) -> int:
     }
     outputs.write_table("drafting", Table(head, rows))
     outputs.write({"picture": picture}, values)
-    return 0
 
 
 def _row(study: Study, index: int) -> tuple[str, ...]:
@@ -70,14 +75,3 @@ def _row(study: Study, index: int) -> tuple[str, ...]:
 def _range(values: np.ndarray) -> str:
     least, most = f"{values.min():.2f}", f"{values.max():.2f}"
     return least if least == most else f"{least} to {most}"
-
-
-def _parser() -> Parser:
-    parser = Parser(
-        prog=NAME,
-        description="Swim the straight gait in the street of vortices behind a cylinder that moves as fast as the "
-        "swimmer does in still water, over spacing and phase: speed and power against still water.",
-    )
-    add_output_options(parser)
-    parser.add_argument("--phases", type=int, default=PHASES, metavar="N", help=f"at the start, of each ({PHASES})")
-    return parser

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import run_command
+from eel_base.command.run_command import command
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.commands.options import add_options
 from eel_dynamics.runs.run import Run
@@ -37,12 +37,26 @@ COLUMN, PAGE = 3.4, 7.0  # inches: widths of a journal's column, and of its page
 JOURNAL = {"font.size": 8.0, "lines.linewidth": 1.0, "pdf.fonttype": 42}  # letters as letters, not as curves
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`."""
-    return run_command(_parser(), _figures, arguments)
+def _add_options(parser: Parser) -> None:
+    parser.add_argument("-o", "--out", default="docs/figures", metavar="FOLDER", help="where to (docs/figures)")
+    parser.add_argument("--format", nargs="+", choices=FORMATS, default=FORMATS[:2], help="file formats (svg png)")
+    parser.add_argument(
+        "--columns",
+        type=int,
+        choices=(1, 2),
+        help="columns of a journal's page that a figure is wide, 3.4 or 7 inches, with letters of 8 points; the body "
+        "takes both (a size for screens)",
+    )
+    add_options(parser, "--accuracy", accuracy="fine")
 
 
-def _figures(options: argparse.Namespace) -> int:
+@command(
+    NAME,
+    "Draw the paper's figures and more from runs of the falling gait, and write the numbers of the "
+    "page that explains them, README.md beside them; a quarter of a minute.",
+    add_options=_add_options,
+)
+def main(options: argparse.Namespace) -> None:
     for reading in readings.READINGS.values():
         Accuracy.of(options.accuracy).in_scene(Scene(**reading))  # refused before the folder exists
     options.page = None
@@ -59,7 +73,6 @@ def _figures(options: argparse.Namespace) -> int:
         outputs.write_table(name, table)
     if outputs.page.exists():
         outputs.write({}, notes.values_of(runs, control, kern[0]))
-    return 0
 
 
 def draw(
@@ -77,22 +90,3 @@ def draw(
             wanted = COLUMN if columns == 1 and drawing is not drawings.draw_body else PAGE
             size = wanted, height * max(wanted / width, 0.7)  # curves above one another stay high enough to be read
         outputs.draw(name, name, fill, size, tuple(formats), JOURNAL if columns else None)
-
-
-def _parser() -> Parser:
-    parser = Parser(
-        prog=NAME,
-        description="Draw the paper's figures and more from runs of the falling gait, and write the numbers of the "
-        "page that explains them, README.md beside them; a quarter of a minute.",
-    )
-    parser.add_argument("-o", "--out", default="docs/figures", metavar="FOLDER", help="where to (docs/figures)")
-    parser.add_argument("--format", nargs="+", choices=FORMATS, default=FORMATS[:2], help="file formats (svg png)")
-    parser.add_argument(
-        "--columns",
-        type=int,
-        choices=(1, 2),
-        help="columns of a journal's page that a figure is wide, 3.4 or 7 inches, with letters of 8 points; the body "
-        "takes both (a size for screens)",
-    )
-    add_options(parser, "--accuracy", accuracy="fine")
-    return parser

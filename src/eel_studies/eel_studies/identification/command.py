@@ -14,8 +14,7 @@ from typing import Any
 
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import checked_out, run_command
-from eel_base.files.output_file import written_as
+from eel_base.command.run_command import checked_out, command
 from eel_base.wording import shown
 from eel_dynamics.commands.options import add_options, add_repeated, scene_of, set_numbers
 from eel_dynamics.runs.storage.tables import write_columns
@@ -27,18 +26,50 @@ from eel_model.scene import Scene
 from eel_studies.identification.drawing import FORMATS, draw_identified
 from eel_studies.identification.identify import identify
 from eel_studies.identification.measured_file import MeasuredFile, read_measured
+from eel_studies.outputs import write_files
 from eel_studies.points import ROBOT, Gait
 
 NAME = "eel identify"
 SUFFIXES = (*FORMATS, ".csv")
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`."""
-    return run_command(_parser(), _identify, arguments)
+def _add_options(parser: Parser) -> None:
+    parser.add_argument(
+        "file",
+        nargs="+",
+        help=".csv or .npz with the columns time, x, y (perhaps z), or time and a robot's joints, or speed and numbers "
+        "of the gait; a run (.nc); a bag. All of one kind",
+    )
+    about = "a parameter and its first guess: body.FIELD, scene.FIELD, robot.FIELD, initial.v_x, a number of the "
+    about += "gait"
+    add_repeated(parser, "--first", "NAME=VALUE", about, required=True)
+    add_options(
+        parser,
+        "--gait",
+        "--set",
+        "--scene",
+        "--body",
+        "--robot",
+        "--accuracy",
+        "--out",
+        gait=(None, "the law of the run or bag"),
+        scene=([], "that of the run; the friction is blended unless it is given here"),
+        body=(None, "that of the run, or boyer2010"),
+        accuracy=1e-4,
+    )
+    parser.add_argument("--station", type=float, default=0.0, metavar="X", help="m, of the point that was tracked (0)")
+    parser.add_argument("--path", action="store_true", help="fit the robot to the path, not to its joints' angles")
+    parser.add_argument("--namespace", metavar="NS", help="of the swimmer in a bag; by default that of the only one")
+    parser.add_argument("--noise", type=float, metavar="SIZE", help="standard deviation of the errors, m or m/s")
+    parser.add_argument("--level", type=float, default=0.95, help="of the intervals (0.95)")
 
 
-def _identify(options: argparse.Namespace) -> int:
+@command(
+    NAME,
+    "Find coefficients of the model, with their intervals, from measured paths or steady speeds.",
+    add_options=_add_options,
+)
+def main(options: argparse.Namespace) -> None:
     start, progress = time.perf_counter(), Progress(NAME, "evaluations")
     outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
     first, numbers = set_numbers(options.first, "--first"), set_numbers(options.set)
@@ -63,14 +94,9 @@ def _identify(options: argparse.Namespace) -> int:
     )
     print(found.table())
     print(f"wall time  {time.perf_counter() - start:.1f} s, {sum(each.count for each in measured)} measured numbers")
-    for out in outs:
-        if out.suffix == ".csv":
-            columns = {"name": found.names, "value": found.value, "standard_error": found.error}
-            write_columns(columns | {"low": found.low, "high": found.high}, out)
-        else:
-            draw_identified(found, measured, out)
-        print(f"written to {written_as(out)}")
-    return 0
+    columns = {"name": found.names, "value": found.value, "standard_error": found.error}
+    columns |= {"low": found.low, "high": found.high}
+    write_files(outs, lambda path: write_columns(columns, path), lambda path: draw_identified(found, measured, path))
 
 
 def _gait(options: argparse.Namespace, files: list[MeasuredFile]) -> Gait:
@@ -105,39 +131,3 @@ def _scene(options: argparse.Namespace, files: list[MeasuredFile]) -> Scene:
     if scene is None:
         return scene_of(options.scene, Scene(friction="blended"))
     return replace(scene, friction="blended") if scene.friction == "printed" else scene
-
-
-def _parser() -> Parser:
-    parser = Parser(
-        prog=NAME,
-        description="Find coefficients of the model, with their intervals, from measured paths or steady speeds.",
-    )
-    parser.add_argument(
-        "file",
-        nargs="+",
-        help=".csv or .npz with the columns time, x, y (perhaps z), or time and a robot's joints, or speed and numbers "
-        "of the gait; a run (.nc); a bag. All of one kind",
-    )
-    about = "a parameter and its first guess: body.FIELD, scene.FIELD, robot.FIELD, initial.v_x, a number of the "
-    about += "gait"
-    add_repeated(parser, "--first", "NAME=VALUE", about, required=True)
-    add_options(
-        parser,
-        "--gait",
-        "--set",
-        "--scene",
-        "--body",
-        "--robot",
-        "--accuracy",
-        "--out",
-        gait=(None, "the law of the run or bag"),
-        scene=([], "that of the run; the friction is blended unless it is given here"),
-        body=(None, "that of the run, or boyer2010"),
-        accuracy=1e-4,
-    )
-    parser.add_argument("--station", type=float, default=0.0, metavar="X", help="m, of the point that was tracked (0)")
-    parser.add_argument("--path", action="store_true", help="fit the robot to the path, not to its joints' angles")
-    parser.add_argument("--namespace", metavar="NS", help="of the swimmer in a bag; by default that of the only one")
-    parser.add_argument("--noise", type=float, metavar="SIZE", help="standard deviation of the errors, m or m/s")
-    parser.add_argument("--level", type=float, default=0.95, help="of the intervals (0.95)")
-    return parser

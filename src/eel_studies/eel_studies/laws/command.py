@@ -6,14 +6,15 @@ eel laws gazzola --friction taylor
 """
 
 import argparse
+from functools import partial
 
 from eel_base.command.command_line import Parser
-from eel_base.command.run_command import checked_out, run_command
-from eel_base.files.output_file import written_as
+from eel_base.command.run_command import checked_out, command
 from eel_dynamics.commands.options import add_options
 from eel_model.scene import FRICTION
 
 from eel_studies.laws.laws import LAWS, Result
+from eel_studies.outputs import write_files
 from eel_studies.pictures import BLACK, LOOKS, Figure, legend_above, write_picture
 
 NAME = "eel laws"
@@ -21,24 +22,21 @@ SUFFIXES = (".csv", ".png", ".svg", ".pdf")
 SIZE = 5.2, 3.6  # inches
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`."""
-    return run_command(_parser(), _hold_against, arguments)
+def _add_options(parser: Parser) -> None:
+    parser.add_argument("law", choices=LAWS, help="which one: the first lines of eel_studies/laws/laws.py")
+    parser.add_argument("--friction", choices=FRICTION, help="law of friction in gazzola (blended)")
+    add_options(parser, "--out")
 
 
-def _hold_against(options: argparse.Namespace) -> int:
+@command(NAME, "Hold the model against a law of swimming that was found on animals.", add_options=_add_options)
+def main(options: argparse.Namespace) -> None:
     outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
     if options.friction and options.law != "gazzola":
         raise ValueError("--friction belongs to gazzola")
     found = LAWS[options.law](options.friction) if options.friction else LAWS[options.law]()
     print(found.table.text())
-    for out in outs:
-        if out.suffix == ".csv":
-            found.table.write_csv(out)
-        else:
-            write_picture(lambda figure: draw(figure, found), SIZE, out)
-        print(f"written to {written_as(out)}")
-    return 0
+    pictured = partial(write_picture, lambda figure: draw(figure, found), SIZE)
+    write_files(outs, found.table.write_csv, pictured)
 
 
 def draw(figure: Figure, found: Result) -> None:
@@ -54,11 +52,3 @@ def draw(figure: Figure, found: Result) -> None:
     axes.set(xlabel=found.x, ylabel=found.y)
     axes.grid(alpha=0.3)
     legend_above(figure, 2)
-
-
-def _parser() -> Parser:
-    parser = Parser(prog=NAME, description="Hold the model against a law of swimming that was found on animals.")
-    parser.add_argument("law", choices=LAWS, help="which one: the first lines of eel_studies/laws/laws.py")
-    parser.add_argument("--friction", choices=FRICTION, help="law of friction in gazzola (blended)")
-    add_options(parser, "--out")
-    return parser

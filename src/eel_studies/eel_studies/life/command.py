@@ -7,13 +7,13 @@ eel life robot docs/data/tendon_fish_?.??Hz.csv --body docs/data/tendon_fish_bod
 
 import argparse
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
 from eel_base.command.command_line import Parser
-from eel_base.command.run_command import checked_out, run_command
-from eel_base.files.output_file import written_as
+from eel_base.command.run_command import checked_out, command
 from eel_base.quantity import positive
 from eel_dynamics.commands.filmed import add_film_options, beat_from
 from eel_dynamics.commands.options import add_options, add_repeated, scene_of, set_numbers
@@ -24,6 +24,7 @@ from eel_studies.life.drawing import draw_lamprey, draw_robot
 from eel_studies.life.lamprey import HEIGHTS, MEASURED, LampreySwim, in_thick_water, lamprey, swims
 from eel_studies.life.lamprey import PLANAR as WATER_OF_FILM
 from eel_studies.life.leave_out import PLANAR, Choice, choices, computed, swum
+from eel_studies.outputs import write_files
 from eel_studies.pictures import Figure, write_picture
 from eel_studies.table import Table
 
@@ -33,23 +34,32 @@ SUFFIXES = (".csv", ".png", ".svg", ".pdf")
 FIRST = {"nose_drag": 1.0}  # one number: with two, films that are left out are predicted worse
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`."""
-    return run_command(_parser(), _compare, arguments)
+def _add_options(parser: Parser) -> None:
+    parser.add_argument(
+        "swimmer",
+        choices=("lamprey", "robot"),
+        help="lamprey: without any fitted number, as a band over the body's height, and in thicker water; robot: drag "
+        "fitted on some films, judged by the others",
+    )
+    parser.add_argument("files", nargs="+", metavar="FILE", help="films: tracked points, docs/howto/motions.md")
+    add_film_options(parser)
+    add_options(parser, "--scale", "--body", "--scene")
+    add_repeated(parser, "--set", "NAME=VALUE", "a number of the body")
+    parser.add_argument("--widths", metavar="FILE", help="of a lamprey: columns s_by_length, lamprey_width_by_length")
+    parser.add_argument("--mass", type=float, metavar="KG", help="of the robot (by its body's density)")
+    parser.add_argument("--fit", type=int, default=2, metavar="N", help="films that are fitted at a time (2)")
+    add_repeated(parser, "--first", "NAME=VALUE", "a number of the body to fit, with its first guess "
+                 f"({', '.join(f'{name}={value:g}' for name, value in FIRST.items())})")  # fmt: skip
+    add_options(parser, "--out")
 
 
-def _compare(options: argparse.Namespace) -> int:
+@command(NAME, "Swim by filmed motions, and compare with what was measured.", add_options=_add_options)
+def main(options: argparse.Namespace) -> None:
     outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
     beats = [beat_from(file, options) for file in options.files]
     table, draw, size = (_lamprey if options.swimmer == "lamprey" else _robot)(beats, options)
     print(table.text())
-    for out in outs:
-        if out.suffix == ".csv":
-            table.write_csv(out)
-        else:
-            write_picture(draw, size, out)
-        print(f"written to {written_as(out)}")
-    return 0
+    write_files(outs, table.write_csv, partial(write_picture, draw, size))
 
 
 def _lamprey(beats: list[Beat], options: argparse.Namespace) -> Drawn:
@@ -134,24 +144,3 @@ def table_of_robot(beats: list[Beat], guessed: np.ndarray, found: list[Choice]) 
     left_out = np.concatenate([each.left_out(measured) for each in found])
     rows.append(("leave-out error, mean of all", *("" for _ in beats), f"{np.mean(np.abs(left_out)):.4f}"))
     return Table(("*: fitted", *heads, "mean error"), rows)
-
-
-def _parser() -> Parser:
-    parser = Parser(prog=NAME, description="Swim by filmed motions, and compare with what was measured.")
-    parser.add_argument(
-        "swimmer",
-        choices=("lamprey", "robot"),
-        help="lamprey: without any fitted number, as a band over the body's height, and in thicker water; robot: drag "
-        "fitted on some films, judged by the others",
-    )
-    parser.add_argument("files", nargs="+", metavar="FILE", help="films: tracked points, docs/howto/motions.md")
-    add_film_options(parser)
-    add_options(parser, "--scale", "--body", "--scene")
-    add_repeated(parser, "--set", "NAME=VALUE", "a number of the body")
-    parser.add_argument("--widths", metavar="FILE", help="of a lamprey: columns s_by_length, lamprey_width_by_length")
-    parser.add_argument("--mass", type=float, metavar="KG", help="of the robot (by its body's density)")
-    parser.add_argument("--fit", type=int, default=2, metavar="N", help="films that are fitted at a time (2)")
-    add_repeated(parser, "--first", "NAME=VALUE", "a number of the body to fit, with its first guess "
-                 f"({', '.join(f'{name}={value:g}' for name, value in FIRST.items())})")  # fmt: skip
-    add_options(parser, "--out")
-    return parser

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import checked_out, run_command
+from eel_base.command.run_command import checked_out, command
 from eel_base.files.output_file import written_as
 from eel_dynamics.commands.options import add_options
 from eel_dynamics.runs.simulate import simulate
@@ -26,12 +26,17 @@ SUFFIXES = (".png", ".svg", ".pdf")
 SHOWN = 8  # instants in the picture
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`."""
-    return run_command(_parser(), _compare, arguments)
+def _add_options(parser: Parser) -> None:
+    about = "a .csv or .npz file with the columns time, x, y (right-handed, z up): docs/howto/motions.md"
+    parser.add_argument("file", help=about)
+    add_options(parser, "--body", "--scale")
+    parser.add_argument("-o", "--out", metavar="FILE", help="a picture: .png, .svg or .pdf")
 
 
-def _compare(options: argparse.Namespace) -> int:
+@command(
+    NAME, "Simulate a file of midlines, and compare the computed ones with those measured.", add_options=_add_options
+)
+def main(options: argparse.Namespace) -> None:
     out = None if options.out is None else checked_out(NAME, options.out, SUFFIXES)
     body = body_of(options.body)
     midlines = read_midlines(options.file, length=body.length, scale=options.scale)
@@ -56,7 +61,6 @@ def _compare(options: argparse.Namespace) -> int:
         instants = np.unique(np.linspace(len(found.time) // 2, len(found.time) - 1, SHOWN).astype(int))
         write_picture(lambda figure: _draw(figure, found, instants), (6.4, 1.1 * len(instants) + 0.8), out)
         print(f"written to          {written_as(out)}")
-    return 0
 
 
 def _draw(figure: Figure, found: MidlineComparison, instants: np.ndarray) -> None:
@@ -83,14 +87,3 @@ def _upright(points: np.ndarray, reference: np.ndarray) -> np.ndarray:
     axes = np.linalg.svd(centred, full_matrices=False)[2][:2]
     axes[0] *= np.sign(axes[0] @ (reference[-1] - reference[0]))
     return np.asarray((points - reference[0]) @ axes.T)
-
-
-def _parser() -> Parser:
-    parser = Parser(
-        prog=NAME, description="Simulate a file of midlines, and compare the computed ones with those measured."
-    )
-    about = "a .csv or .npz file with the columns time, x, y (right-handed, z up): docs/howto/motions.md"
-    parser.add_argument("file", help=about)
-    add_options(parser, "--body", "--scale")
-    parser.add_argument("-o", "--out", metavar="FILE", help="a picture: .png, .svg or .pdf")
-    return parser

@@ -15,8 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from eel_base.command.command_line import Parser
-from eel_base.command.run_command import checked_out, run_command
-from eel_base.files.output_file import written_as
+from eel_base.command.run_command import checked_out, command
 from eel_base.wording import shown
 from eel_dynamics.commands.options import add_options, add_repeated, named_texts, scene_of
 from eel_dynamics.runs.run import Run
@@ -27,6 +26,7 @@ from eel_model.robot.robot import Robot
 
 from eel_studies.motors.drawing import FORMATS, draw_comparisons
 from eel_studies.motors.motor_figures import Comparison, comparison, motor_swim, with_number
+from eel_studies.outputs import write_files
 from eel_studies.scene_options import add_scene_options, chosen
 from eel_studies.table import Table
 
@@ -37,12 +37,30 @@ MOST_VARIED = 2
 Varied = tuple[str, Sequence[float | None]]
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`."""
-    return run_command(_parser(), _motors, arguments)
+def _add_options(parser: Parser) -> None:
+    parser.add_argument("swimmer", metavar="ROBOT", help="a robot by name, or a .yaml or URDF file")
+    add_scene_options(parser, "--robot")
+    parser.add_argument(
+        "--servo",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="NAME=NUMBER",
+        help="gains and limits of the servos (fields of Servo); a URDF does not have gains",
+    )
+    about = "field of joints, servos or tails (robot.PART.FIELD of one), or a number of the gait, and its values"
+    about += "; none: without. A second one gives a curve for each of its values"
+    add_repeated(parser, "--vary", "FIELD=V1,V2,...", about)
+    add_options(parser, "--out")
 
 
-def _motors(options: argparse.Namespace) -> int:
+@command(
+    NAME,
+    "Swim a robot, and print what each joint does in the steady part: the angle that the gait asks "
+    "for, the servo's error, rate, torque against its limit, and power. With --vary a row for each value.",
+    add_options=_add_options,
+)
+def main(options: argparse.Namespace) -> None:
     outs = [checked_out(NAME, out, (".csv", *FORMATS)) for out in options.out]
     if len(options.vary) > MOST_VARIED:
         raise ValueError(f"--vary must be given {MOST_VARIED} times at most, got {len(options.vary)}")
@@ -61,13 +79,7 @@ def _motors(options: argparse.Namespace) -> int:
         figures = motor_swim(robot, swim)
         table = figures.table()
         print(table.text(), figures.about(), sep="\n\n")
-    for out in outs:
-        if out.suffix == ".csv":
-            table.write_csv(Path(out))
-        else:
-            draw_comparisons(found, Path(out))
-        print(f"written to {written_as(out)}")
-    return 0
+    write_files(outs, table.write_csv, lambda path: draw_comparisons(found, path))
 
 
 def _compared(robot: Robot, swim: Swim, first: Varied, second: Varied | None = None) -> list[Comparison]:
@@ -116,26 +128,3 @@ def _values(field: str, text: str) -> list[float | None]:
         return [None if word.strip() == "none" else float(word) for word in text.split(",")]
     except ValueError:
         raise ValueError(f"--vary must be FIELD=NUMBER,NUMBER,..., got {shown(f'{field}={text}')}") from None
-
-
-def _parser() -> Parser:
-    parser = Parser(
-        prog=NAME,
-        description="Swim a robot, and print what each joint does in the steady part: the angle that the gait asks "
-        "for, the servo's error, rate, torque against its limit, and power. With --vary a row for each value.",
-    )
-    parser.add_argument("swimmer", metavar="ROBOT", help="a robot by name, or a .yaml or URDF file")
-    add_scene_options(parser, "--robot")
-    parser.add_argument(
-        "--servo",
-        nargs="+",
-        action="extend",
-        default=[],
-        metavar="NAME=NUMBER",
-        help="gains and limits of the servos (fields of Servo); a URDF does not have gains",
-    )
-    about = "field of joints, servos or tails (robot.PART.FIELD of one), or a number of the gait, and its values"
-    about += "; none: without. A second one gives a curve for each of its values"
-    add_repeated(parser, "--vary", "FIELD=V1,V2,...", about)
-    add_options(parser, "--out")
-    return parser

@@ -8,11 +8,11 @@ eel optimise kern_fast --body kern2006 --bound period=0.5:2 --bound bend_tail=0:
 
 import argparse
 import time
+from functools import partial
 
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import checked_out, run_command
-from eel_base.files.output_file import written_as
+from eel_base.command.run_command import checked_out, command
 from eel_base.wording import shown
 from eel_dynamics.analysis.measures import MEASURES
 from eel_dynamics.commands.options import add_options, add_repeated, named_texts, set_numbers, varied_values
@@ -23,6 +23,7 @@ from eel_dynamics.runs.storage.tables import write_columns
 from eel_studies.optimisation.front import FORMATS
 from eel_studies.optimisation.optimise import optimise
 from eel_studies.optimisation.searches import METHODS
+from eel_studies.outputs import write_files
 
 NAME = "eel optimise"
 SUFFIXES = (*FORMATS, ".csv")
@@ -30,12 +31,27 @@ MOST_SPEEDS = 1000
 ACCURACY = 1e-3
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`."""
-    return run_command(_parser(), _optimise, arguments)
+def _add_options(parser: Parser) -> None:
+    add_options(parser, "gait", gait="straight")
+    about = "a parameter and its bounds: a number of the gait, scene.FIELD, body.FIELD, robot.FIELD"
+    add_repeated(parser, "--bound", "NAME=LOW:HIGH", about, required=True)
+    parser.add_argument("--speeds", required=True, metavar="SPEEDS", help="m/s: a,b,c or start:end:count")
+    add_options(parser, "--set", "--out")
+    add_changes(parser, "--duration", "--sample-period", accuracy=(None, f"{ACCURACY:g}"))
+    parser.add_argument("--cost", default="cost_of_transport", help=f"one of {', '.join(MEASURES)} (cost_of_transport)")
+    parser.add_argument("--method", default="gradient", help=f"{' or '.join(METHODS)} (gradient); cma needs cma")
+    parser.add_argument("--periods", type=int, default=10, metavar="N", help="of each swim (10)")
+    parser.add_argument("--starts", type=int, default=1, metavar="N", help="gaits from which a search begins (1)")
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="of what is random (0)")
 
 
-def _optimise(options: argparse.Namespace) -> int:
+@command(
+    NAME,
+    "Find the gait of least cost at each speed, of a gait by name or the scene in a file. The friction "
+    "is blended, unless the file or --scene says otherwise.",
+    add_options=_add_options,
+)
+def main(options: argparse.Namespace) -> None:
     start = time.perf_counter()
     outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
     bounds = {name: _bounds(name, text) for name, text in named_texts("--bound", options.bound)}
@@ -58,13 +74,7 @@ def _optimise(options: argparse.Namespace) -> int:
     if front.at_bound.any() or front.dominated.any():
         print("* a parameter at its bound, or a gait that is slower and costs more than another")
     print(f"wall time  {time.perf_counter() - start:.1f} s, {len(front.tried)} gaits tried")
-    for out in outs:
-        if out.suffix == ".csv":
-            write_columns(front.columns, out)
-        else:
-            front.draw(out)
-        print(f"written to {written_as(out)}")
-    return 0
+    write_files(outs, partial(write_columns, front.columns), front.draw)
 
 
 def _bounds(name: str, text: str) -> tuple[float, float]:
@@ -87,23 +97,3 @@ def _speeds(text: str) -> list[float]:
 def _check_count(count: int) -> None:
     if count > MOST_SPEEDS:
         raise ValueError(f"at most {MOST_SPEEDS}")
-
-
-def _parser() -> Parser:
-    parser = Parser(
-        prog=NAME,
-        description="Find the gait of least cost at each speed, of a gait by name or the scene in a file. The friction "
-        "is blended, unless the file or --scene says otherwise.",
-    )
-    add_options(parser, "gait", gait="straight")
-    about = "a parameter and its bounds: a number of the gait, scene.FIELD, body.FIELD, robot.FIELD"
-    add_repeated(parser, "--bound", "NAME=LOW:HIGH", about, required=True)
-    parser.add_argument("--speeds", required=True, metavar="SPEEDS", help="m/s: a,b,c or start:end:count")
-    add_options(parser, "--set", "--out")
-    add_changes(parser, "--duration", "--sample-period", accuracy=(None, f"{ACCURACY:g}"))
-    parser.add_argument("--cost", default="cost_of_transport", help=f"one of {', '.join(MEASURES)} (cost_of_transport)")
-    parser.add_argument("--method", default="gradient", help=f"{' or '.join(METHODS)} (gradient); cma needs cma")
-    parser.add_argument("--periods", type=int, default=10, metavar="N", help="of each swim (10)")
-    parser.add_argument("--starts", type=int, default=1, metavar="N", help="gaits from which a search begins (1)")
-    parser.add_argument("--seed", type=int, default=0, metavar="N", help="of what is random (0)")
-    return parser

@@ -7,12 +7,12 @@ eel replay-joints bag/ --topic joint_states --body robot.csv --links 0.2,0.1,0.1
 """
 
 import argparse
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 from eel_base.command.command_line import Parser
-from eel_base.command.run_command import checked_out, run_command
-from eel_base.files.output_file import written_as
+from eel_base.command.run_command import checked_out, command
 from eel_base.quantity import positive
 from eel_base.wording import shown
 from eel_dynamics.commands.options import add_options, add_repeated, named_texts, scene_of
@@ -22,6 +22,7 @@ from eel_gaits.sources.joint_log import JointLog, joint_log, law_of_links, read_
 from eel_model.body.body import Body, body_of
 from eel_model.scene import Scene
 
+from eel_studies.outputs import write_files
 from eel_studies.pictures import write_picture
 from eel_studies.replay.band import UNCERTAIN, Replayed, replay, robot_body, with_factors
 from eel_studies.replay.drawing import Seen, draw
@@ -32,12 +33,36 @@ SUFFIXES = (".csv", ".png", ".svg", ".pdf")
 FITTING = 1e-6  # part of the length by which the links' sum may miss the body's
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`."""
-    return run_command(_parser(), _replay, arguments)
+def _add_options(parser: Parser) -> None:
+    ranges = ", ".join(f"{name}={low:g}:{high:g}" for name, (low, high) in UNCERTAIN.items())
+    parser.add_argument("file", metavar="LOG", help=".csv, or a bag (folder, .mcap, .db3) with sensor_msgs/JointState")
+    parser.add_argument("--columns", default="", metavar="WHICH", help='joints of a .csv: "8-13", names, "*Fbck*"')
+    parser.add_argument("--units", default="", metavar="UNIT", help="rad or deg (as the columns' names say, or rad)")
+    parser.add_argument("--topic", metavar="TOPIC", help="of a bag with several of them")
+    parser.add_argument("--tail-first", action="store_true", help="the first joint is that at the tail")
+    parser.add_argument(
+        "--links", required=True, metavar="LENGTHS", help="m, from nose to tail: 0.18x9, or 0.2,0.1x5,0.2"
+    )
+    parser.add_argument("--section", metavar="A,B", help="m, half-height and half-width of all links")
+    add_options(parser, "--body", "--scene", "--duration", "--accuracy", "--out", body=(None, "or --section"),
+                duration=(None, "all of the log"), accuracy="1e-3")  # fmt: skip
+    parser.add_argument("--mass", type=float, metavar="KG", help="(that of the water in the body's place)")
+    add_repeated(parser, "--set", "NAME=VALUE", "a number of the body")
+    add_repeated(parser, "--vary", "NAME=LOW:HIGH", f"factors of a number that is uncertain, in place of {ranges}")
+    parser.add_argument("--samples", type=int, default=32, metavar="N", help="bodies of the band (32)")
+    parser.add_argument(
+        "--seen", metavar="FILE", help="points that a camera saw: .csv with time_s, x_m, y_m, unordered"
+    )
+    parser.add_argument("--speed", type=float, metavar="M/S", help="as measured, to stand beside ours")
 
 
-def _replay(options: argparse.Namespace) -> int:
+@command(
+    NAME,
+    "Swim by the joint angles in a robot's log. Path, speed and torques come with a band from what is "
+    "uncertain: bodies whose numbers lie anywhere in their ranges.",
+    add_options=_add_options,
+)
+def main(options: argparse.Namespace) -> None:
     outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
     seen = None if options.seen is None else Seen.of_file(Path(options.seen))
     if seen and options.speed is not None:
@@ -58,13 +83,8 @@ def _replay(options: argparse.Namespace) -> int:
     if alone:
         print(effects_of(first, alone).text())
     columns = columns_of(first, drawn)
-    for out in outs:
-        if out.suffix == ".csv":
-            write_columns(columns, out)
-        else:
-            write_picture(lambda figure: draw(figure, first, drawn, columns, seen), (6.8, 7.0), out)
-        print(f"written to {written_as(out)}")
-    return 0
+    pictured = partial(write_picture, lambda figure: draw(figure, first, drawn, columns, seen), (6.8, 7.0))
+    write_files(outs, partial(write_columns, columns), pictured)
 
 
 def _log(options: argparse.Namespace) -> JointLog:
@@ -170,32 +190,3 @@ def _series(swim: Replayed) -> dict[str, np.ndarray]:
     speed = np.linalg.norm(np.gradient(run.center_of_mass, run.time, axis=0), axis=1)
     found = {"x": run.position[:, 0], "y": run.position[:, 1], "speed": speed}
     return found | {f"torque_{place + 1}": each for place, each in enumerate(swim.torque.T)}
-
-
-def _parser() -> Parser:
-    ranges = ", ".join(f"{name}={low:g}:{high:g}" for name, (low, high) in UNCERTAIN.items())
-    parser = Parser(
-        prog=NAME,
-        description="Swim by the joint angles in a robot's log. Path, speed and torques come with a band from what is "
-        "uncertain: bodies whose numbers lie anywhere in their ranges.",
-    )
-    parser.add_argument("file", metavar="LOG", help=".csv, or a bag (folder, .mcap, .db3) with sensor_msgs/JointState")
-    parser.add_argument("--columns", default="", metavar="WHICH", help='joints of a .csv: "8-13", names, "*Fbck*"')
-    parser.add_argument("--units", default="", metavar="UNIT", help="rad or deg (as the columns' names say, or rad)")
-    parser.add_argument("--topic", metavar="TOPIC", help="of a bag with several of them")
-    parser.add_argument("--tail-first", action="store_true", help="the first joint is that at the tail")
-    parser.add_argument(
-        "--links", required=True, metavar="LENGTHS", help="m, from nose to tail: 0.18x9, or 0.2,0.1x5,0.2"
-    )
-    parser.add_argument("--section", metavar="A,B", help="m, half-height and half-width of all links")
-    add_options(parser, "--body", "--scene", "--duration", "--accuracy", "--out", body=(None, "or --section"),
-                duration=(None, "all of the log"), accuracy="1e-3")  # fmt: skip
-    parser.add_argument("--mass", type=float, metavar="KG", help="(that of the water in the body's place)")
-    add_repeated(parser, "--set", "NAME=VALUE", "a number of the body")
-    add_repeated(parser, "--vary", "NAME=LOW:HIGH", f"factors of a number that is uncertain, in place of {ranges}")
-    parser.add_argument("--samples", type=int, default=32, metavar="N", help="bodies of the band (32)")
-    parser.add_argument(
-        "--seen", metavar="FILE", help="points that a camera saw: .csv with time_s, x_m, y_m, unordered"
-    )
-    parser.add_argument("--speed", type=float, metavar="M/S", help="as measured, to stand beside ours")
-    return parser

@@ -10,7 +10,7 @@ import argparse
 
 import numpy as np
 from eel_base.command.command_line import Parser
-from eel_base.command.run_command import run_command
+from eel_base.command.run_command import command
 from eel_dynamics.commands.options import add_repeated, named_texts
 from eel_model.fins.text import fins_from_text
 
@@ -24,18 +24,27 @@ NAME = "eel roll-hold"
 OVER = ["fins.area=2e-4:5e-3", "fins.k_p=0.5:16"]
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`."""
-    return run_command(_parser(), _study, arguments)
+def _add_options(parser: Parser) -> None:
+    add_scene_options(parser)
+    about = f"a number of the window, such as fins.k_d or fins.station; twice ({', '.join(OVER)})"
+    add_repeated(parser, "--over", "NAME=LOW:HIGH", about)
+    parser.add_argument("--points", type=int, default=13, metavar="N", help="along each side of the window (13)")
+    add_output_options(parser)
 
 
-def _study(options: argparse.Namespace) -> int:
+@command(
+    NAME,
+    "Linearise a swim with fins that hold its roll over a period of its gait, and draw where "
+    "disturbances decay, over two numbers of the fins.",
+    add_options=_add_options,
+)
+def main(options: argparse.Namespace) -> None:
     if options.points < 2:
         raise ValueError(f"--points must be 2 or more, got {options.points}")
     if options.page:
         outputs = Outputs(NAME, options, PARTS)
         outputs.write(page_parts(outputs, options.points))
-        return 0
+        return
     swim = chosen(options.swim or "straight", options)
     swim = swim if swim.fins else swim._replace(fins=fins_from_text(PAIR))
     axes = [axis_from(name, text) for name, text in named_texts("--over", options.over or OVER)]
@@ -46,18 +55,3 @@ def _study(options: argparse.Namespace) -> int:
     print(f"held                        {int(window.held.sum())} of {window.held.size} points of the window")
     print(f"decays fastest              to {np.nanmin(window.growth):.3g} a period, at {held}")
     outputs.draw("roll_hold", window.map.title, lambda figure: draw_windows(figure, [window]), (SIZE[0] / 2, SIZE[1]))
-    return 0
-
-
-def _parser() -> Parser:
-    parser = Parser(
-        prog=NAME,
-        description="Linearise a swim with fins that hold its roll over a period of its gait, and draw where "
-        "disturbances decay, over two numbers of the fins.",
-    )
-    add_scene_options(parser)
-    about = f"a number of the window, such as fins.k_d or fins.station; twice ({', '.join(OVER)})"
-    add_repeated(parser, "--over", "NAME=LOW:HIGH", about)
-    parser.add_argument("--points", type=int, default=13, metavar="N", help="along each side of the window (13)")
-    add_output_options(parser)
-    return parser

@@ -9,7 +9,7 @@ import argparse
 
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import run_command
+from eel_base.command.run_command import command
 
 from eel_studies.outputs import Outputs, add_output_options
 from eel_studies.steering.page import PARTS, write_outputs
@@ -19,12 +19,18 @@ NAME = "eel steering"
 FEWEST = 2
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`."""
-    return run_command(_parser(), _scan, arguments)
+def _add_options(parser: Parser) -> None:
+    add_output_options(parser)
+    parser.add_argument("--points", type=int, default=51, metavar="N", help="metacentric heights of each gait (51)")
 
 
-def _scan(options: argparse.Namespace) -> int:
+@command(
+    NAME,
+    "Linearise swims over a period of their gaits, at metacentric heights: what grows, and whether "
+    "bends in yaw and pitch can hold it.",
+    add_options=_add_options,
+)
+def main(options: argparse.Namespace) -> None:
     if options.points < FEWEST:
         raise ValueError(f"--points must be {FEWEST} or more, got {options.points}")
     outputs, progress, scans = Outputs(NAME, options, PARTS), Progress(NAME, "gaits"), []
@@ -35,15 +41,3 @@ def _scan(options: argparse.Namespace) -> int:
         for height, growth in zip(scan.heights, scan.growth, strict=True):
             print(f"{scan.name}: metacentric height {1e3 * height:.3g} mm, growth {growth:.4g} a period")
     write_outputs(outputs, scans)
-    return 0
-
-
-def _parser() -> Parser:
-    parser = Parser(
-        prog=NAME,
-        description="Linearise swims over a period of their gaits, at metacentric heights: what grows, and whether "
-        "bends in yaw and pitch can hold it.",
-    )
-    add_output_options(parser)
-    parser.add_argument("--points", type=int, default=51, metavar="N", help="metacentric heights of each gait (51)")
-    return parser

@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import run_command
+from eel_base.command.run_command import command
 from eel_base.files.output_file import written_as
 from eel_dynamics.analysis.measures import MEASURES
 from eel_dynamics.commands.options import (
@@ -34,12 +34,30 @@ from eel_studies.sweeps.sweep import check_points, sweep
 NAME = "eel sweep"
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`; 4 where points could not be computed, 130 when interrupted."""
-    return run_command(_parser(), _sweep, arguments, interrupted="; the same command goes on from here")
+def _add_options(parser: Parser) -> None:
+    about = "a number of the gait, a FIELD of scene., body., flow., fins. or robot., body, accuracy; a,b,c or "
+    about += "start:end:count"
+    add_options(parser, "gait", gait="straight")
+    add_repeated(parser, "--vary", "NAME=VALUES", about, required=True)
+    add_options(parser, "--set", "--bare")
+    add_changes(parser, duration=(None, f"the scene's; of a gait: {UNTIL_SETTLED}"))
+    parser.add_argument("--measures", metavar="NAMES", help=f"what to keep, with commas: {', '.join(MEASURES)} (all)")
+    parser.add_argument("-o", "--out", required=True, metavar="FILE.nc", help="NetCDF file; parts lie in FILE.nc.parts")
+    parser.add_argument("--overwrite", action="store_true", help="replace what the output holds of another sweep")
+    parser.add_argument("--recordings", metavar="FOLDER", help="a Rerun recording of each point, to ask and to look at")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask scheduler, or processes; without: threads")
+    parser.add_argument("--workers", type=int, metavar="N", help="threads, or processes (one per core)")
 
 
-def _sweep(options: argparse.Namespace) -> int:
+@command(
+    NAME,
+    "Simulate every combination of parameters of a gait, or of the scene in a file, and keep the "
+    "measures of each run in a NetCDF file. After an interruption the same command resumes.",
+    add_options=_add_options,
+    interrupted="; the same command goes on from here",
+)
+def main(options: argparse.Namespace) -> None:
+    """Exit status as of `command`; 4 where points could not be computed, 130 when interrupted."""
     start = time.perf_counter()
     numbers = set_numbers(options.set)
     vary = named_texts("--vary", options.vary)
@@ -71,25 +89,3 @@ def _sweep(options: argparse.Namespace) -> int:
     if options.recordings:
         print(f"recordings in               {options.recordings}")
     print(f"written to                  {written_as(options.out)}")
-    return 0
-
-
-def _parser() -> Parser:
-    parser = Parser(
-        prog=NAME,
-        description="Simulate every combination of parameters of a gait, or of the scene in a file, and keep the "
-        "measures of each run in a NetCDF file. After an interruption the same command resumes.",
-    )
-    about = "a number of the gait, a FIELD of scene., body., flow., fins. or robot., body, accuracy; a,b,c or "
-    about += "start:end:count"
-    add_options(parser, "gait", gait="straight")
-    add_repeated(parser, "--vary", "NAME=VALUES", about, required=True)
-    add_options(parser, "--set", "--bare")
-    add_changes(parser, duration=(None, f"the scene's; of a gait: {UNTIL_SETTLED}"))
-    parser.add_argument("--measures", metavar="NAMES", help=f"what to keep, with commas: {', '.join(MEASURES)} (all)")
-    parser.add_argument("-o", "--out", required=True, metavar="FILE.nc", help="NetCDF file; parts lie in FILE.nc.parts")
-    parser.add_argument("--overwrite", action="store_true", help="replace what the output holds of another sweep")
-    parser.add_argument("--recordings", metavar="FOLDER", help="a Rerun recording of each point, to ask and to look at")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask scheduler, or processes; without: threads")
-    parser.add_argument("--workers", type=int, metavar="N", help="threads, or processes (one per core)")
-    return parser
