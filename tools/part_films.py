@@ -10,9 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
-from eel_gym.episode_recording import STACKED
 from eel_viz.pictures.drawing import Drawing, drawn
 from eel_viz.pictures.film import film
 from eel_viz.pictures.render import frames, times
@@ -45,17 +43,7 @@ def weakened() -> Iterator[tuple[str, Any]]:
             simulation.advance(time)
             snapshots.append(simulation.observe(load=False))
             time = round(time + STEP, 9)
-        columns: dict[str, Any] = {name: stacked([getattr(each, name) for each in snapshots]) for name in STACKED}
-        columns |= {name: stacked([each.joints[name] for each in snapshots]) for name in snapshots[0].joints}
-        told = Law(name=f"torque limit {limit:g} N m")
-        numbers: dict[str, Any] = {"energy": None, "steps": 0, "evaluations": 0, "nodes": 0}
-        here: dict[str, Any] = {name: getattr(simulation, name) for name in ("body", "scene", "accuracy", "x")}
-        yield from messages_of_run(Run(law=told, robot=weaker, **here, **numbers, **columns))
-
-
-def stacked(rows: list[Any]) -> Any:
-    """The `rows` as one array; None where they are None."""
-    return None if rows[0] is None else np.array(rows)
+        yield from messages_of_run(Run.of_snapshots(snapshots, simulation, Law(name=f"torque limit {limit:g} N m")))
 
 
 def draw(drawing: Drawing, folder: Path, name: str, *, start: float, end: float, top: int = 0) -> None:

@@ -13,12 +13,10 @@ from pathlib import Path
 from types import SimpleNamespace as NS
 from typing import Any
 
-import numpy as np
 from eel_dynamics.analysis.trim import Lump
 from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
 from eel_gaits.pilot.goals import path
 from eel_gaits.pilot.pilot import Pilot
-from eel_gym.episode_recording import STACKED
 from eel_model.fins.text import fins_from_text
 from eel_studies.pilot.closed_loop import STEP, swim_with
 from eel_studies.roll_hold.study import PAIR
@@ -90,20 +88,7 @@ def draw_course(folder: Path) -> None:
             snapshots.append(simulation.observe())
 
     swim_with(pilot, COURSE_END, scene=Scene(ledger=False), stations=51, each=observe)
-    columns: dict[str, Any] = {name: np.array([getattr(each, name) for each in snapshots]) for name in STACKED}
-    setup = simulations[0].setup
-    swum = Run(
-        law=Law(name="pilot"),
-        body=setup.body,
-        scene=setup.scene,
-        accuracy=simulations[0].accuracy,
-        x=setup.x,
-        energy=None,
-        steps=0,
-        evaluations=0,
-        nodes=0,
-        **columns,
-    )
+    swum = Run.of_snapshots(snapshots, simulations[0], Law(name="pilot"))
     points = [NS(pose=NS(position=NS(x=x, y=y, z=z))) for x, y, z in [(0.0, 0.0, 0.0), *COURSE]]
     messages = [("goal", NS(poses=points)), *messages_of_run(swum)]
     recording = folder / "course.rrd"

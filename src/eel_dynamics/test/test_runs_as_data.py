@@ -12,7 +12,19 @@ from eel_dynamics.analysis.measures import measures_of
 from eel_dynamics.commands import simulate as command
 from eel_dynamics.runs.storage import netcdf
 
-from eel_dynamics import Accuracy, Batch, Body, Run, Scene, SimulationStopped, simulate, simulate_batch
+from eel_dynamics import (
+    Accuracy,
+    Batch,
+    Body,
+    Fin,
+    Robot,
+    Run,
+    Scene,
+    Simulation,
+    SimulationStopped,
+    simulate,
+    simulate_batch,
+)
 from eel_gaits import Law, Ramp, Term, falling, kern_fast, straight, turning
 
 DATA = Path(__file__).parent / "data"
@@ -344,3 +356,23 @@ def test_a_run_that_begins_later_is_not_simulated_again():
     later = replace(run, time=run.time + 3.0)
     with pytest.raises(ValueError, match="run must begin at t = 0 to be simulated again, got 3 s"):
         later.refined  # noqa: B018
+
+
+@pytest.mark.parametrize(
+    "parts", [{"fins": Fin.pair(0.2, 1e-3, 2.5)}, {"robot": Robot.named("eight_servos")}], ids=list
+)
+def test_a_run_of_snapshots_is_the_run_that_is_simulated(parts):
+    run = simulate(straight(), 0.3, sample_period=0.1, stations=11, load=True, estimate=False, **parts)
+    simulation, snapshots = Simulation(law=straight(), stations=11, **parts), []
+    for time in run.time:
+        simulation.advance(time)
+        snapshots.append(simulation.observe())
+    told = Run.of_snapshots(snapshots, simulation, simulation.law)
+    for name, expected in ((item.name, getattr(run, item.name)) for item in fields(run)):
+        found = getattr(told, name)
+        if isinstance(expected, np.ndarray):  # a robot's are normalised at another place: round-off
+            assert np.allclose(found, expected, rtol=0.0, atol=1e-14), name
+        elif name not in ("steps", "evaluations", "nodes", "energy"):
+            assert found == expected, name
+    assert np.array_equal(told.energy.residual, run.energy.residual)
+    assert told.energy.actuator_work[-1] != 0.0 and (told.fin_force is None) != (told.joint_torque is None)

@@ -233,5 +233,5 @@ class SwimmerEnv(Task):
 
     def _end(self, index: int) -> None:
         if self._recordings and self._status[index] != LEFT_OUT:
-            self._recordings[index].finish(self.swimmers, index)
+            self._recordings[index].finish(self.swimmers)
         self._status[index] = LEFT_OUT

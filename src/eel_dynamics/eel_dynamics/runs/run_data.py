@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a run holds, and what follows from it alone. `Run` adds what is asked of a run."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any, Self
 
@@ -21,7 +22,9 @@ from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.simulation.bending.joint_motion import JointMotion, KeptMotion
 from eel_dynamics.simulation.energy import EnergyLedger
-from eel_dynamics.simulation.observations import FINS, LOAD, WRENCH, Observations
+from eel_dynamics.simulation.observations import FINS, LOAD, OBSERVED, WRENCH, Observations, Snapshot
+
+WHOLE = "energies", "powers", "closure"  # of what is observed: a run has the ledger, and the closures one by one
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -108,7 +111,7 @@ class RunData:
         if joints is not None:
             observed |= {name: array[: len(time)] for name, array in joints.arrays().items()}
             robot = joints.ledger()[: len(time)]
-        energies, powers, closure = (observed.pop(name) for name in ("energies", "powers", "closure"))
+        energies, powers, closure = (observed.pop(name) for name in WHOLE)
         return cls(
             body=setup.body,
             scene=setup.scene,
@@ -123,6 +126,24 @@ class RunData:
             **observed,
             **others,
         )
+
+    @classmethod
+    def of_snapshots(cls, snapshots: Sequence[Snapshot], swimmer: Any, law: Law, **others: Any) -> Self:
+        """The run that the `snapshots` of a `swimmer` tell, a `Simulation` or others that observe.
+
+        law: what it is told to swim by. others: further fields of the run. Its steps are not counted.
+        """
+        names = (*(name for name in OBSERVED if name not in WHOLE), "time", "closure_torque", "closure_force")
+        rows = {name: [getattr(each, name) for each in snapshots] for name in names}
+        rows |= {name: [each.joints[name] for each in snapshots] for name in snapshots[0].joints}
+        found: dict[str, Any] = {name: None if row[0] is None else np.array(row) for name, row in rows.items()}
+        found |= {name: getattr(swimmer, name) for name in ("body", "scene", "accuracy", "x")}
+        found |= {name: getattr(swimmer, name, none) for name, none in (("robot", None), ("flow", None), ("fins", ()))}
+        found |= {"energy": None, "steps": 0, "evaluations": 0, "nodes": 0}
+        if ledgers := [each.energy for each in snapshots if each.energy is not None]:
+            parts = EnergyLedger.keys()
+            found["energy"] = EnergyLedger(*(np.array([each[part] for each in ledgers]) for part in parts))
+        return cls(law=law, **found | others)
 
     def __eq__(self, other: object) -> bool:
         return self is other or same_fields(self, other)
