@@ -21,7 +21,7 @@ from eel_gaits import Law, Term
 
 STARTS, SECONDS, LAWS = 5, 10.0, 31
 FIRST_WORDS = {"dynamics": "waiting for curvature_law", "gait_generator": "published on", "visualiser": "saving to"}
-SETTLED = 2.0  # s of simulated time, when all have found each other
+DISCOVERED = 2.0  # s of simulated time, when all have found each other
 SINKS = {"save": "saving to", "serve": "look at it", "save, serve": "look at it"}  # and what is said when it is ready
 BEFORE_THE_SWIM = 3.0  # s of wall time after the start of the dynamics node, when all have found each other
 
@@ -92,7 +92,7 @@ def _while_it_swims(client: SwimClient, start: Any) -> Lines:
 
     client.node.create_subscription(PoseStamped, "head_pose", receive, LOSSLESS)  # type: ignore[arg-type]
     swimming = start("dynamics", "rate:=100.0", "wait_for_subscribers:=1"), start("gait_generator", "gait:=falling")
-    client.until_time(SETTLED)
+    client.until_time(DISCOVERED)
 
     def spent() -> np.ndarray:
         return np.array([cpu_time(node.process.pid) for node in swimming])

@@ -17,7 +17,7 @@ import warnings
 from pathlib import Path
 
 from eel_gaits.gaits.settings import Settings
-from eel_ros.parameter_files import shared_names
+from eel_ros.parameters import shared_names
 from eel_studies.identification.measured_file import read_measured
 from eel_studies.sweeps.sweep_parts import Parts
 

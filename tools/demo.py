@@ -46,12 +46,12 @@ def main() -> int:
         messages = swim()
         run, shown = Run(**fields_of_messages(messages, None, None)), count_recorded(RECORDING)
         print(run.summary())
-        told = diagnostics(messages)
-        counts = int(told["samples_published"][-1]), len(run.time), shown
+        figures = diagnostics(messages)
+        counts = int(figures["samples_published"][-1]), len(run.time), shown
         print("samples             {} published, {} received here, {} in {}".format(*counts, RECORDING))
         if set(counts) != {round(DURATION * RATE) + 1}:
             raise DemoError(f"of {DURATION * RATE + 1:g} samples not all were published, came here, and were recorded")
-        if found := failures(run, told):
+        if found := failures(run, figures):
             raise DemoError("; ".join(found))
         say(f"the library alone runs it {library_speed():,.0f} times faster than real time")
         draw(run)
@@ -119,24 +119,24 @@ def await_end(
 
 def diagnostics(messages: list[tuple[str, Any]]) -> dict[str, list[float]]:
     """The numbers of the dynamics node's diagnostics, in order; `DemoError` where it has sent none."""
-    told: dict[str, list[float]] = {}
+    figures: dict[str, list[float]] = {}
     for _, message in (each for each in messages if each[0] == "diagnostics"):
         for pair in (pair for status in message.status for pair in status.values):
             if pair.key in ("samples_published", "closure_force", "closure_torque"):
-                told.setdefault(pair.key, []).append(float(pair.value))
-    if len(told) < 3:
+                figures.setdefault(pair.key, []).append(float(pair.value))
+    if len(figures) < 3:
         raise DemoError("no diagnostics of the dynamics node came")
-    return told
+    return figures
 
 
-def failures(run: Run, told: dict[str, list[float]]) -> list[str]:
+def failures(run: Run, figures: dict[str, list[float]]) -> list[str]:
     """What breaks the limits; empty for a sound run."""
     assert run.energy is not None
     residual = np.abs(run.energy.residual).max() / abs(run.energy.actuator_work[-1])
     sizes = {"energy residual by the work": (residual, RESIDUAL_LIMIT)}
     for name in ("force", "torque"):
         greatest = np.linalg.norm(getattr(run, name), axis=2).max()
-        sizes[f"closure of the {name}, by its greatest"] = max(told[f"closure_{name}"]) / greatest, CLOSURE_LIMIT
+        sizes[f"closure of the {name}, by its greatest"] = max(figures[f"closure_{name}"]) / greatest, CLOSURE_LIMIT
     return [f"{what} is {size:.3g}, of {limit:g}" for what, (size, limit) in sizes.items() if not size <= limit]
 
 

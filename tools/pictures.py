@@ -40,7 +40,7 @@ FILMED = (4.0, 9.9)  # s: start and end
 COURSE_FILM, COURSE_SIZE, COURSE_FPS, COURSE_SPEED = "pilot.webp", (640, 360), 7.0, 3.0  # the last: of the film's time
 COURSE, COURSE_START, COURSE_END = [(4.0, 0.0, 0.0), (7.0, 2.0, -0.4), (10.0, 1.5, 0.0)], 4.0, 23.0  # m; s
 BESIDE_SIZE, BESIDE_FPS, BESIDE_QUALITY = (480, 300), 6.0, 20  # of films of two swimmers
-AHEAD = 0.07  # m, by which the ballast of an untrimmed hull lies ahead of its place
+BALLAST_AHEAD = 0.07  # m, by which the ballast of an untrimmed hull lies ahead of its place
 
 
 def main() -> int:
@@ -103,7 +103,7 @@ def hulls() -> tuple[Body, Body]:
     """The robot's hull with all the ballast that it takes: too far ahead, and where it floats level."""
     light = Body.boyer2010().changed(density=850.0)
     level = ballast_for(light, offset=0.02)
-    lump = Lump(light, None, level.mass, level.station - AHEAD, level.length)
+    lump = Lump(light, None, level.mass, level.station - BALLAST_AHEAD, level.length)
     return light.changed(mass_per_length=lump, centre_of_mass_offset=level.trim.offset), level.body
 
 

@@ -16,7 +16,7 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from eel_viz import entities
 
 INSTANTS = (0.42, 0.575, 0.81, 0.965)  # of the recording's duration
-SETTLED = 0.4  # of the duration: from here on the colours' scale fits
+SCALED_FROM = 0.4  # of the duration: from here on the colours' scale fits
 SIZE = (14.4, 9.0)  # inches of 100 pixels
 WATER, PLAIN, LABEL = (
     tuple(np.array(each) / 255.0) for each in (colours.WATER_BACKGROUND, colours.PLAIN, colours.LABEL)
@@ -108,7 +108,7 @@ def draw_torque(figure: Figure, axes: Any, recording: str | os.PathLike[str]) ->
     """C3 over time and body; the deepest colour is the greatest after the start."""
     wrench = read(recording, entities.WRENCH_NUMBERS)
     torque, x, time = wrench["torque_3"], wrench["x"][0], wrench.time
-    limit = float(np.abs(torque[time >= time[0] + SETTLED * (time[-1] - time[0])]).max()) or 1.0
+    limit = float(np.abs(torque[time >= time[0] + SCALED_FROM * (time[-1] - time[0])]).max()) or 1.0
     shown = axes.pcolormesh(time, x, torque.T, cmap=ListedColormap(colours.DIVERGING / 255.0), vmin=-limit, vmax=limit)
     axes.set(title="torque C3 [N m]: pulses run from nose to tail", xlabel="time [s]", ylabel="X from the nose [m]")
     axes.invert_yaxis()

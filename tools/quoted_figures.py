@@ -92,8 +92,8 @@ def speed() -> str:
     for target, label in TARGETS.items():
         cells = [label]
         for case in (MOTION, ALL):
-            told = falling.rest(f"{case}, target {target}")
-            pace, error = re.findall(r"(\S+) times real time, error (\S+),", told)[0]
+            figures = falling.rest(f"{case}, target {target}")
+            pace, error = re.findall(r"(\S+) times real time, error (\S+),", figures)[0]
             cells.append(f"{float(f'{float(pace):.2g}'):,.0f} ({error})")
         rows.append(cells)
 

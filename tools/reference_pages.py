@@ -95,8 +95,8 @@ def commands() -> str:
     """What `--help` of every command and node says."""
     parts = ["# Commands", ""]
     for name in ("eel", *COMMANDS, *NODES):
-        told = subprocess.run([*name.split(), "--help"], capture_output=True, text=True, check=True, timeout=60)
-        parts += [f"## {name}", "", "```text", told.stdout.rstrip(), "```", ""]
+        shown = subprocess.run([*name.split(), "--help"], capture_output=True, text=True, check=True, timeout=60)
+        parts += [f"## {name}", "", "```text", shown.stdout.rstrip(), "```", ""]
     return "\n".join(parts)
 
 

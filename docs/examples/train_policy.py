@@ -140,9 +140,9 @@ def tested(task: Task, weights: np.ndarray) -> Swum:
 def summary(task: Task, swum: Swum) -> str:
     """How the episodes went, in words."""
     lasted, errors = task.settings["control_period"] * swum.length, task.error(swum)
-    told = f"{swum.reached.sum()} points reached" if "WayPoints" in task.settings["id"] else ""
-    told = told or f"{task.label} over the last {LAST:g} s: mean {errors.mean():.2g}, worst {errors.max():.2g}"
-    return f"{told}; reward {swum.reward.mean():.3g}; {lasted.min():.3g} to {lasted.max():.3g} s long"
+    summary = f"{swum.reached.sum()} points reached" if "WayPoints" in task.settings["id"] else ""
+    summary = summary or f"{task.label} over the last {LAST:g} s: mean {errors.mean():.2g}, worst {errors.max():.2g}"
+    return f"{summary}; reward {swum.reward.mean():.3g}; {lasted.min():.3g} to {lasted.max():.3g} s long"
 
 
 def draw(task: Task, found: dict, path: Path) -> None:

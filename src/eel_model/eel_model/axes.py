@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The axes of the library, of the sections and of the paper, and the half turn that takes each into the other.
+"""Converts axes: those of the library, of the sections and of the paper, and the half turn between them.
 
 World and head have REP-103 axes: the eel swims towards +x, y is left, z up. Section quantities (curvature, internal
 wrench, loads) have the paper's section axes: 1 along the body towards the tail, 2 to the right, 3 up. These are -x, -y

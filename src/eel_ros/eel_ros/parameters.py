@@ -4,18 +4,20 @@
 `eel_base.quantity` lists the metadata of a field.
 """
 
+import contextlib
 import math
 import sys
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import MISSING, Field, fields
+from itertools import pairwise
 from typing import Any
 
+from eel_base.files.yaml_tree import read_yaml
 from eel_base.quantity import AT_RESET, Quantities, limits
 from eel_base.wording import did_you_mean
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.node import Node
 
-from eel_ros.parameter_files import shared_names
 from eel_ros.parameter_node import ParameterNode, as_parameter
 
 ROS_PREFIXES = (
@@ -24,6 +26,7 @@ ROS_PREFIXES = (
     "qos_overrides.",
 )  # of ROS's own parameters
 ALIKE = 0.8  # of two names, from 0 to 1: a parameter of another node is no slip
+OPTION, VALUES = "--params-file", "ros__parameters"
 MAXIMUM_INTEGER = 2**63 - 1  # of a ROS parameter
 
 
@@ -118,3 +121,24 @@ def _descriptor(item: Field[Any], changeable: bool | str | None) -> ParameterDes
             low, high = -math.inf if low is None else float(low), math.inf if high is None else float(high)
             descriptor.floating_point_range = [FloatingPointRange(from_value=low, to_value=high)]
     return descriptor
+
+
+def shared_names(words: Sequence[str]) -> set[str]:
+    """The names that the files in the command line `words` set for all nodes. A file that cannot be read has none."""
+    names: set[str] = set()
+    for option, path in pairwise(words):
+        if option == OPTION:
+            with contextlib.suppress(ValueError, OSError):  # ROS has read it before
+                names |= set(_names_in(read_yaml(path), "", ""))
+    return names
+
+
+def _names_in(content: Any, node: str, prefix: str) -> Iterator[str]:
+    """The names below a namespace or `node`, or below its parameters that begin with the `prefix`."""
+    for key, value in content.items() if isinstance(content, dict) else ():
+        if prefix and not isinstance(value, dict):
+            yield f"{prefix}{key}"[1:]
+        elif prefix or (key == VALUES and "*" in node):
+            yield from _names_in(value, node, f"{prefix}{key}." if prefix else ".")
+        else:
+            yield from _names_in(value, str(key), "")

@@ -10,7 +10,7 @@ from eel_model.body.body import body_of
 from eel_model.flow.plain import flow_of
 from eel_model.flow.text import flow_from_text, text_of_flow
 from eel_model.scene import Scene
-from eel_ros.frames import frame_in
+from eel_ros.headers import frame_in
 from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import AT_RESET, declare, take_overrides, warn_of_unknown
 from rcl_interfaces.msg import SetParametersResult

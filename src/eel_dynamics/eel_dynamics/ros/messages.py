@@ -21,10 +21,10 @@ from eel_gaits.ros.messages import ROWS
 from eel_model.axes import with_section_axes
 from eel_model.flow.lattice import lattice_around, velocities_at
 from eel_model.robot.actuators import most_torque
+from eel_ros.headers import seconds_of
 from eel_ros.loop.serialised_message import SerialisedMessage
 from eel_ros.serialised import Beginning
 from eel_ros.serving import read_message
-from eel_ros.stamps import seconds_of
 from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped, Vector3Stamped
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every run measures its own error: the distance from a companion, a run of the same swimmer with coarser settings.
+"""Judges the error of a run: its distance from a companion, a run of the same swimmer with coarser settings.
 
 Where the estimate exceeds the target, the run becomes the next companion of a finer one, up to `MOST_REFINEMENTS`
 times. A warning names what is then still above the target.

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Simulates one run of a law: `simulate`."""
 
+import time
 import warnings
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -15,11 +16,13 @@ from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.runs.companion import with_error_estimate
 from eel_dynamics.runs.motions import Motion, law_from
-from eel_dynamics.runs.progress_monitor import ProgressMonitor
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.settled_duration import settling_time, until_settled
 from eel_dynamics.runs.swim_request import SwimRequest
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
+
+REPORT_PERIOD = 1.0  # s of wall time between two reports, and before the first
+LONG = 60.0  # s of wall time: a longer run gives a warning
 
 
 def simulate(
@@ -91,3 +94,38 @@ def simulate(
     if run.error_estimate is not None and (missed := run.error_estimate.over_target(run.accuracy.target, seconds)):
         warnings.warn(missed, stacklevel=2)
     return run
+
+
+class ProgressMonitor:
+    """Estimates the remaining wall time of a run of `duration` [s], once a second.
+
+    progress(time, left): called with the simulation time reached [s] and the remaining wall time [s]; without it, a run
+    longer than `LONG` gives one warning.
+    """
+
+    def __init__(self, duration: float, progress: Callable[[float, float], None] | None):
+        self._duration, self._progress = duration, progress
+        self._began = self._last_report = time.monotonic()
+        self._warned = False
+
+    def update(self, reached: float) -> None:
+        """Report that the run has reached simulation time `reached` [s]."""
+        now = time.monotonic()
+        if now - self._last_report < REPORT_PERIOD:
+            return
+        self._last_report = now
+        took = now - self._began
+        left = took * (self._duration - reached) / reached if reached > 0.0 else float("inf")
+        if self._progress is not None:
+            self._progress(reached, left)
+        elif took + left > LONG and not self._warned:
+            self._warned = True
+            warnings.warn(
+                f"this swim of {self._duration:g} s is going to take {_minutes(took + left)}: it has come to "
+                f"{reached:.3g} s in {took:.0f} s; a coarser accuracy, a slower law or a shorter duration takes less",
+                stacklevel=7,  # the caller of `simulate`, behind `swim_to_end`, `swim` and two `record`
+            )
+
+
+def _minutes(seconds: float) -> str:
+    return "for ever" if seconds == float("inf") else f"about {seconds / 60.0:.2g} minutes"

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 from builtin_interfaces.msg import Time
-from eel_ros.stamps import stamp_of
+from eel_ros.headers import stamp_of
 from std_msgs.msg import Header
 
 from eel_gaits.laws.law import MAXIMUM_TERMS, Law

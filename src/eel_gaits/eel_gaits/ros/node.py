@@ -11,7 +11,7 @@ from typing import Any
 
 from builtin_interfaces.msg import Time
 from eel_base.wording import shown
-from eel_ros.frames import frame_in
+from eel_ros.headers import frame_in
 from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import declare, help_rows, take_overrides, warn_of_unknown
 from eel_ros.qos import latched

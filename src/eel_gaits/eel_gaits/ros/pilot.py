@@ -14,12 +14,11 @@ from typing import Any
 
 import numpy as np
 from eel_base.wording import shown
-from eel_ros.frames import frame_in
+from eel_ros.headers import frame_in, seconds_of
 from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import declare_all, help_rows
 from eel_ros.qos import keep_all, latched
 from eel_ros.run_node import run_node
-from eel_ros.stamps import seconds_of
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry, Path
 from rcl_interfaces.msg import SetParametersResult

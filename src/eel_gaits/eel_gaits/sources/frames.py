@@ -12,9 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from eel_base.wording import shown
 
-from eel_gaits.sources.body_points import points_for
 from eel_gaits.sources.period import fastest_period
-from eel_gaits.sources.sampled_law import SampledLaw
+from eel_gaits.sources.sampled_law import SampledLaw, points_for
 from eel_gaits.sources.smoothing import FEWEST, interpolated, smoothed, smoothed_in_time
 from eel_gaits.sources.tables import Table
 

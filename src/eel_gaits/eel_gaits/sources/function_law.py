@@ -13,8 +13,7 @@ import numpy as np
 from eel_base.quantity import numbers, positive
 from eel_base.wording import shown
 
-from eel_gaits.sources.body_points import points_for
-from eel_gaits.sources.sampled_law import SampledLaw, quintic
+from eel_gaits.sources.sampled_law import SampledLaw, points_for, quintic
 
 TOLERANCE = 1e-5
 FIRST_ROWS, MOST_ROWS = 17, 20_000

@@ -17,11 +17,11 @@ from eel_base.wording import shown
 from eel_gaits.laws.law import checked_name
 from eel_gaits.laws.spline import natural_spline
 from eel_gaits.laws.term import LAW_ROW, Term
-from eel_gaits.sources.body_points import points_for
 from eel_gaits.sources.period import first_harmonics
 
 FEWEST_ROWS = 2
 LEAST_POINTS = 2
+POINTS = 17, 25, 33, 49, 65, 97, 129, 193, 257, 385, 513  # along the body, as many as a curvature needs
 IN_MESSAGES = 1.0 / 300.0  # part of the greatest curvature by which the points of messages may miss the rows
 
 
@@ -169,3 +169,29 @@ def quintic(start: np.ndarray, end: np.ndarray, step: float | np.ndarray, s: flo
     rate = a[1] + s * (a[2] + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))
     acceleration = a[2] + s * (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5))
     return np.asarray(np.stack((value, rate, acceleration)) / scale)
+
+
+def crowded(count: int, length: float) -> np.ndarray:
+    """X (count,) [m] from nose to tail, closer together at the ends, where the second derivative of a natural spline
+    is 0 and that of the curvature is not."""
+    return 0.5 * length * (1.0 - np.cos(np.linspace(0.0, np.pi, count)))
+
+
+def points_for(value_at: Callable[[np.ndarray], np.ndarray], length: float, tolerance: float) -> np.ndarray:
+    """X (n,) [m] with natural splines through which value_at(X) (..., n) [rad/m] is met to a part `tolerance`.
+
+    `ValueError` where no number of points meets it.
+    """
+    check = np.linspace(0.0, length, 4 * POINTS[-1] // 3)
+    wanted = value_at(check)
+    scale = np.max(np.abs(wanted))
+    for count in POINTS:
+        x = crowded(count, length)
+        apart = np.abs(natural_spline(x, value_at(x), check) - wanted)
+        if not np.max(apart) > tolerance * scale:
+            return x
+    place = check[np.unravel_index(np.argmax(apart), apart.shape)[-1]]
+    raise ValueError(
+        f"the curvature must be smooth along the body: {POINTS[-1]} points miss it by {np.max(apart) / scale:.2g} of "
+        f"its greatest value at X = {place:g} m"
+    )

@@ -12,10 +12,10 @@ from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 
+from eel_ros.headers import seconds_of
 from eel_ros.loop.pacing import Pace
 from eel_ros.loop.requests import RequestQueue
 from eel_ros.serving import ServedNode
-from eel_ros.stamps import seconds_of
 
 LITTLE = 1.0  # s of simulated time, by which a run may be behind
 STILL = 1.0  # s of wall time in which /clock does not move, after which this is said

@@ -106,8 +106,8 @@ def _swim(options: argparse.Namespace) -> Swim:
     if run.robot is None and run.torque is not None:
         demand = run.actuators(DEMAND)
         axes = {axis: float(getattr(demand, axis).peak["torque"].max()) for axis in ("yaw", "pitch")}
-        told = ", ".join(f"{torque:.3g} N m in {axis}" for axis, torque in axes.items())
-        print(f"{name}: the imposed swim takes at most {told} of {DEMAND} joints an axis\n")
+        torques = ", ".join(f"{torque:.3g} N m in {axis}" for axis, torque in axes.items())
+        print(f"{name}: the imposed swim takes at most {torques} of {DEMAND} joints an axis\n")
     base = chosen(None, options)
     body = run.body if options.body is None else base.body
     scene = scene_of(options.scene, run.scene)

@@ -27,7 +27,7 @@ from eel_viz.views.views import (
     texts,
 )
 
-SETTLED = 0.4  # of a run: from here on it is repeated, for the swim is settled by then
+REPEATED_FROM = 0.4  # of a run: from here on it is repeated, for the swim is settled by then
 POWER_SHOWN = 4.0  # s: duration of the last power that is shown, so that its scale fits the swim and not its start
 HARDEST = "Motor nearest to its limit [N m]: torque red, limit white"
 XYZ = "x orange, y green, z blue"
@@ -171,7 +171,7 @@ def arrangement(
         raise ValueError(not_one_of("blueprint", first, ARRANGEMENTS))
     asked_for = {"compare": comparison, "robot": look.joints}
     names = [name for name in ARRANGEMENTS if name == first or asked_for.get(name, True)]
-    swim = (rr.encodings.TimeInt(seconds=seconds) for seconds in (SETTLED * look.end, look.end))
+    swim = (rr.encodings.TimeInt(seconds=seconds) for seconds in (REPEATED_FROM * look.end, look.end))
     return rrb.Blueprint(
         rrb.Tabs(*(ARRANGEMENTS[name](look) for name in names), active_tab=names.index(first)),
         rrb.TopPanel(state="hidden"),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The axes of the outside. The core works in the paper's: at rest the body lies along +x from the head, and swims
-// towards -x. Whoever uses the core gives and gets world and head in those of REP-103: x forward, y left, z up.
+// Converts axes at the boundary of the core, both ways. The core works in the paper's: at rest the body lies along +x
+// from the head, and swims towards -x. Whoever uses the core gives and gets world and head in those of REP-103: x
+// forward, y left, z up.
 //
 // A half turn about axis 3, of world and head alike, takes each into the other. Section axes stay the paper's.
 #pragma once

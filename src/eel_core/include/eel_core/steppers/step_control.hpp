@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The time step: `time_step_size` of the next one, by the error of the last step and by what lies ahead, within
-// `StepBounds`. The bounds come from the accuracy and the law: eel_dynamics/accuracy/step_bounds.py.
+// What sets the time step: `error_by_tolerance` judges the error of the last one, `time_step_size` gives the next one
+// by it and by what lies ahead, within `StepBounds`. The bounds come from the accuracy and the law:
+// eel_dynamics/accuracy/step_bounds.py.
 #pragma once
 
 #include <algorithm>

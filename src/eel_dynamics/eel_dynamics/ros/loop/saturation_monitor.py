@@ -31,8 +31,8 @@ class SaturationMonitor:
         self._lasting = np.where(here, self._lasting + step * self._before, 0.0)
         self._before, self._time = here, snapshot.time
         if here.any():
-            told = ", ".join(f"{self._names[k]} for {self._lasting[k]:.3g} s" for k in np.flatnonzero(here))
-            self._report.begin("saturated", f"at the torque limit at t = {snapshot.time:.4g} s: {told}")
+            listed = ", ".join(f"{self._names[k]} for {self._lasting[k]:.3g} s" for k in np.flatnonzero(here))
+            self._report.begin("saturated", f"at the torque limit at t = {snapshot.time:.4g} s: {listed}")
         else:
             self._report.end("saturated", f"all motors are below their torque limits at t = {snapshot.time:.4g} s")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The stamps of messages as seconds of simulation time, and back."""
+"""Headers of messages: stamps as seconds of simulation time, and back; frame ids below a namespace."""
 
 import math
 
@@ -27,3 +27,11 @@ def stamp_of(time: float) -> Time:
         raise ValueError(f"time of a sample must be >= 0 s and < {END} s, got {time:.9g} s")
     seconds, nanoseconds = divmod(math.floor(time * 1e9 + 0.5), 1_000_000_000)
     return Time(sec=seconds, nanosec=nanoseconds)
+
+
+def frame_in(namespace: str, frame: str) -> str:
+    """`frame` below the `namespace` of a node, such as eel1/odom; without a leading slash, which tf2 refuses.
+
+    So two robots in two namespaces do not share a frame.
+    """
+    return f"{namespace}/{frame}".strip("/")

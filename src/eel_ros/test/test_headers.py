@@ -2,7 +2,7 @@
 """Frame ids below a namespace."""
 
 import pytest
-from eel_ros.frames import frame_in
+from eel_ros.headers import frame_in
 
 
 @pytest.mark.parametrize(
