@@ -73,7 +73,7 @@ class HeadingEnv(SwimmerEnv):
     def observe(self) -> list[Any]:
         """Errors of the heading, yaw rate, velocity in the plane."""
         forward, left, _ = self.head.velocity
-        return [self.error, wrapped(self.target - self.head.heading), self.head.angular_velocity[2], forward, left]
+        return [self.error, wrapped(self.target - self.head_heading), self.head.angular_velocity[2], forward, left]
 
     @property
     def error(self) -> Any:

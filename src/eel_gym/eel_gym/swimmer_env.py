@@ -92,6 +92,7 @@ class SwimmerEnv(Task):
         self._recordings = [EpisodeRecording(recordings, self.name) for _ in range(recorded)]
         self._mean_heading = MeanHeading(max(1, round(self.action.period / self.numbers.control_period)), self.shape)
         self.ticks: np.ndarray = np.zeros(count, dtype=int)  #: (N,) control steps of the present episodes
+        self._elapsed: Array = np.zeros(count)  # s, of the present episodes
         self._trim: Array = np.zeros((count, 1))  # rad/m
         self._status: NDArray[np.int64] = np.full(count, LEFT_OUT)  # 0 from `reset` on, until a swimmer stops
         self._stopped: dict[int, str] = {}  # in the last control step
@@ -143,7 +144,8 @@ class SwimmerEnv(Task):
 
         A controller of the dynamics node calls it with the motion of a message.
         """
-        self.head, self.heading = head, self._mean_heading.add(head.heading)
+        self.head, self.head_heading = head, head.heading
+        self.heading = self._mean_heading.add(self.head_heading)
         return self.observation()
 
     # -- one swimmer or many
@@ -163,10 +165,10 @@ class SwimmerEnv(Task):
         self._look()
         if self.shape:
             self.goal[:, index] = start.goal
-            self.heading[index] = self._mean_heading.begin_one(index, self.head.heading[index])
+            self.heading[index] = self._mean_heading.begin_one(index, self.head_heading[index])
         else:
             self.goal[:] = start.goal
-            self.heading = self._mean_heading.add(self.head.heading)
+            self.heading = self._mean_heading.add(self.head_heading)
         self._record(index)
 
     def march(self, actions: Array) -> None:
@@ -175,9 +177,10 @@ class SwimmerEnv(Task):
         rows = rows if self.shape else rows[None]
         self._add_trim(rows, self._trim)
         self.ticks += 1
-        stopped = self.swimmers.advance(self.ticks * self.numbers.control_period, rows, self._status)
+        self._elapsed = self.ticks * self.numbers.control_period
+        stopped = self.swimmers.advance(self._elapsed, rows, self._status)
         self._look()
-        self.heading = self._mean_heading.add(self.head.heading)
+        self.heading = self._mean_heading.add(self.head_heading)
         self._stopped = {index: one_line(reason) for index, reason in stopped.items()}
         for index in stopped:
             self._end(index)
@@ -187,8 +190,7 @@ class SwimmerEnv(Task):
     def judge(self) -> Judged:
         """Reward and end of the control step that `march` has made; a swimmer that has stopped has no reward."""
         reward, terminated = self.reward(), self.ended()
-        elapsed = (self.ticks if self.shape else self.ticks[0]) * self.numbers.control_period
-        truncated = elapsed >= self.numbers.duration * (1.0 - 1e-9)
+        truncated = (self._elapsed if self.shape else self._elapsed[0]) >= self.numbers.duration * (1.0 - 1e-9)
         if self._stopped:
             here = np.zeros(len(self.ticks), dtype=bool)
             here[list(self._stopped)] = True
@@ -202,7 +204,8 @@ class SwimmerEnv(Task):
             return self
         other = copy.copy(self)
         other.shape, other.head = (), HeadMotion(*(part[:, index] for part in self.head))
-        other.heading, other.goal = float(self.heading[index]), self.goal[:, index]
+        other.head_heading, other.heading = float(self.head_heading[index]), float(self.heading[index])
+        other.goal = self.goal[:, index]
         return other
 
     def picture_of(self, index: int) -> Any:
@@ -217,6 +220,7 @@ class SwimmerEnv(Task):
         """Take in the motion of the heads, and of the joints."""
         heads = self.swimmers.heads.copy() if self.shape else self.swimmers.heads[:, 0].copy()
         self.head = HeadMotion(heads[:3], heads[3:7], heads[7:10], heads[10:])
+        self.head_heading = self.head.heading
         if isinstance(self.swimmers, CommandedRobots) and isinstance(self.action, JointAction):
             self.action.see(self.swimmers.joints.copy() if self.shape else self.swimmers.joints[..., 0].copy())
 

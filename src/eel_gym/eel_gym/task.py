@@ -2,6 +2,7 @@
 """What a task defines: its numbers, what the policy sees, reward and end; and the state that it does so from."""
 
 import inspect
+import math
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar, NamedTuple
 
@@ -56,9 +57,9 @@ class Episode(Quantities):
 class Task(gymnasium.Env[Any, Any]):
     """A task for one swimmer, or for N side by side.
 
-    `head` and `heading` hold the motion of one head, `goal` (G,) the numbers of its episode (`Start.goal`), which a
-    task may change in `reward`. Of N swimmers `heading` is (N,), `goal` (G, N), and the parts of `head` (., N): array
-    expressions serve one swimmer and many.
+    `head` holds the motion of one head, `head_heading` and `heading` where it points, `goal` (G,) the numbers of its
+    episode (`Start.goal`), which a task may change in `reward`. Of N swimmers the headings are (N,), `goal` (G, N), and
+    the parts of `head` (., N): array expressions serve one swimmer and many.
     """
 
     name: ClassVar[str] = ""
@@ -90,7 +91,8 @@ class Task(gymnasium.Env[Any, Any]):
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (self.action.size,), np.float32)
         self.shape = shape  #: () of one swimmer, (N,)
         self.head: Any = None  #: a HeadMotion from the first reset on
-        self.heading: Any = np.zeros(shape) if shape else 0.0  #: rad, averaged over the gait's period; positive: left
+        self.head_heading: Any = None  #: rad, of the head now; positive: left
+        self.heading: Any = np.zeros(shape) if shape else 0.0  #: rad, the same averaged over the gait's period
         self.goal: Array = np.zeros((0, *shape))
 
     # -- a task defines these
@@ -140,7 +142,7 @@ class Task(gymnasium.Env[Any, Any]):
             values = np.asarray(action, dtype=float)
         except (TypeError, ValueError):
             values = np.empty(0)
-        if values.shape != shape or not np.isfinite(values).all():
+        if values.shape != shape or not all(map(math.isfinite, values.ravel().tolist())):
             wanted = f"{'actions' if self.shape else 'action'} must be {' x '.join(map(str, shape))} finite numbers"
             raise gymnasium.error.InvalidAction(f"{wanted}, got {shown(action)}")
         cut: Array = np.minimum(np.maximum(values, -1.0), 1.0)

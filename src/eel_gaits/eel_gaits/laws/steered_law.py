@@ -126,9 +126,11 @@ class SteeredLaw:
     def _add(self, factors: list[Any], axis: int, row: int, jet: Jet) -> None:
         """Add value, rate and acceleration to a row of an axis."""
         count = len(self._rows)
-        for derivative, value in enumerate(jet):
-            place = (3 * axis + derivative) * count + row
-            factors[place] = factors[place] + value
+        value = 3 * axis * count + row
+        rate, acceleration = value + count, value + 2 * count
+        factors[value] = factors[value] + jet[0]
+        factors[rate] = factors[rate] + jet[1]
+        factors[acceleration] = factors[acceleration] + jet[2]
 
 
 def _product(number: Jet, f: Any, f1: Any, frequency: float, speed: Jet) -> tuple[Any, Any, Any]:
