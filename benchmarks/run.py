@@ -17,6 +17,7 @@ from lockstep import lockstep
 from measuring import REPEATS
 from nodes import nodes, visualiser
 from other_simulators import peers
+from overhead import overhead
 from robots import robots
 from swims import batch, falling_gait, gym, start, ticks
 
@@ -33,6 +34,7 @@ FIGURES = {
     "nodes": nodes,
     "lockstep": lockstep,
     "gym": gym,
+    "overhead": overhead,
     "robots": robots,
 }
 OPTIONAL = {"peers": peers, "paper_scheme": paper_scheme}  # on request: they install other people's packages
