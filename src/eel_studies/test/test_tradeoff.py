@@ -78,7 +78,7 @@ def test_front_holds_what_nothing_beats():
 def test_a_model_without_a_term_is_as_far_off_as_its_swim(trade):
     assert trade.terms["third dimension"].torque > 0.1  # the gait bends in pitch
     other = simulate(falling(), 2.5, scene=Scene(wake=False), accuracy=REFERENCE, estimate=False)
-    assert trade.terms["wake"].position == pytest.approx(relative_errors(other, trade.reference).position, rel=1e-9)
+    assert trade.terms["wake"].position == pytest.approx(relative_errors(other, trade.reference).position, rel=1e-3)
 
 
 def test_tables_have_the_front_and_all_settings(trade):
@@ -131,7 +131,7 @@ def test_a_scene_that_is_too_sensitive_for_its_reference_is_said(monkeypatch):
     run, apart = reference_of(tumbling, 1e-9)
     assert run.time[-1] == 20.0 and apart > 1e-5
     said = report.reference_line(SimpleNamespace(reference_error=apart, unstable=[]))
-    assert f"agree to {apart:.0e}: this scene cannot be solved to 1e-09" in said
+    assert said.startswith(f"Two methods on two grids agree to {apart:.0e}, where 1e-09 is wanted; smaller errors")
     long = Accuracy(name="long steps", resolution=10.0, step=0.05)
     monkeypatch.setattr("eel_studies.reference.REFERENCES", ((long, long),))
     with pytest.raises(SimulationStopped):
@@ -166,9 +166,9 @@ def test_command_leaves_pictures_a_page_and_a_table(tmp_path, capsys):
         ("--set period", "period"),
         ("--set period=1 --set period=2 --quick", "period must be given once"),
         ("--repeats 0", "repeats"),
-        ("--duration 0 --quick", "--duration must be >= 0.05 s, got 0.0"),
-        ("--duration nan --quick", "--duration"),
-        ("--duration -1 --quick", "--duration"),
+        ("--duration 0.01 --quick", "--duration must be >= 0.05 s, got 0.01"),
+        ("--duration nan --quick", "duration must be"),
+        ("--duration -1 --quick", "duration must be > 0 s, got -1.0"),
         ("--within 5 --quick", "accuracy must give its budget as in"),
         ("--out /nowhere/at/all", "/nowhere/at/all"),
     ],

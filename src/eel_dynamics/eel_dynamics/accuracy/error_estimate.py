@@ -19,6 +19,9 @@ ROUND_OFF_SHARE = 0.1  # of the target that grown round-off may take
 # Part of body length and path beyond which the distance of two runs is no longer small, so that it no longer grows.
 SMALL = 0.03
 FIRST_PART = 0.2  # share of a run in which the distance grows from nothing, and says nothing of the sensitivity
+# Growth of errors over a run from which on its motion is called sensitive: those of steps add up to t or t^2 at most,
+# whose logarithm rises by 1.8 or 3.6 in a line through the later 80 %.
+SENSITIVE = np.log(100.0)
 LEAST_SAMPLES = 5  # of a fit of the growth rate
 # Torques below this part of m (l/T)^2 count by it: m mass, l length, T the shortest period or the run's duration.
 TORQUE_FLOOR = 1e-3
@@ -63,6 +66,10 @@ class ErrorEstimate:
         with np.errstate(over="ignore"):
             return float(ROUND_OFF * np.exp(self.growth_rate * duration))
 
+    def sensitive(self, duration: float) -> bool:
+        """Whether errors grow so much in `duration` [s] that it is the motion that amplifies them."""
+        return bool(self.growth_rate * duration > SENSITIVE)
+
     def hopeless(self, target: float, duration: float) -> bool:
         """Whether grown round-off alone takes more of the `target` than `ROUND_OFF_SHARE`: no settings help."""
         return self.round_off(duration) > ROUND_OFF_SHARE * target
@@ -76,7 +83,7 @@ class ErrorEstimate:
         line = f"the error is estimated at {self.worst:.1e}, above the target {target:g}"
         if self.resampling is not None and self.resampling > 0.5 * self.worst:
             return f"{line}: most of it comes from the rows of the law, which are too far apart"
-        if self.growth_rate * duration < 1.0:
+        if not self.sensitive(duration):
             return line
         line += f": the motion is sensitive, and errors grow by a factor of e in {1.0 / self.growth_rate:.2g} s"
         if self.hopeless(target, duration):

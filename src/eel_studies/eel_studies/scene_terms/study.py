@@ -30,7 +30,6 @@ FINER = 1e-2  # of the tolerance: the error of the swims that are compared
 EXACT_ENOUGH = 0.1  # of the tolerance, which the discretisation of the recommended scene may take
 COARSEST_COMPARED = 1e-4  # of these swims, whatever the tolerance
 LEAST_TOLERANCE = 1e-7
-SENSITIVE = np.log(100.0)  # growth of errors over a swim from which on it is said
 ROUNDS = 5  # of timing
 # A swim without a term may take so many times the whole scene's evaluations per second, and at least so many.
 DEARER, LEAST_EVALUATIONS = 100.0, 1e4
@@ -76,7 +75,7 @@ class Terms:
     recommended: Swim
     together: Effect
     restored: list[str]  # terms with little effect of their own, which the others need
-    growth_rate: float  # 1/s, of errors
+    growth_rate: float  # 1/s, of errors; 0 where the motion is not sensitive
 
     @property
     def left_out(self) -> list[str]:
@@ -119,7 +118,7 @@ class Terms:
             f"Recommended: {names}; accuracy {self.recommended.accuracy.name}. It differs by at most "
             f"{self.together.worst:.1e} and takes 1/{speed:.3g} of the CPU time."
         ]
-        if self.growth_rate * self.duration > SENSITIVE:
+        if self.growth_rate:
             lines.append(
                 f"The path is sensitive: errors grow by a factor of e in {1.0 / self.growth_rate:.2g} s, so that any "
                 "term changes a long path. Judge such a scene by a shorter duration."
@@ -160,8 +159,8 @@ def terms(swim: Swim, tolerance: float = 0.02) -> Terms:
     first, *others, last = cpu_seconds([swim, *own, recommended], float(whole.time[-1]), ROUNDS)
     effects = {name: replace(effects[name], seconds=took) for name, took in zip(parts, others, strict=True)}
     nothing, together = replace(_effect(whole, whole), seconds=first), replace(together, seconds=last)
-    rate = whole.error_estimate.growth_rate if whole.error_estimate else 0.0
-    duration = float(whole.time[-1])
+    duration, error = float(whole.time[-1]), whole.error_estimate
+    rate = error.growth_rate if error is not None and error.sensitive(duration) else 0.0
     return Terms(swim, duration, tolerance, nothing, effects, dropped, recommended, together, restored, rate)
 
 

@@ -4,8 +4,8 @@
 Each cell is swum, and once more at a tenth of its target. Its error is their distance as `accuracy` has it, of position
 and torque. A cell has one of the `OUTCOMES`:
 
-accurate: the error is within the target. sensitive: it is not, the run says so, and errors grow by a factor of e or
-more. inaccurate: it is not, and the run says so, by its estimate or a warning. stopped, refused: with which message.
+accurate: the error is within the target. sensitive: it is not, the run says so, and errors grow a hundredfold or more.
+inaccurate: it is not, and the run says so, by its estimate or a warning. stopped, refused: with which message.
 unchecked: the finer run does not come to its end, or misses its own target as the run itself may. silent: the error is
 above the target by more than the finer run leaves uncertain, and the run does not say so.
 """
@@ -28,7 +28,7 @@ from eel_studies.workers import in_threads
 
 TARGET = 1e-3  # of settings that have none of their own
 FINER = 0.1  # of the target
-SAMPLES, STATIONS = 32, 33
+SAMPLES, STATIONS = 96, 33  # a torque that jumps from limit to limit shows between fewer of them
 MOST_EVALUATIONS = 1e4  # per simulated second and decade of the target: a map takes minutes, not hours
 OUTCOMES = ACCURATE, SENSITIVE, INACCURATE, STOPPED, REFUSED, UNCHECKED, SILENT = (
     *("accurate", "sensitive", "inaccurate", "stopped", "refused", "unchecked", "silent"),
@@ -155,8 +155,7 @@ def cell_of(swim_of: Callable[[], Swim]) -> np.ndarray:
     if apart <= target:
         return _cell(ACCURATE, **about)
     if own.worst > target or any("ledger" in text for text in run.warnings):
-        sensitive = own.growth_rate * float(run.time[-1]) > 1.0
-        return _cell(SENSITIVE if sensitive else INACCURATE, **about)
+        return _cell(SENSITIVE if own.sensitive(float(run.time[-1])) else INACCURATE, **about)
     if apart <= target + others.worst:
         return _cell(UNCHECKED, f"the finer run has an error of {others.worst:.1e}", **about)
     return _cell(SILENT, f"the error is {apart:.1e}, the estimate {own.worst:.1e}", **about)

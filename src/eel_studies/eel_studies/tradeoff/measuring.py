@@ -20,11 +20,12 @@ from eel_dynamics.runs.swim import Swim
 
 from eel_studies.reference import attempts, cpu_seconds, front, reference_of
 from eel_studies.scene_terms.terms import terms_of
-from eel_studies.tradeoff.settings import ASKED_FOR, REFERENCE, settings
+from eel_studies.tradeoff.settings import ASKED_FOR, settings
 
 SAMPLE_PERIOD = 0.05  # s
 REACHED = 1e-9  # relative error of a reference that is wanted
 MOST_SECONDS = 20.0  # of CPU time, of a reference and of all settings: dear scenes get fewer of them
+FINE = "fine"  # preset of the models that are compared: their differences are far greater than its errors
 DEARER = 3.0  # times a standard swim, that a setting takes in the mean
 ERROR, SECONDS = attrgetter("error"), attrgetter("seconds")  # of a row
 
@@ -55,7 +56,7 @@ class Trade:
     """All that was measured for a swim.
 
     reference_error: distance of the reference from another method on another grid. unstable: settings that diverged.
-    terms: errors of the model without a term, solved exactly, by its name; without those that stop.
+    terms: errors of the model without a term, both at the accuracy `FINE`, by its name; without those that stop.
     """
 
     name: str  # of the scene
@@ -142,10 +143,11 @@ def measure(
         position, torque = (max(error or 0.0, apart) for error in (errors.position, errors.torque))
         measured.append(Measured(each.accuracy, position, torque, seconds, run))  # type: ignore[arg-type]
     say("the model without each of its terms")
-    fine = REFERENCE if apart <= REACHED else Accuracy.of("fine").in_scene(swim.scene).as_it_is()
-    parts = terms_of(swim)
-    poorer = attempts([each._replace(accuracy=fine) for each in parts.values()], estimate=False)
-    found = zip(parts, poorer, strict=True)
-    terms = {name: relative_errors(run, reference) for name, run in found if isinstance(run, Run)}
+    parts = {"": swim} | terms_of(swim)
+    fine = [each._replace(accuracy=Accuracy.of(FINE).in_scene(each.scene).as_it_is()) for each in parts.values()]
+    whole, *poorer = attempts(fine, estimate=False)
+    found = zip(list(parts)[1:], poorer, strict=True)
+    pairs = {name: run for name, run in found if isinstance(run, Run)} if isinstance(whole, Run) else {}
+    terms = {name: relative_errors(run, whole) for name, run in pairs.items()}
     unstable = [accuracy for accuracy in rows if not isinstance(runs[accuracy], Run)]
     return Trade(name, swim, reference, apart, measured, unstable, terms)

@@ -64,7 +64,7 @@ def scenes_table(found: list[Trade]) -> Table:
 def reference_line(trade: Trade) -> str:
     """How well the reference is known, in words."""
     unstable = f" {len(trade.unstable)} settings diverged." if trade.unstable else ""
-    poor = "" if trade.reference_error <= 10.0 * REACHED else f": this scene cannot be solved to {REACHED:g}"
+    poor = "" if trade.reference_error <= REACHED else f", where {REACHED:g} is wanted"
     return (
         f"Two methods on two grids agree to {trade.reference_error:.0e}{poor}; smaller errors are not told apart."
         f"{unstable}"
