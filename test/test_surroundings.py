@@ -78,5 +78,6 @@ def test_a_sweep_without_shared_memory_says_what_to_do(without_shared_memory, tm
     done = subprocess.run([*without_shared_memory, *words, *more], capture_output=True, text=True, timeout=120)
     assert done.returncode == status, done.stderr
     if status:
-        assert done.stderr.startswith("eel sweep: the processes of a sweep need semaphores in /dev/shm")
-        assert done.stderr.count("\n") == 1
+        *before, last = done.stderr.splitlines()
+        assert last.startswith("eel sweep: the processes of a sweep need semaphores in /dev/shm")
+        assert all(line.startswith("eel sweep: 0 of 2 points") for line in before)  # of a slow machine

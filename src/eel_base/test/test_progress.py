@@ -16,6 +16,7 @@ def told(monkeypatch):
         stderr.isatty = lambda: on_terminal
         monkeypatch.setattr("sys.stderr", stderr)
         now = [0.0]
+        monkeypatch.setattr("eel_base.command.progress.QUIET", 2.0)
         monkeypatch.setattr("eel_base.command.progress.time", type("Clock", (), {"monotonic": lambda: now[0]}))
         progress = Progress("eel sweep", "points")
         for done in range(1, count + 1):

@@ -16,11 +16,19 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 from swim_client import LIMIT, LOSSLESS, SAMPLES, nanoseconds
 
-from eel_gaits import Law, Term, falling
+from eel_gaits import Law, Term, falling, straight
 from eel_msgs.msg import CurvatureSamples
 from eel_ros import fastdds_profile
 
 FLAT_OUT = ("--ros-args", "-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=1")
+CHEAP = (
+    "accuracy:=draft",
+    "estimate_error:=false",
+    "scene.planar:=true",
+    "scene.internal_wrench:=false",
+    "stations:=5",
+)
+MANY = tuple(word for each in (*CHEAP, "rate:=1000") for word in ("-p", each))  # samples in little time
 
 LISTENER = """
 import sys, time
@@ -64,8 +72,8 @@ def test_a_subscriber_that_is_slow_for_a_while_loses_nothing(start, client):
     """It takes nothing until the node waits for it: the run makes 12,000 samples, the histories of both sides hold
     5,000 each."""
     swim = client(topics=("head_pose",))
-    swim.laws.publish(law_to_message(falling()))
-    node = start("dynamics", *FLAT_OUT, "-p", "duration:=12", "-p", "rate:=1000", "-p", "subscriber_timeout:=60")
+    swim.laws.publish(law_to_message(straight()))
+    node = start("dynamics", *FLAT_OUT, "-p", "duration:=12", *MANY, "-p", "subscriber_timeout:=60")
     node.wait_for_output("waiting for a subscriber", LIMIT)
     swim.until(lambda: len(swim.received["head_pose"]) >= 12001, "12001 samples", 2 * LIMIT)
     stamps = [nanoseconds(message.header.stamp) for message in swim.received["head_pose"]]
@@ -111,8 +119,8 @@ def test_fifty_subscribers_of_all_qualities(start, client):
 def test_a_run_that_is_over_waits_for_who_is_behind(start, client):
     """8,001 samples: what the subscriber's history cannot hold (5,000) is in the node's."""
     swim, watcher = client(topics=("head_pose",)), client(topics=())
-    swim.laws.publish(law_to_message(falling()))
-    node = start("dynamics", *FLAT_OUT, "-p", "duration:=8", "-p", "rate:=1000")
+    swim.laws.publish(law_to_message(straight()))
+    node = start("dynamics", *FLAT_OUT, "-p", "duration:=8", *MANY)
     watcher.until(lambda: watcher.diagnosis()[2]["samples_published"] == "8001", "the end of the run")
     assert node.status is None and not swim.received["head_pose"]
     swim.until(lambda: len(swim.received["head_pose"]) >= 8001, "8001 samples")
@@ -133,11 +141,11 @@ def test_a_stuck_subscriber_delays_a_run_once_and_costs_the_others_nothing(start
     stuck = start("env", f"{fastdds_profile.VARIABLE}={profile}", sys.executable, "-c", LISTENER)
     stuck.wait_for_output("listening")
     swim = client(topics=("backbone", "head_pose"))
-    pace = ("-p", "duration:=13", "-p", "rate:=1000", "-p", "subscriber_timeout:=10")
+    pace = ("-p", "duration:=13", *MANY, "-p", "subscriber_timeout:=10")
     node = start("dynamics", *FLAT_OUT[:-1], "wait_for_subscribers:=2", *pace)
     stuck.wait_for_output("received one", LIMIT)  # sample 0, which is repeated until there is a law
     os.kill(stuck.process.pid, signal.SIGSTOP)
-    swim.laws.publish(law_to_message(falling()))
+    swim.laws.publish(law_to_message(straight()))
     try:
         # were it waited for again and again, the thousands of samples that it misses would take hours
         swim.until(lambda: len(swim.received["head_pose"]) >= 13001, "all samples of the other topic", 2 * LIMIT)

@@ -139,6 +139,7 @@ def hurried(monkeypatch):
         ticks = itertools.count()
         clock = type("Clock", (), {"monotonic": lambda ticks=ticks: float(next(ticks))})
         monkeypatch.setattr(f"{module}.time", clock)
+    monkeypatch.setattr("eel_base.command.progress.QUIET", 2.0)
 
 
 def test_progress_is_told_with_what_is_left(hurried):

@@ -11,12 +11,6 @@ def strict_rerun():
     rr.set_strict_mode(True)
 
 
-@pytest.fixture(autouse=True)
-def no_progress_on_a_slow_machine(monkeypatch):
-    """What a command says does not depend on how long it takes."""
-    monkeypatch.setattr("eel_base.command.progress.QUIET", float("inf"))
-
-
 @pytest.fixture
 def record_made_up(tmp_path):
     """record_made_up(seconds, rate, **settings) -> (path, samples): the made-up swimmer, logged without ROS."""

@@ -6,6 +6,7 @@ A pytest plugin: `-p eel_ros.testing.fixtures`.
 
 import contextlib
 import json
+import math
 import os
 import resource
 import subprocess
@@ -53,6 +54,12 @@ def ros_domain(tmp_path_factory: Any) -> Iterator[int]:
     os.environ["ROS_LOG_DIR"] = str(tmp_path_factory.mktemp("ros_log"))
     yield domain.number
     domain.claim.close()
+
+
+@pytest.fixture(autouse=True)
+def no_progress_on_a_slow_machine(monkeypatch: Any) -> None:
+    """What a command says in this process does not depend on how long it takes."""
+    monkeypatch.setattr("eel_base.command.progress.QUIET", math.inf)
 
 
 @pytest.fixture
