@@ -24,6 +24,7 @@ WRITTEN_WHOLE = (
     "docs/explanation/steering.md",
     "docs/explanation/drafting.md",
     "docs/figures/README.md",
+    "docs/reference/commands.md",
 )  # by commands of their own
 MARKED = re.compile(r"<!-- ([a-z]+): written by `(.*?)`.*? -->\n(.*?)<!-- end of \1 -->", re.DOTALL)
 MEASURED = re.compile(  # what looks like a figure that somebody has measured
