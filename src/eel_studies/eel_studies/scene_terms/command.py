@@ -8,7 +8,7 @@ eel terms straight --set period=0.7 --tolerance 0.05 --out small.yaml
 import argparse
 
 from eel_base.command.command_line import Parser
-from eel_base.command.run_command import checked_out, run_command
+from eel_base.command.run_command import checked_out, command
 from eel_base.files.output_file import written_as
 from eel_dynamics.runs.scene_file import SUFFIXES, save_scene
 
@@ -19,27 +19,7 @@ NAME = "eel terms"
 TOLERANCE = 0.02
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`."""
-    return run_command(_parser(), _terms, arguments)
-
-
-def _terms(options: argparse.Namespace) -> int:
-    out = None if options.out is None else checked_out(NAME, options.out, SUFFIXES)
-    found = terms(chosen(options.swim, options), options.tolerance)
-    print(found.table().text(), found.about(), sep="\n\n")
-    if out is not None:
-        save_scene(found.recommended, out)
-        print(f"written to {written_as(out)}")
-    return 0
-
-
-def _parser() -> Parser:
-    parser = Parser(
-        prog=NAME,
-        description="Swim a scene with each term of the model off in turn. Print what that changes, and the CPU time; "
-        "then recommend the smallest scene within a tolerance, swum once more against the whole one.",
-    )
+def _add_options(parser: Parser) -> None:
     add_scene_options(parser)
     parser.add_argument(
         "--tolerance",
@@ -49,4 +29,18 @@ def _parser() -> Parser:
         help=f"greatest relative change of path, mean speed, greatest torque and cost of transport ({TOLERANCE:g})",
     )
     parser.add_argument("-o", "--out", metavar="FILE.yaml", help="where to write the recommended scene")
-    return parser
+
+
+@command(
+    NAME,
+    "Swim a scene with each term of the model off in turn. Print what that changes, and the CPU time; "
+    "then recommend the smallest scene within a tolerance, swum once more against the whole one.",
+    add_options=_add_options,
+)
+def main(options: argparse.Namespace) -> None:
+    out = None if options.out is None else checked_out(NAME, options.out, SUFFIXES)
+    found = terms(chosen(options.swim, options), options.tolerance)
+    print(found.table().text(), found.about(), sep="\n\n")
+    if out is not None:
+        save_scene(found.recommended, out)
+        print(f"written to {written_as(out)}")

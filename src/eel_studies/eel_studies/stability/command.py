@@ -12,7 +12,7 @@ from pathlib import Path
 
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import run_command
+from eel_base.command.run_command import command
 from eel_base.wording import shown
 from eel_dynamics.commands.options import add_repeated, named_texts
 
@@ -25,16 +25,28 @@ from eel_studies.varied import NAMES, varied
 NAME = "eel stability"
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`."""
-    return run_command(_parser(), _study, arguments)
+def _add_options(parser: Parser) -> None:
+    add_scene_options(parser)
+    add_repeated(parser, "--over", "NAME=LOW:HIGH", f"a number of the map: {NAMES}; twice")
+    names = ", ".join(STUDIES)
+    parser.add_argument("--study", action="append", choices=STUDIES, metavar="NAME", help=f"one of {names} (all)")
+    parser.add_argument("--points", type=int, default=9, metavar="N", help="swims along each side of a map (9)")
+    add_output_options(parser)
 
 
-def _study(options: argparse.Namespace) -> int:
+@command(
+    NAME,
+    "Map what becomes of a scene over two of its numbers: each cell is swum, and checked against a run "
+    "of a tenth of its target. Without a scene, drive the simulator to its extremes: such maps, the condition of "
+    "the inertia, drift over 100,000 periods, growth out of a plane.",
+    add_options=_add_options,
+)
+def main(options: argparse.Namespace) -> None:
     if options.points < 2:
         raise ValueError(f"--points must be 2 or more, got {options.points}")
     if options.swim is not None or options.over:
-        return _map(options)
+        _map(options)
+        return
     studies, progress = options.study or list(STUDIES), Progress(NAME, "")
     outputs = Outputs(NAME, options, studies)
     for name in studies:
@@ -42,10 +54,9 @@ def _study(options: argparse.Namespace) -> int:
         text = STUDIES[name](options.points, outputs)
         print(f"{text}\n")
         outputs.write({name: text})
-    return 0
 
 
-def _map(options: argparse.Namespace) -> int:
+def _map(options: argparse.Namespace) -> None:
     axes = [axis_from(name, text) for name, text in named_texts("--over", options.over)]
     if len(axes) != 2:
         raise ValueError(f"--over must be given for two numbers of the scene, got {len(axes)}")
@@ -64,7 +75,6 @@ def _map(options: argparse.Namespace) -> int:
         for text in filter(None, found.texts(outcome)):
             print(f"{outcome}: {text}")
     outputs.write({scene: report([found], outputs)})
-    return 0
 
 
 def axis_from(name: str, text: str) -> Axis:
@@ -76,19 +86,3 @@ def axis_from(name: str, text: str) -> Axis:
     if not 0.0 < low < high < float("inf"):
         raise ValueError(f"--over must be NAME=LOW:HIGH, 0 < LOW < HIGH, got {shown(f'{name}={text}')}")
     return Axis(name, name, low, high)
-
-
-def _parser() -> Parser:
-    parser = Parser(
-        prog=NAME,
-        description="Map what becomes of a scene over two of its numbers: each cell is swum, and checked against a run "
-        "of a tenth of its target. Without a scene, drive the simulator to its extremes: such maps, the condition of "
-        "the inertia, drift over 100,000 periods, growth out of a plane.",
-    )
-    add_scene_options(parser)
-    add_repeated(parser, "--over", "NAME=LOW:HIGH", f"a number of the map: {NAMES}; twice")
-    names = ", ".join(STUDIES)
-    parser.add_argument("--study", action="append", choices=STUDIES, metavar="NAME", help=f"one of {names} (all)")
-    parser.add_argument("--points", type=int, default=9, metavar="N", help="swims along each side of a map (9)")
-    add_output_options(parser)
-    return parser

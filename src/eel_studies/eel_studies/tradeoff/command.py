@@ -14,7 +14,7 @@ from pathlib import Path
 
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import run_command
+from eel_base.command.run_command import command
 from eel_base.files.output_file import written_as
 from eel_dynamics.accuracy.budget import Budget
 
@@ -30,15 +30,38 @@ DELIVERED = "--delivered"  # as the first option: the other parser
 DELIVERED_PARTS, DELIVERED_SIZE = ("delivered", "errors"), (4.5, 3.6)  # parts of the page; inches
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`."""
-    words = sys.argv[1:] if arguments is None else arguments
-    if DELIVERED in words:
-        return run_command(_delivered_parser(), _deliver, words)
-    return run_command(_parser(), _trade, words)
+def _add_options(parser: Parser) -> None:
+    add_scene_options(parser, several=True)
+    parser.add_argument("--within", metavar="TIME", help="e.g. '5 ms': what is fastest within it per simulated second")
+    parser.add_argument(
+        "--repeats", type=int, default=5, metavar="N", help="rounds of timing, of which the median counts (5)"
+    )
+    parser.add_argument("--quick", action="store_true", help="a ninth of the settings, for a look")
+    parser.add_argument("--all", action="store_true", help="print every setting, not the front and presets alone")
+    parser.add_argument("--csv", action="store_true", help="everything measured, as .csv beside the pictures")
+    add_output_options(parser)
+    parser.add_argument(
+        DELIVERED,
+        action="store_true",
+        help="instead: measure what the targets deliver over random swims, and how well runs judge their own error "
+        f"(a minute or two); it has options of its own: {NAME} {DELIVERED} --help",
+    )
 
 
-def _trade(options: argparse.Namespace) -> int:
+def _add_options_of_delivered(parser: Parser) -> None:
+    parser.add_argument(DELIVERED, action="store_true", help="this study")
+    parser.add_argument("--count", type=int, default=COUNT, help=f"of the random swims ({COUNT})")
+    parser.add_argument("--seed", type=int, default=SEED, help=f"of the random swims ({SEED})")
+    add_output_options(parser)
+
+
+@command(
+    NAME,
+    "Measure error and cost of many settings for a scene, mark the Pareto front, and compare with the error of models "
+    "without one of their terms. Takes about a minute per scene.",
+    add_options=_add_options,
+)
+def _trade(options: argparse.Namespace) -> None:
     progress, names = Progress(NAME, "settings"), options.swim or ["falling"]
     budget = options.within and Budget.of(f"fastest within {options.within} per second")
     swims = {Path(name).stem: chosen(name, options) for name in names}
@@ -63,10 +86,14 @@ def _trade(options: argparse.Namespace) -> int:
             trade_table(trade, everything=True).write_csv(path)
             print(f"written to {written_as(path)}")
     outputs.write(*parts_of_page(found, pictures))
-    return 0
 
 
-def _deliver(options: argparse.Namespace) -> int:
+@command(
+    f"{NAME} {DELIVERED}",
+    "Measure what the targets of accuracy deliver over random swims, and how well runs judge their own error.",
+    add_options=_add_options_of_delivered,
+)
+def _deliver(options: argparse.Namespace) -> None:
     """Measure what the targets deliver; print it, and draw it."""
     _check_least(options, count=1, seed=0)
     outputs, progress = Outputs(NAME, options, DELIVERED_PARTS), Progress(NAME, "swims")
@@ -77,7 +104,6 @@ def _deliver(options: argparse.Namespace) -> int:
     picture = outputs.draw("delivered", "Estimated and true errors", draw, DELIVERED_SIZE, ("svg", "png"))
     values = {"count": str(options.count), "seed": str(options.seed), "swims": str(len(trials))}
     outputs.write(dict(zip(DELIVERED_PARTS, (table.markdown(), picture), strict=True)), values)
-    return 0
 
 
 def _check_least(options: argparse.Namespace, **least: int) -> None:
@@ -87,38 +113,7 @@ def _check_least(options: argparse.Namespace, **least: int) -> None:
             raise ValueError(f"--{name} must be {low} or more, got {getattr(options, name)}")
 
 
-def _parser() -> Parser:
-    parser = Parser(
-        prog=NAME,
-        description="Measure error and cost of many settings for a scene, mark the Pareto front, and compare with the "
-        "error of models without one of their terms. Takes about a minute per scene.",
-    )
-    add_scene_options(parser, several=True)
-    parser.add_argument("--within", metavar="TIME", help="e.g. '5 ms': what is fastest within it per simulated second")
-    parser.add_argument(
-        "--repeats", type=int, default=5, metavar="N", help="rounds of timing, of which the median counts (5)"
-    )
-    parser.add_argument("--quick", action="store_true", help="a ninth of the settings, for a look")
-    parser.add_argument("--all", action="store_true", help="print every setting, not the front and presets alone")
-    parser.add_argument("--csv", action="store_true", help="everything measured, as .csv beside the pictures")
-    add_output_options(parser)
-    parser.add_argument(
-        DELIVERED,
-        action="store_true",
-        help="instead: measure what the targets deliver over random swims, and how well runs judge their own error "
-        f"(a minute or two); it has options of its own: {NAME} {DELIVERED} --help",
-    )
-    return parser
-
-
-def _delivered_parser() -> Parser:
-    parser = Parser(
-        prog=f"{NAME} {DELIVERED}",
-        description="Measure what the targets of accuracy deliver over random swims, and how well runs judge their own "
-        "error.",
-    )
-    parser.add_argument(DELIVERED, action="store_true", help="this study")
-    parser.add_argument("--count", type=int, default=COUNT, help=f"of the random swims ({COUNT})")
-    parser.add_argument("--seed", type=int, default=SEED, help=f"of the random swims ({SEED})")
-    add_output_options(parser)
-    return parser
+def main(arguments: list[str] | None = None) -> int:
+    """Exit status as of `command`."""
+    words = sys.argv[1:] if arguments is None else arguments
+    return (_deliver if DELIVERED in words else _trade)(words)

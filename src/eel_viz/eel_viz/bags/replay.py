@@ -18,7 +18,7 @@ from typing import Any
 
 from eel_base.command.command_line import Parser, print_to_stderr
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import run_command
+from eel_base.command.run_command import command
 from eel_base.quantity import limits
 
 from eel_viz.bags.bag import Bag
@@ -85,29 +85,19 @@ def name_of(bag: str | os.PathLike[str], *besides: str | os.PathLike[str]) -> st
     return os.fspath(bag).strip("/") if same else name
 
 
-def parser() -> Parser:
-    """The parser of the command line."""
-    made = Parser(
-        prog=NAME,
-        description="Turn a rosbag2 folder (or one of its .mcap or .db3 files) into a Rerun recording, without ROS "
-        "running: the same that the visualiser shows of these messages. Split bags and those compressed with zstd are "
-        "read; a bag that was not finished is shown as far as it goes.",
-        epilog="A reset in the bag begins another file, with a number before the suffix. Exit status: 0; 1 if the "
-        "recording cannot be written to its end; 2 if the bag cannot be read or the recording not be begun; one line "
-        "says why.",
-    )
-    made.add_argument("bag", help="folder of the bag, or a file of one")
-    made.add_argument("-o", "--out", metavar="RRD", help="recording to write (default: BAG.rrd, in this folder)")
-    made.add_argument("--namespace", metavar="NS", help="of the swimmer, where the bag has more than one")
-    made.add_argument(
+def _add_options(parser: Parser) -> None:
+    parser.add_argument("bag", help="folder of the bag, or a file of one")
+    parser.add_argument("-o", "--out", metavar="RRD", help="recording to write (default: BAG.rrd, in this folder)")
+    parser.add_argument("--namespace", metavar="NS", help="of the swimmer, where the bag has more than one")
+    parser.add_argument(
         "--compare",
         default="",
         metavar="OTHER",
         help="another bag, or with /NS another namespace of this one: its swimmer is laid over this one's, their "
         "difference drawn, in the arrangement compare",
     )
-    made.add_argument("--spawn", action="store_true", help="open a viewer on the recording when it is done")
-    made.add_argument("--connect", action="store_true", help="send it to a viewer that runs (see --viewer), too")
+    parser.add_argument("--spawn", action="store_true", help="open a viewer on the recording when it is done")
+    parser.add_argument("--connect", action="store_true", help="send it to a viewer that runs (see --viewer), too")
     for item in fields(Settings):
         if item.name in OPTIONS:
             about, kind = item.metadata, type(item.default)
@@ -115,17 +105,22 @@ def parser() -> Parser:
             bounds = "" if kind is str else f"; {limits(about)}"
             text = f"{about['description']}{unit} (default {item.default}{bounds})".replace("%", "%%")
             option, letter = "--" + item.name.replace("_", "-"), "TEXT" if kind is str else "X"
-            made.add_argument(option, type=kind, default=item.default, help=text, metavar=letter)
-    return made
+            parser.add_argument(option, type=kind, default=item.default, help=text, metavar=letter)
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`; 130 after Ctrl-C."""
+@command(
+    NAME,
+    "Turn a rosbag2 folder (or one of its .mcap or .db3 files) into a Rerun recording, without ROS "
+    "running: the same that the visualiser shows of these messages. Split bags and those compressed with zstd are "
+    "read; a bag that was not finished is shown as far as it goes.",
+    epilog="A reset in the bag begins another file, with a number before the suffix. Exit status: 0; 1 if the "
+    "recording cannot be written to its end; 2 if the bag cannot be read or the recording not be begun; one line "
+    "says why.",
+    add_options=_add_options,
+    interrupted=": the recording ends there",
+)
+def main(chosen: argparse.Namespace) -> None:
     keep_pandas_out()
-    return run_command(parser(), _replay, arguments, interrupted=": the recording ends there")
-
-
-def _replay(chosen: argparse.Namespace) -> int:
     output = chosen.out or f"{name_of(chosen.bag)}.rrd"
     other = chosen.compare if chosen.compare.strip("/") and os.path.exists(chosen.compare) else None
     began = time.monotonic()
@@ -146,4 +141,3 @@ def _replay(chosen: argparse.Namespace) -> int:
     print(f"replayed in {time.monotonic() - began:.1f} s: {counts}")
     if chosen.spawn:
         open_window(output)
-    return 0

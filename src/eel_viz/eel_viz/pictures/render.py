@@ -18,7 +18,7 @@ from collections.abc import Callable, Sequence
 
 from eel_base.command.command_line import Parser, print_to_stderr
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import run_command
+from eel_base.command.run_command import command
 from eel_base.files.output_file import NotWritten, check_output, replacing, written_as
 from eel_base.wording import shown
 
@@ -70,25 +70,17 @@ def frames(
     return written
 
 
-def parser() -> Parser:
-    """What the command line takes."""
-    made = Parser(
-        prog=NAME,
-        description="Draw a Rerun recording to a PNG, to many, or to a film, without a display.",
-        epilog="Needs a Vulkan driver; Mesa's software driver will do (apt-get install --no-install-recommends "
-        "mesa-vulkan-drivers). Exit status: 0; 1 where the output cannot be written to its end; 2 for what cannot be; "
-        "3 where the viewer cannot draw; with one line that says why.",
-    )
-    made.add_argument("recording", help="file .rrd; one that was cut short is drawn as far as it goes")
-    made.add_argument("picture", nargs="?", help="as -o")
-    made.add_argument(
+def _add_options(parser: Parser) -> None:
+    parser.add_argument("recording", help="file .rrd; one that was cut short is drawn as far as it goes")
+    parser.add_argument("picture", nargs="?", help="as -o")
+    parser.add_argument(
         "-o",
         "--out",
         metavar="OUT",
         help="with --at a PNG; with --fps a folder, made in one that exists, for frame_00000.png ... and, where "
         f"ffmpeg is installed, {FILM}; or a film alone: {', '.join(FILMS)} (the last two do without ffmpeg)",
     )
-    which = made.add_mutually_exclusive_group()
+    which = parser.add_mutually_exclusive_group()
     which.add_argument(
         "--at",
         type=float,
@@ -96,37 +88,40 @@ def parser() -> Parser:
         help=f"simulation time of one picture (default: after {DEFAULT_SHARE:.0%}% of the recording)",
     )
     which.add_argument("--fps", type=float, metavar="N", help="pictures a second of a film")
-    made.add_argument("--start", type=float, metavar="SECONDS", help="of the film (default: the recording's)")
-    made.add_argument("--end", type=float, metavar="SECONDS", help="of the film (default: the recording's)")
-    made.add_argument(
+    parser.add_argument("--start", type=float, metavar="SECONDS", help="of the film (default: the recording's)")
+    parser.add_argument("--end", type=float, metavar="SECONDS", help="of the film (default: the recording's)")
+    parser.add_argument(
         "--speed", type=float, default=1.0, metavar="X", help="simulated seconds in a second of the film (default 1)"
     )
-    made.add_argument(
+    parser.add_argument(
         "--quality", type=int, default=QUALITY, metavar="N", help="of a .webp, 1 to 100 (default %(default)s)"
     )
-    made.add_argument("--size", default=f"{SIZE[0]}x{SIZE[1]}", metavar="WxH", help="in pixels (default %(default)s)")
-    made.add_argument(
+    parser.add_argument("--size", default=f"{SIZE[0]}x{SIZE[1]}", metavar="WxH", help="in pixels (default %(default)s)")
+    parser.add_argument(
         "--blueprint", default="", metavar="NAME", help="arrangement: overview, torques ... (default: the first)"
     )
-    made.add_argument(
+    parser.add_argument(
         "--bare",
         action="store_true",
         help="the first view of the arrangement alone, without the viewer's frame (default arrangement: swimmer); "
         "a size 1.4 times as wide as high, or more, shows the whole swimmer and the legend",
     )
-    made.add_argument(
+    parser.add_argument(
         "--beside", metavar="OTHER", help="another recording, drawn to the right at the same times and in the same size"
     )
-    return made
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `run_command`; 3 if the viewer cannot draw; 130 after Ctrl-C."""
+@command(
+    NAME,
+    "Draw a Rerun recording to a PNG, to many, or to a film, without a display.",
+    epilog="Needs a Vulkan driver; Mesa's software driver will do (apt-get install --no-install-recommends "
+    "mesa-vulkan-drivers). Exit status: 0; 1 where the output cannot be written to its end; 2 for what cannot be; "
+    "3 where the viewer cannot draw; with one line that says why.",
+    add_options=_add_options,
+    interrupted=" ",
+)
+def main(chosen: argparse.Namespace) -> None:
     keep_pandas_out()
-    return run_command(parser(), _render, arguments, interrupted=" ")
-
-
-def _render(chosen: argparse.Namespace) -> int:
     output = chosen.out or chosen.picture
     check_recording(pathlib.Path(chosen.recording))
     if output is None:
@@ -139,7 +134,6 @@ def _render(chosen: argparse.Namespace) -> int:
         _draw(chosen, pathlib.Path(output), (width, height))
     except (CannotRender, ConnectionError) as reason:
         raise CannotRender(f"no picture: {reason}") from reason
-    return 0
 
 
 def _draw(chosen: argparse.Namespace, output: pathlib.Path, size: tuple[int, int]) -> None:
