@@ -6,8 +6,8 @@ bash: eval "$(eel completion bash)"     zsh: eval "$(eel completion zsh)"
 
 import argparse
 
+from eel_base.command.command import command
 from eel_base.command.command_line import Parser
-from eel_base.command.run_command import command
 from eel_base.command.suite import commands
 
 

@@ -8,8 +8,8 @@ eel ballast --scene density=850 --offset 0.02 --out level.csv
 import argparse
 
 import numpy as np
+from eel_base.command.command import checked_out, command
 from eel_base.command.command_line import Parser
-from eel_base.command.run_command import checked_out, command
 from eel_base.files.output_file import written_as
 from eel_model.body.body import COLUMNS, MASSES, Body, body_of
 

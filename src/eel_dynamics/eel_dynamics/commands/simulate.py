@@ -17,9 +17,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from eel_base.command.command import checked_out, command
 from eel_base.command.command_line import Parser, print_to_stderr
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import checked_out, command
 from eel_base.files.output_file import replacing, written_as
 from eel_base.quantity import described_fields
 from eel_base.wording import one_line, shown

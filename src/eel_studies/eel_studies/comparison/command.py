@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from eel_base.command.command import checked_out, command
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import checked_out, command
 from eel_base.files.output_file import written_as
 from eel_dynamics.analysis.measures import MEASURES, measures_of
 from eel_dynamics.commands.options import add_options, scene_of, set_numbers

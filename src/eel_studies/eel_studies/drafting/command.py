@@ -8,9 +8,9 @@ eel drafting --page docs/explanation/drafting.md --out docs/images    # the page
 import argparse
 
 import numpy as np
+from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import command
 
 from eel_studies.drafting.drawing import SIZE, draw_study
 from eel_studies.drafting.study import Study, Wake

@@ -8,9 +8,9 @@ eel figures --out out/figures --format pdf --columns 1       # for a journal
 import argparse
 from collections.abc import Callable
 
+from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import command
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.commands.options import add_options
 from eel_dynamics.runs.run import Run

@@ -12,9 +12,9 @@ import time
 from dataclasses import replace
 from typing import Any
 
+from eel_base.command.command import checked_out, command
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import checked_out, command
 from eel_base.wording import shown
 from eel_dynamics.commands.options import add_options, add_repeated, scene_of, set_numbers
 from eel_dynamics.runs.storage.tables import write_columns

@@ -8,8 +8,8 @@ eel laws gazzola --friction taylor
 import argparse
 from functools import partial
 
+from eel_base.command.command import checked_out, command
 from eel_base.command.command_line import Parser
-from eel_base.command.run_command import checked_out, command
 from eel_dynamics.commands.options import add_options
 from eel_model.scene import FRICTION
 

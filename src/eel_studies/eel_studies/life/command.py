@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
+from eel_base.command.command import checked_out, command
 from eel_base.command.command_line import Parser
-from eel_base.command.run_command import checked_out, command
 from eel_base.quantity import positive
 from eel_dynamics.commands.filmed import add_film_options, beat_from
 from eel_dynamics.commands.options import add_options, add_repeated, scene_of, set_numbers

@@ -9,9 +9,9 @@ import argparse
 from pathlib import Path
 
 import numpy as np
+from eel_base.command.command import checked_out, command
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import checked_out, command
 from eel_base.files.output_file import written_as
 from eel_dynamics.commands.options import add_options
 from eel_dynamics.runs.simulate import simulate

@@ -14,8 +14,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from eel_base.command.command import checked_out, command
 from eel_base.command.command_line import Parser
-from eel_base.command.run_command import checked_out, command
 from eel_base.wording import shown
 from eel_dynamics.commands.options import add_options, add_repeated, named_texts, scene_of
 from eel_dynamics.runs.run import Run

@@ -10,9 +10,9 @@ import argparse
 import time
 from functools import partial
 
+from eel_base.command.command import checked_out, command
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import checked_out, command
 from eel_base.wording import shown
 from eel_dynamics.analysis.measures import MEASURES
 from eel_dynamics.commands.options import add_options, add_repeated, named_texts, set_numbers, varied_values

@@ -11,8 +11,8 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+from eel_base.command.command import checked_out, command
 from eel_base.command.command_line import Parser
-from eel_base.command.run_command import checked_out, command
 from eel_base.quantity import positive
 from eel_base.wording import shown
 from eel_dynamics.commands.options import add_options, add_repeated, named_texts, scene_of

@@ -9,8 +9,8 @@ eel roll-hold --page docs/howto/fins.md --out docs/images                     # 
 import argparse
 
 import numpy as np
+from eel_base.command.command import command
 from eel_base.command.command_line import Parser
-from eel_base.command.run_command import command
 from eel_dynamics.commands.options import add_repeated, named_texts
 from eel_model.fins.text import fins_from_text
 

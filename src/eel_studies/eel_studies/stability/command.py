@@ -10,9 +10,9 @@ eel stability --page docs/appendix/stability.txt --out docs/images
 import argparse
 from pathlib import Path
 
+from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import command
 from eel_base.wording import shown
 from eel_dynamics.commands.options import add_repeated, named_texts
 

@@ -7,9 +7,9 @@ eel steering --page docs/explanation/steering.md --out docs/images     # the pag
 
 import argparse
 
+from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import command
 
 from eel_studies.outputs import Outputs, add_output_options
 from eel_studies.steering.page import PARTS, write_outputs

@@ -12,9 +12,9 @@ import sys
 from functools import partial
 from pathlib import Path
 
+from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import command
 from eel_base.files.output_file import written_as
 from eel_dynamics.accuracy.budget import Budget
 

@@ -16,9 +16,9 @@ from dataclasses import fields
 from itertools import count
 from typing import Any
 
+from eel_base.command.command import command
 from eel_base.command.command_line import Parser, print_to_stderr
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import command
 from eel_base.quantity import limits
 
 from eel_viz.bags.bag import Bag

@@ -16,9 +16,9 @@ import pathlib
 import tempfile
 from collections.abc import Callable, Sequence
 
+from eel_base.command.command import command
 from eel_base.command.command_line import Parser, print_to_stderr
 from eel_base.command.progress import Progress
-from eel_base.command.run_command import command
 from eel_base.files.output_file import NotWritten, check_output, replacing, written_as
 from eel_base.wording import shown
 
