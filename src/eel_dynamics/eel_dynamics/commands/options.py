@@ -25,7 +25,7 @@ from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, until_settled
 TRUTH = {"true": True, "on": True, "false": False, "off": False}
 
 
-def add_options(parser: Parser, *options: str, **defaults) -> None:
+def add_options(parser: Parser, *options: str, **defaults: Any) -> None:
     """Add shared `options` to the `parser` of a command.
 
     defaults: of options by name, shown in their help; a text in place of a default that the command finds out itself
@@ -44,19 +44,21 @@ def add_options(parser: Parser, *options: str, **defaults) -> None:
         parser.add_argument("-h", "--help", nargs="?", metavar="GAIT", action=_Help, help="this, or a gait's numbers")
 
 
-def add_repeated(parser: argparse.ArgumentParser, option: str, metavar: str, about: str, required: bool = False):
+def add_repeated(
+    parser: argparse.ArgumentParser, option: str, metavar: str, about: str, required: bool = False
+) -> None:
     """Add an `option` that may be repeated to the `parser` of a command; its value is a list."""
     parser.add_argument(option, **_repeated(metavar, about), required=required)
 
 
-def _repeated(metavar: str, about: str) -> dict:
+def _repeated(metavar: str, about: str) -> dict[str, Any]:
     return {"action": "append", "default": [], "metavar": metavar, "help": f"{about}; may be repeated"}
 
 
 class _Help(argparse.Action):
     """Prints the help of the command, or with a gait that of the gait."""
 
-    def __call__(self, parser, namespace, values, option_string=None):
+    def __call__(self, parser: Any, namespace: Any, values: Any, option_string: str | None = None) -> None:
         given = getattr(namespace, "gait", None)
         name = values or (None if given == parser.get_default("gait") else given)
         try:
@@ -76,7 +78,7 @@ def named_texts(option: str, texts: list[str]) -> list[tuple[str, str]]:
     return [(name, value) for name, _, value in pairs]
 
 
-def check_names(names: list[str]):
+def check_names(names: list[str]) -> None:
     """`ValueError` where a name is given twice."""
     for name in names:
         if names.count(name) > 1:
@@ -127,7 +129,7 @@ def scene_fields(texts: list[str]) -> dict[str, Any]:
     return found
 
 
-def varied_values(text: str, check_count: Callable[[int], None]) -> list:
+def varied_values(text: str, check_count: Callable[[int], None]) -> list[Any]:
     """The values of --vary: a,b,c or start:end:count. `ValueError` where it is neither.
 
     check_count(count) may refuse the count before the values are made."""
@@ -141,10 +143,11 @@ def varied_values(text: str, check_count: Callable[[int], None]) -> list:
     if count < 1:
         raise ValueError(f"--vary must be NAME=start:end:count, count >= 1, or NAME=a,b,c, got {shown(text)}")
     check_count(count)
-    return np.linspace(start, end, count).tolist()
+    values: list[Any] = np.linspace(start, end, count).tolist()
+    return values
 
 
-def value_of(text: str):
+def value_of(text: str) -> Any:
     """A truth, a number, or the text itself."""
     if text.lower() in TRUTH:
         return TRUTH[text.lower()]

@@ -150,7 +150,7 @@ def main(options: argparse.Namespace) -> int:
     return 0
 
 
-def _swim_of(options, beat: Beat | None) -> Swim:
+def _swim_of(options: argparse.Namespace, beat: Beat | None) -> Swim:
     """The swim that the options tell: of a gait, a file of a motion, or the `beat` of a film."""
     robot = robot_of(options.robot)
     own = None if robot is None or options.body else robot.body
@@ -171,7 +171,7 @@ def _swim_of(options, beat: Beat | None) -> Swim:
     return Swim(law, body, scene_of(options.scene), options.accuracy or "standard", **more)
 
 
-def _scene_of_file(options) -> Swim:
+def _scene_of_file(options: argparse.Namespace) -> Swim:
     """The swim of a scene's file, with what the options change."""
     for given in filter(None, (options.file, options.midlines, options.sequence)):
         raise ValueError(f"{options.gait} has a gait of its own, got {shown(given)} too")
@@ -179,7 +179,7 @@ def _scene_of_file(options) -> Swim:
     return swim.with_gait(**numbers) if numbers else swim
 
 
-def _law(options, body: Body, beat: Beat | None) -> Law | SampledLaw:
+def _law(options: argparse.Namespace, body: Body, beat: Beat | None) -> Law | SampledLaw:
     """The law of the gait, of the sequence, of the motion in a file, or of the `beat` of a film."""
     if options.file is None and (options.unsmoothed or (options.scale != 1.0 and beat is None)):
         raise ValueError("--unsmoothed and --scale belong to --file, which is not given")
@@ -198,12 +198,12 @@ def _law(options, body: Body, beat: Beat | None) -> Law | SampledLaw:
     return read_motion(options.file, length=body.length, scale=options.scale, smooth=not options.unsmoothed)
 
 
-def _print_lines(lines: list[tuple[str, str]]):
+def _print_lines(lines: list[tuple[str, str]]) -> None:
     for name, text in lines:
         print(f"{name:<20}{text}")
 
 
-def _print_smoothing(run: Run):
+def _print_smoothing(run: Run) -> None:
     """Print what the run would be without the smoothing of its motion."""
     try:
         effect: object = run.smoothing
@@ -213,7 +213,7 @@ def _print_smoothing(run: Run):
         print(f"smoothing           {effect}")
 
 
-def _check_actuators(options, scene: Scene):
+def _check_actuators(options: argparse.Namespace, scene: Scene) -> None:
     """`ValueError` for what `Run.actuators` would refuse, before the swim."""
     if not 1 <= options.actuators <= MOST_JOINTS:
         raise ValueError(f"--actuators must be 1 to {MOST_JOINTS}, got {shown(options.actuators)}")
@@ -231,7 +231,7 @@ def _checked_out(out: str | None) -> Path | None:
     return checked_out(NAME, out, SUFFIXES)
 
 
-def _write(run: Run, path: Path):
+def _write(run: Run, path: Path) -> None:
     if path.suffix == ".rrd":
         run.to_rerun(path)
         return

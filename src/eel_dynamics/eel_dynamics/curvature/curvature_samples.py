@@ -6,7 +6,7 @@ from bisect import bisect_left, bisect_right
 from functools import lru_cache
 from itertools import repeat
 from operator import attrgetter
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from eel_base.quantity import checked_row, is_finite
@@ -29,7 +29,7 @@ def waves_of_points(count: int) -> float:
     return 2.0 ** math.ceil(math.log2(max(1.0, (count - 1) / POINTS_PER_WAVE)))
 
 
-def check_points(count: int):
+def check_points(count: int) -> None:
     """`ValueError` for a sample with more points along the body than any grid carries."""
     if count > MOST_POINTS:
         raise ValueError(f"curvature samples x must have at most {MOST_POINTS} points, got {count}")
@@ -52,7 +52,9 @@ class CurvatureSample(NamedTuple):
     waves: float
 
     @staticmethod
-    def checked(time, x, rows, *, waves, length: float, planar: bool, now: float, begun: bool) -> "CurvatureSample":
+    def checked(
+        time: Any, x: Any, rows: Any, *, waves: float | None, length: float, planar: bool, now: float, begun: bool
+    ) -> "CurvatureSample":
         """A sample from its arguments. `ValueError` names the one that does not fit; `LateSample` if it is the time.
 
         time [s]; x (n,) [m]; rows (6, n): as in `QUANTITIES`. waves: on the body; None: what the points can carry.
@@ -79,7 +81,7 @@ class CurvatureSample(NamedTuple):
         """Whether the other sample holds the same numbers."""
         return self.time == other.time and np.array_equal(self.x, other.x) and np.array_equal(self.values, other.values)
 
-    def __deepcopy__(self, memo: dict) -> "CurvatureSample":
+    def __deepcopy__(self, memo: dict[int, Any]) -> "CurvatureSample":
         """The same object, because it never changes."""
         return self
 
@@ -99,7 +101,7 @@ def _checked_x(content: bytes, length: float) -> np.ndarray:
     return x
 
 
-def _checked_values(rows, points: int) -> np.ndarray:
+def _checked_values(rows: Any, points: int) -> np.ndarray:
     """The six rows of a sample as an array (2, 3, points) of finite floats. Rows of floats are checked all at once."""
     if all(type(row) is np.ndarray and row.dtype == float and row.shape == (points,) for row in rows):
         values = np.concatenate(rows)
@@ -130,7 +132,7 @@ class SampleQueue:
     def __len__(self) -> int:
         return len(self._samples)
 
-    def check_space(self, points: int):
+    def check_space(self, points: int) -> None:
         """`ValueError` where the queue has no space for a sample of so many `points`."""
         if len(self._samples) >= MOST_AHEAD or self._points + points > MOST_POINTS_AHEAD:
             raise ValueError(
@@ -138,7 +140,7 @@ class SampleQueue:
                 f"points, got {len(self._samples) + 1} of {self._points + points}"
             )
 
-    def add(self, sample: CurvatureSample, driving: bool):
+    def add(self, sample: CurvatureSample, driving: bool) -> None:
         """Add a sample. The same one once more changes nothing.
 
         `LateSample` for one that comes too late while the samples are `driving`, `ValueError` for another one of the
@@ -157,11 +159,11 @@ class SampleQueue:
         self._samples.insert(place, sample)
         self._points += len(sample.x)
 
-    def drop_first(self):
+    def drop_first(self) -> None:
         """Remove the first sample."""
         self._points -= len(self._samples.pop(0).x)
 
-    def drop_until(self, now: float):
+    def drop_until(self, now: float) -> None:
         """Remove all samples before the last one that is not later than `now` [s]."""
         while len(self._samples) > 1 and self._samples[1].time <= now:
             self.drop_first()

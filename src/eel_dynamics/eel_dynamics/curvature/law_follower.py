@@ -60,7 +60,7 @@ class LawFollower:
         self._source = self._begun(law, origin, 0.0)
         self.law_on_grid = self._with_blend()
 
-    def move(self, tabulation: Tabulation, values_at_nodes):
+    def move(self, tabulation: Tabulation, values_at_nodes: Callable[[np.ndarray], np.ndarray]) -> None:
         """Change to the grid of another `tabulation`.
 
         A law is tabulated anew. Samples and blends remain as values at the old nodes: `values_at_nodes(rows)` takes
@@ -68,7 +68,7 @@ class LawFollower:
         """
         nodes = self._tabulation.nodes
 
-        def convert(rows):
+        def convert(rows: np.ndarray) -> np.ndarray:
             return tabulation.columns(values_at_nodes(rows[..., :nodes]))
 
         source = self._source.moved(tabulation, convert)
@@ -77,7 +77,7 @@ class LawFollower:
         self._tabulation, self._spline, self._last = tabulation, None, None
         self._follow(source)
 
-    def blend_into(self, law: Law | SampledLaw, *, origin: float, time: float, transition: float):
+    def blend_into(self, law: Law | SampledLaw, *, origin: float, time: float, transition: float) -> None:
         """Follow `law` from `time` [s] on, with a blend over `transition` [s]."""
         self._forget_samples()
         self._take_over(self._begun(law, origin, time), time, transition)
@@ -94,7 +94,7 @@ class LawFollower:
 
     # -- samples of a controller
 
-    def add(self, sample: CurvatureSample):
+    def add(self, sample: CurvatureSample) -> None:
         """Add a sample. `ValueError` for one that comes too late, or twice."""
         self.samples.add(sample, self.sampled)
 
@@ -102,7 +102,7 @@ class LawFollower:
         """The next time [s] at which the source changes by itself; inf where there is none."""
         return self.samples.first_two[1].time if self.sampled else self.samples.next_bracket(now)
 
-    def pass_event(self, now: float, prepare: Callable[[list[CurvatureSample]], None]):
+    def pass_event(self, now: float, prepare: Callable[[list[CurvatureSample]], None]) -> None:
         """Change the source where that is due at `now` [s].
 
         The new source is the samples that bracket the time, their next interval, or rest. prepare(samples) is called
@@ -125,13 +125,13 @@ class LawFollower:
                 self._take_over(self._segment(), now, self._default_transition)
                 self.sampled, self.resting = True, False
 
-    def pass_events(self, now: float, time: float):
+    def pass_events(self, now: float, time: float) -> None:
         """Change the source at each event from `now` to `time` [s], for who reads the law and does not march."""
         while (event := self.next_event(now)) < time:
             now = event
             self.pass_event(now, lambda samples: None)
 
-    def _forget_samples(self):
+    def _forget_samples(self) -> None:
         self.samples, self.sampled, self.resting = SampleQueue(), False, False
 
     # -- what the steps in time depend on
@@ -169,13 +169,13 @@ class LawFollower:
         """Whether the last motion dies out or has come to rest. Its finer waves are then still there."""
         return self._blend is not None or self.resting
 
-    def end_blend(self, now: float):
+    def end_blend(self, now: float) -> None:
         """Remove a blend that is over at `now` [s], so that it costs nothing."""
         if self._blend is not None and now >= self._blend.end:
             self._blend = None
             self._follow(self._source)
 
-    def _take_over(self, source: TabulatedLaw, time: float, transition: float):
+    def _take_over(self, source: TabulatedLaw, time: float, transition: float) -> None:
         present = self._at(time)
         self._blend = None
         self._follow(source)
@@ -209,7 +209,7 @@ class LawFollower:
         eel_core.tabulate(self._spline[1], np.ascontiguousarray(sample.values), rows)
         return rows
 
-    def _follow(self, source: TabulatedLaw):
+    def _follow(self, source: TabulatedLaw) -> None:
         self._source = source
         self.law_on_grid = self._with_blend()
 

@@ -11,8 +11,9 @@ The difference between a motion and the law that takes over, and the quintic bet
 the same form. `eel_core.LawOnGrid` holds both and evaluates them.
 """
 
+from collections.abc import Callable
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from eel_gaits.laws.law import Law
@@ -39,7 +40,7 @@ class Tabulation:
         previous: np.ndarray,
         stations: np.ndarray,
         station_base: np.ndarray,
-        further: np.ndarray | tuple = (),
+        further: np.ndarray | tuple[()] = (),
     ):
         self.nodes, self.stations, self.further = len(nodes), len(stations), len(further)
         start, end = np.concatenate((previous, station_base)), np.concatenate((nodes, stations))
@@ -75,11 +76,11 @@ class Tabulation:
         """Tabulated rows (n, width) of the natural cubic splines that are 1 at one of the `points` (n,) [m] each."""
         return np.ascontiguousarray(self.columns(natural_spline(points, np.eye(len(points)), self.x)))
 
-    def __deepcopy__(self, memo: dict) -> "Tabulation":
+    def __deepcopy__(self, memo: dict[int, Any]) -> "Tabulation":
         """The same object, because it never changes."""
         return self
 
-    def law_tables(self, rows: np.ndarray, axis) -> eel_core.LawTables:
+    def law_tables(self, rows: np.ndarray, axis: Any) -> eel_core.LawTables:
         """Tabulated `rows` (m, width) of the axes `axis` (m,) (0 pitch, 1 yaw), for the compiled mechanics."""
         rows = np.ascontiguousarray(rows[:, : self.width - self.further])
         return eel_core.LawTables(np.asarray(axis).tolist(), rows, self.nodes, self.stations)
@@ -91,13 +92,13 @@ class TabulatedLaw(NamedTuple):
     rows: np.ndarray  # (m, width), as `Tabulation.columns` has them
     axis: np.ndarray  # (m,) of the rows, 0 pitch, 1 yaw
     tables: eel_core.LawTables | None = None  # the rows for the compiled mechanics, where several runs share them
-    waves: tuple = ()  # as `eel_core.LawOnGrid` takes them: period [s], envelope, row of the sine, row of the cosine
+    waves: tuple[Any, ...] = ()  # as `eel_core.LawOnGrid` takes them: period [s], envelope, rows of sine and cosine
     origin: float = 0.0  # s, simulation time of the law's own t = 0
     segment: tuple[float, float] | None = None  # s, of the quintic between two samples of a controller
     law: Law | None = None  # that was tabulated
     ramp_ends: tuple[float, ...] = ()  # s of the law's own time, where ramps begin and end
 
-    def __deepcopy__(self, memo: dict) -> "TabulatedLaw":
+    def __deepcopy__(self, memo: dict[int, Any]) -> "TabulatedLaw":
         return self
 
     @staticmethod
@@ -116,7 +117,7 @@ class TabulatedLaw(NamedTuple):
         value, rate and acceleration at both."""
         return TabulatedLaw(rows, SEGMENT_AXES, segment=(start, end))
 
-    def moved(self, tabulation: Tabulation, convert) -> "TabulatedLaw":
+    def moved(self, tabulation: Tabulation, convert: Callable[[np.ndarray], np.ndarray]) -> "TabulatedLaw":
         """The same on another grid: a law is tabulated anew, other rows are converted by convert(rows)."""
         if self.law is not None:
             return TabulatedLaw.of_law(self.law, self.origin, tabulation)
@@ -160,7 +161,7 @@ def _tabulated(law: Law | None, tabulation: Tabulation) -> TabulatedLaw:
 
 
 @lru_cache(maxsize=1024)
-def _rows_of(groups: tuple, tabulation: Tabulation) -> tuple:
+def _rows_of(groups: tuple[Any, ...], tabulation: Tabulation) -> tuple[Any, ...]:
     """Rows of `groups` of terms (axis, whether they have a period, their waveforms), their axes and tables, and for
     each group the rows of its sine and cosine."""
     rows: list[np.ndarray] = []

@@ -4,7 +4,7 @@
 import inspect
 import os
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from eel_base.quantity import is_finite
@@ -16,9 +16,10 @@ from eel_gaits.sources.motion_file import SUFFIXES, read_motion
 from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.analysis.analysis import Analysis
+from eel_dynamics.runs.run_data import RunData
 
 LAWS = Law, SampledLaw
-Motion = Law | SampledLaw | Callable | str | os.PathLike
+Motion = Law | SampledLaw | Callable[..., Any] | str | os.PathLike[str]
 
 
 def law_from(motion: Motion, duration: float, length: float) -> Law | SampledLaw:
@@ -38,12 +39,12 @@ def law_from(motion: Motion, duration: float, length: float) -> Law | SampledLaw
     return law
 
 
-def _no_motion(motion, hint: str) -> ValueError:
+def _no_motion(motion: object, hint: str) -> ValueError:
     kinds = "a Law, a SampledLaw, a function K(t, X) or a .csv or .npz file"
     return ValueError(f"law must be {kinds}, got {shown(motion)}{hint}")
 
 
-def _takes(function: Callable, *arguments) -> bool:
+def _takes(function: Callable[..., Any], *arguments: Any) -> bool:
     """Whether `function` can be called with these arguments; true where it does not tell."""
     try:
         inspect.signature(function).bind(*arguments)
@@ -54,7 +55,7 @@ def _takes(function: Callable, *arguments) -> bool:
     return True
 
 
-def check_duration(law: Law | SampledLaw, duration: float):
+def check_duration(law: Law | SampledLaw, duration: float) -> None:
     """`ValueError` where the motion of `law` is known for less than `duration` [s]."""
     if isinstance(law, SampledLaw) and is_finite(duration) and duration > law.duration * (1.0 + 1e-9):
         raise ValueError(
@@ -75,18 +76,18 @@ class SmoothingEffect(NamedTuple):
         return f"without it: mean speed {speed}{torque}, the head ends {self.path:.2%} of its path elsewhere"
 
 
-def effect_of_smoothing(run, without) -> SmoothingEffect:
+def effect_of_smoothing(run: RunData, without: RunData) -> SmoothingEffect:
     """The effect on a `run` of a smoothed motion: `without` is the run of the same motion without smoothing."""
     before, after = _mean_speed(without), _mean_speed(run)
     speed = before / after if before is not None and after is not None and after > 0.0 else None
     torque = None
-    if run.torque is not None and np.any(run.torque):
+    if run.torque is not None and without.torque is not None and np.any(run.torque):
         torque = float(np.linalg.norm(without.torque) / np.linalg.norm(run.torque))
     apart = float(np.linalg.norm(without.position[-1] - run.position[-1]))
     return SmoothingEffect(speed, torque, apart / max(run.path_length, run.body.length))
 
 
-def _mean_speed(run) -> float | None:
+def _mean_speed(run: RunData) -> float | None:
     try:
         return Analysis(run).mean_speed
     except ValueError:  # the motion does not repeat

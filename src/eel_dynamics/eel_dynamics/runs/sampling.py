@@ -3,9 +3,13 @@
 
 import math
 import os
+from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 from eel_base.quantity import is_finite, number, positive
+from eel_gaits.laws.law import Law
+from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.simulation.observations import size_of
 
@@ -17,7 +21,7 @@ MOST_DEFAULT_SAMPLES = 20_000  # of a run whose sample period follows from the l
 MOST_MEMORY = 0.8  # share of the machine's memory for the samples
 
 
-def default_sample_period(laws, duration) -> float:
+def default_sample_period(laws: Iterable[Law | SampledLaw], duration: Any) -> float:
     """The sample period [s] where none is given: `SAMPLE_PERIOD`, or fine enough to analyse the fastest of `laws`.
 
     The finer ones divide the `duration`; none is longer than it. A run of more than `MOST_DEFAULT_SAMPLES` is
@@ -27,10 +31,10 @@ def default_sample_period(laws, duration) -> float:
     fine = shortest / SAMPLES_OF_PERIOD
     if fine >= ALIKE * SAMPLE_PERIOD or not is_finite(duration) or not 0.0 < duration <= MOST_DEFAULT_SAMPLES * fine:
         return min(SAMPLE_PERIOD, duration) if is_finite(duration) and duration > 0.0 else SAMPLE_PERIOD
-    return duration / math.ceil(duration / fine - 1e-9)
+    return float(duration / math.ceil(duration / fine - 1e-9))
 
 
-def checked_times(duration, sample_period) -> np.ndarray:
+def checked_times(duration: Any, sample_period: Any) -> np.ndarray:
     """Times (T,) [s] of the samples, the multiples of `sample_period` [s] up to `duration` [s].
 
     `ValueError` for a bad duration or period, for a period above the duration, or for more than `MOST_SAMPLES`.
@@ -45,10 +49,10 @@ def checked_times(duration, sample_period) -> np.ndarray:
             f"duration must be at most {MOST_SAMPLES:,} samples of sample_period, got {duration:g} s at "
             f"{sample_period:g} s: {steps:.4g} samples"
         )
-    return np.arange(int(steps) + 1) * sample_period
+    return np.asarray(np.arange(int(steps) + 1) * sample_period)
 
 
-def check_memory(swimmers: int, samples: int, stations: int, wrench: bool, load: bool, runs: int = 1):
+def check_memory(swimmers: int, samples: int, stations: int, wrench: bool, load: bool, runs: int = 1) -> None:
     """`ValueError` if the profiles of so many `runs` of each swimmer would not fit into memory."""
     needed = 8.0 * runs * swimmers * size_of(samples, stations, wrench, load)
     there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") * MOST_MEMORY

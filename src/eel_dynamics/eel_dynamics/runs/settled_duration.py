@@ -21,12 +21,12 @@ MARGIN = 0.8  # of the change that counts as settled, for the difference between
 NO_WORK = 1e-6  # of the kinetic energy: the net work of a period that counts as none
 
 
-def until_settled(duration) -> bool:
+def until_settled(duration: object) -> bool:
     """Whether the `duration` is "settled"."""
     return isinstance(duration, str) and duration == UNTIL_SETTLED
 
 
-def duration_of(duration: Any, swimmers) -> Any:
+def duration_of(duration: Any, swimmers: Any) -> Any:
     """The `duration`, or where that is "settled" the time [s] until the slowest of the `swimmers` has settled.
 
     swimmers: (law, set-up) of each.
@@ -34,7 +34,7 @@ def duration_of(duration: Any, swimmers) -> Any:
     return max(settling_time(*each) for each in swimmers) if until_settled(duration) else duration
 
 
-def settling_time(law, setup: SimulationSetup) -> float:
+def settling_time(law: Any, setup: SimulationSetup) -> float:
     """Time [s], in whole periods, after which the gait of a swimmer by `law` has settled.
 
     The later half of that time lies after the law's last ramp. Over its periods the mean speed and the mean power of
@@ -71,7 +71,7 @@ def settling_time(law, setup: SimulationSetup) -> float:
     return MOST_PERIODS * period
 
 
-def period_of(law, length: float) -> float:
+def period_of(law: Any, length: float) -> float:
     """The period [s] of `law` after its last ramp, on a body of `length` [m]. `ValueError` where there is none."""
     if not isinstance(law, Law):
         raise ValueError(f"duration {UNTIL_SETTLED!r} needs a Law, whose terms tell its period, got {shown(law)}")
@@ -86,7 +86,7 @@ def _last_ramp(law: Law) -> float:
     return max((ramp.end for term in law.terms for ramp in term.envelope), default=0.0)
 
 
-def _coarse(accuracy):
+def _coarse(accuracy: Any) -> Any:
     """The preset draft in place of a finer target; other settings as they are."""
     target = getattr(accuracy, "target", None)
     return Accuracy.of("draft") if target is not None and target < PRESETS["draft"] else accuracy

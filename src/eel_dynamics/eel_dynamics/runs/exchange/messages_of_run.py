@@ -7,17 +7,20 @@ from typing import Any
 
 import numpy as np
 from eel_base.topics import ENERGY_FIELDS
-from eel_model.fins.fins import SIDES
+from eel_model.body.body import Body
+from eel_model.fins.fins import SIDES, Fin
 from eel_model.flow.lattice import lattice_around, velocities_at
 from eel_model.robot.actuators import most_torque
 from eel_model.robot.part import AXES
+from eel_model.robot.robot import Robot
 
-from eel_dynamics.runs.exchange.message_fields import FIELDS, PROFILES
+from eel_dynamics.runs.exchange.message_fields import FIELDS, OF_JOINTS, PROFILES
+from eel_dynamics.runs.run_data import RunData
 
 SECOND = 1_000_000_000  # ns
 
 
-def messages_of_run(run) -> Iterator[tuple[str, SimpleNamespace]]:
+def messages_of_run(run: RunData) -> Iterator[tuple[str, SimpleNamespace]]:
     """Yield topic and message in the order of time: body and law, then all samples, then the diagnostics."""
     run = run.in_axes("rep103")
     start, end = (_stamp(run.time[k]) for k in (0, -1))
@@ -29,7 +32,7 @@ def messages_of_run(run) -> Iterator[tuple[str, SimpleNamespace]]:
     yield "diagnostics", _status(run, end, "computed", _checks(run))
 
 
-def outline(body, x: np.ndarray) -> dict[str, np.ndarray]:
+def outline(body: Body, x: np.ndarray) -> dict[str, np.ndarray]:
     """Abscissae and half axes of the body [m], each (N,), by the field names of BodyGeometry.
 
     The abscissae are `x` (M,) [m] and points in between, which are denser at the nose.
@@ -42,19 +45,19 @@ def outline(body, x: np.ndarray) -> dict[str, np.ndarray]:
     }
 
 
-def fields_of_fins(fins) -> list[dict[str, Any]]:
+def fields_of_fins(fins: tuple[Fin, ...]) -> list[dict[str, Any]]:
     """The fields of a FinGeometry of each of the `fins`."""
     own = ("name", "station", "area", "span", "dihedral")
     return [{"side": int(SIDES[fin.side]), **{name: getattr(fin, name) for name in own}} for fin in fins]
 
 
-def fields_of_joints(robot) -> list[dict[str, Any]]:
+def fields_of_joints(robot: Robot | None) -> list[dict[str, Any]]:
     """The fields of a JointGeometry of each joint of the `robot`; none without one."""
     joints = () if robot is None else robot.joints
     return [{"name": joint.name, "station": joint.position, "axis": AXES[joint.axis][0] + 1} for joint in joints]
 
 
-def _body_of(run) -> SimpleNamespace:
+def _body_of(run: RunData) -> SimpleNamespace:
     """The body as a BodyGeometry."""
     return SimpleNamespace(
         length=float(run.body.length),
@@ -65,7 +68,7 @@ def _body_of(run) -> SimpleNamespace:
     )
 
 
-def _sample(run, k: int) -> Iterator[tuple[str, SimpleNamespace]]:
+def _sample(run: RunData, k: int) -> Iterator[tuple[str, SimpleNamespace]]:
     """Topic and message at sample `k`, of the topics whose quantities the run has."""
     header = SimpleNamespace(stamp=_stamp(run.time[k]))
     for topic, fields in FIELDS.items():
@@ -86,11 +89,13 @@ def _sample(run, k: int) -> Iterator[tuple[str, SimpleNamespace]]:
         yield "energy", SimpleNamespace(header=header, **ledger)
 
 
-def _besides(run, k: int, topic: str) -> dict[str, Any]:
+def _besides(run: RunData, k: int, topic: str) -> dict[str, Any]:
     """What the message of a `topic` has besides the fields that `FIELDS` names."""
-    if topic in ("joint_states", "fin_states"):
-        return {"name": [part.name for part in (run.robot.joints if topic == "joint_states" else run.fins)]}
-    if topic == "motor_states":
+    if topic == "fin_states":
+        return {"name": [fin.name for fin in run.fins]}
+    if topic == "joint_states" and run.robot is not None:
+        return {"name": [joint.name for joint in run.robot.joints]}
+    if run.robot is not None and run.motor_torque is not None and run.motor_power is not None and topic in OF_JOINTS:
         return {"limit": most_torque(run.robot.servos, run.motor_torque[k], run.motor_power[k])}
     return {"x": run.x} if topic in PROFILES else {}
 
@@ -104,17 +109,17 @@ def _put(message: SimpleNamespace, path: str, numbers: np.ndarray, parts: str) -
     setattr(message, name, numbers if named is None else SimpleNamespace(**named))
 
 
-def _checks(run) -> dict[str, float]:
+def _checks(run: RunData) -> dict[str, float]:
     """Greatest residual and closure of the run, by their names in the node's diagnostics."""
     found = {}
     if run.energy is not None:
         found["energy_residual_worst"] = np.max(np.abs(run.energy.residual))
-    if run.closure_torque is not None and np.any(run.torque):
+    if run.closure_torque is not None and run.torque is not None and np.any(run.torque):
         found["closure_torque_relative"] = np.max(run.closure_torque) / np.max(np.abs(run.torque))
     return found
 
 
-def _status(run, stamp: SimpleNamespace, text: str, values: dict[str, float]) -> SimpleNamespace:
+def _status(run: RunData, stamp: SimpleNamespace, text: str, values: dict[str, float]) -> SimpleNamespace:
     """One DiagnosticArray."""
     pairs = {"law": run.law.name, "accuracy": run.accuracy.name} | {
         name: f"{value:.9g}" for name, value in values.items()

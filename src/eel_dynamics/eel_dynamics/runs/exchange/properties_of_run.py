@@ -7,8 +7,10 @@ from typing import Any
 
 import numpy as np
 from eel_gaits.laws.law import Law
+from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.analysis.measures import MEASURES, OF_ESTIMATE, measures_of
+from eel_dynamics.runs.run_data import RunData
 from eel_dynamics.runs.storage.netcdf import software
 from eel_dynamics.runs.storage.plain import plain_of
 from eel_dynamics.simulation.energy import WORKS
@@ -17,7 +19,7 @@ DEAR = ("greatest_torque",)  # a measure that swims again; beside it the greates
 Properties = dict[str, dict[str, Any]]  # numbers, texts and truths, by group and name
 
 
-def properties_of_run(run) -> Properties:
+def properties_of_run(run: RunData) -> Properties:
     """Groups of a run's numbers in SI units: swim, law, body, scene, accuracy, error_estimate, ledger, measures.
 
     A group without data is left out; a measure that is not defined is NaN.
@@ -53,7 +55,7 @@ def properties_of_run(run) -> Properties:
     return found
 
 
-def _law(law) -> dict[str, Any]:
+def _law(law: Law | SampledLaw) -> dict[str, Any]:
     """Name, longest period and wavelength of a law's waves, and all of it as JSON; of measured rows the name alone."""
     if not isinstance(law, Law):
         return {"name": law.name}

@@ -40,8 +40,12 @@ AXIS_OF_NUMBER = {column + 1: name for name, column in SECTION_COLUMN.items()}  
 
 
 def fields_of_bag(
-    path, namespace: str | None, body: Body | None, scene: Scene | None, robot: Robot | str | None = None
-) -> dict:
+    path: str | os.PathLike[str],
+    namespace: str | None,
+    body: Body | None,
+    scene: Scene | None,
+    robot: Robot | str | None = None,
+) -> dict[str, Any]:
     """The fields of `Run.from_bag`, whose arguments these are. `ValueError` and `ImportError` as there."""
     if body is not None:
         checked_body(body)
@@ -59,7 +63,7 @@ def fields_of_bag(
 
 def fields_of_messages(
     messages: Iterable[tuple[str, object]], body: Body | None, scene: Scene | None, robot: Robot | None = None
-) -> dict:
+) -> dict[str, Any]:
     """The fields of the `Run` that `messages` (topic and message) tell of.
 
     body, scene, robot: what the messages do not tell; None for the body of the topic `body`, `Scene()` and no robot.
@@ -96,7 +100,9 @@ def fields_of_messages(
     return found | {"energy": _energy(rows, found["time"])}
 
 
-def _collected(messages) -> tuple[dict, dict]:
+def _collected(
+    messages: Iterable[tuple[str, Any]],
+) -> tuple[dict[str, Any], dict[str, dict[int, Any]]]:
     """Messages of topics that come once (the last, all laws), and by topic those of the samples by stamp [ns].
 
     Of several of one stamp, as a node sends them that waits at its start, the last counts.
@@ -128,7 +134,7 @@ def _in_order(message: Any, robot: Robot) -> Any:
     return SimpleNamespace(**{name: np.array(getattr(message, name))[order] for name in names})
 
 
-def _robot(found: dict, robot: Robot | None) -> dict:
+def _robot(found: dict[str, Any], robot: Robot | None) -> dict[str, Any]:
     """No message tells the angle of a motor behind a series spring, nor how tails bend."""
     stiff = robot is not None and all(servo is None or servo.series_stiffness is None for servo in robot.servos)
     return {"robot": robot, "motor_angle": found["joint_angle"] if stiff else None}
@@ -138,10 +144,10 @@ def _acceleration(time: np.ndarray, twist: np.ndarray) -> np.ndarray:
     """(T, 6), by splines through the head's `twist` (T, 6) at `time` (T,) [s]."""
     rate = _spline(time, twist)(time, 1)
     rate[:, 3:] += np.cross(twist[:, :3], twist[:, 3:])
-    return rate
+    return np.asarray(rate)
 
 
-def _energy(rows: dict, time: np.ndarray) -> EnergyLedger | None:
+def _energy(rows: dict[str, list[Any]], time: np.ndarray) -> EnergyLedger | None:
     """The ledger. An older bag has no powers of flow and fins, and no works: they are those since its first sample."""
     if "energy" not in rows:
         return None
@@ -158,7 +164,7 @@ def _energy(rows: dict, time: np.ndarray) -> EnergyLedger | None:
     return EnergyLedger(**ledger)
 
 
-def _law(once: dict) -> Law:
+def _law(once: dict[str, Any]) -> Law:
     """The last law, in the time of the simulation."""
     laws = once["curvature_law"]
     if not laws:
@@ -172,7 +178,7 @@ def _law(once: dict) -> Law:
     return law.delayed(origin)
 
 
-def _term(term) -> Term:
+def _term(term: Any) -> Term:
     ramps = (Ramp(ramp.start, ramp.end, ramp.delta, getattr(ramp, "factor", 0)) for ramp in term.envelope)
     return Term(
         axis=AXIS_OF_NUMBER[term.axis],
@@ -185,7 +191,7 @@ def _term(term) -> Term:
     )
 
 
-def _body(once: dict, scene: Scene) -> Body:
+def _body(once: dict[str, Any], scene: Scene) -> Body:
     """The body of the topic `body`: its half-axes at the points of the message, its mass at the scene's density."""
     message = once.get("body")
     if message is None:
@@ -195,7 +201,7 @@ def _body(once: dict, scene: Scene) -> Body:
     return body.changed(density=message.mass / body.volume) if is_finite(message.mass) and message.mass > 0.0 else body
 
 
-def _accuracy(once: dict, scene: Scene) -> Accuracy:
+def _accuracy(once: dict[str, Any], scene: Scene) -> Accuracy:
     """The accuracy that the diagnostics name, or `standard`."""
     statuses = getattr(once.get("diagnostics"), "status", ())
     names = [pair.value for status in statuses for pair in status.values if pair.key == "accuracy"]
@@ -213,10 +219,10 @@ def _center_of_mass(body: Body, x: np.ndarray, backbone: np.ndarray) -> np.ndarr
     areas = with_moments(lambda at: body.half_width(at)[None] * body.half_height(at), grid, body.breaks)
     weight = grid.weight * areas[0]
     inside = np.clip(grid.x, x[0], x[-1])
-    return np.einsum("n,tnk->tk", weight / weight.sum(), _spline(x, backbone, axis=1)(inside))
+    return np.asarray(np.einsum("n,tnk->tk", weight / weight.sum(), _spline(x, backbone, axis=1)(inside)))
 
 
-def _spline(x: np.ndarray, values: np.ndarray, axis: int = 0):
+def _spline(x: np.ndarray, values: np.ndarray, axis: int = 0) -> Any:
     from scipy.interpolate import CubicSpline
 
     return CubicSpline(x, values, axis=axis)

@@ -8,6 +8,7 @@ does not fit either; without the attribute `digest` it can be read, with a warni
 import hashlib
 import os
 import warnings
+from typing import Any
 
 import numpy as np
 from eel_base.files.input_file import InputFile
@@ -15,12 +16,12 @@ from eel_base.files.input_file import InputFile
 ATTRIBUTE = "digest"
 
 
-def add_digest(file) -> None:
+def add_digest(file: Any) -> None:
     """Give an open `scipy.io.netcdf_file`, to which all else is written, its digest."""
     setattr(file, ATTRIBUTE, digest_of(file).encode())
 
 
-def check_digest(file, named: str) -> None:
+def check_digest(file: Any, named: str) -> None:
     """`ValueError` where the open file does not fit its digest; a warning, which has it `named`, where it has none."""
     written = getattr(file, ATTRIBUTE, None)
     if written is None:
@@ -29,7 +30,7 @@ def check_digest(file, named: str) -> None:
         raise ValueError("it is damaged, or was changed since it was saved: its content does not fit its digest")
 
 
-def digest_of(file) -> str:
+def digest_of(file: Any) -> str:
     """The digest, 64 hexadecimal digits, of the dimensions, attributes and variables of an open file."""
     content = hashlib.sha256(repr((list(file.dimensions.items()), _attributes(file))).encode())
     for name, variable in sorted(file.variables.items()):
@@ -60,12 +61,12 @@ def digest_of_text(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def _attributes(held) -> list:
+def _attributes(held: Any) -> list[Any]:
     """Attributes of a file or a variable but for the digest, as plain values: what is read of them is what was set."""
     return sorted((name, _plain(value)) for name, value in held._attributes.items() if name != ATTRIBUTE)
 
 
-def _plain(value):
+def _plain(value: Any) -> Any:
     if isinstance(value, str):
         value = value.encode()
     return value if isinstance(value, bytes) else np.asarray(value).tolist()

@@ -8,6 +8,7 @@ JSON text in the attribute `eel`.
 import json
 import os
 import warnings
+from collections.abc import Callable
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -36,7 +37,7 @@ def software() -> str:
         return "eel_dynamics"
 
 
-def attributes_of(contents: Contents) -> dict:
+def attributes_of(contents: Contents) -> dict[str, Any]:
     """The attributes of a file, and of labelled arrays."""
     return {
         "software": software(),
@@ -47,7 +48,7 @@ def attributes_of(contents: Contents) -> dict:
     }
 
 
-def checked_path(argument: str, path) -> Path:
+def checked_path(argument: str, path: Any) -> Path:
     """`path`, where a file can be written. `ValueError` names the `argument`."""
     if not isinstance(path, (str, os.PathLike)) or Path(path).suffix != SUFFIX:
         raise ValueError(f"{argument} must be a path that ends in {SUFFIX}, got {shown(path)}")
@@ -55,7 +56,7 @@ def checked_path(argument: str, path) -> Path:
     return Path(path)
 
 
-def write(contents: Contents, path) -> None:
+def write(contents: Contents, path: Any) -> None:
     """Write `contents` to the file `path`, which has its name when it is complete.
 
     `ValueError` where the path or the contents do not fit; `NotWritten` where the file cannot be completed.
@@ -85,7 +86,7 @@ def write(contents: Contents, path) -> None:
         add_digest(file)
 
 
-def read(path, kind: str) -> Contents:
+def read(path: Any, kind: str) -> Contents:
     """The contents of a file that `write` made of a `kind` ("run" or "batch").
 
     `ValueError` in one line for a file that is truncated, damaged, foreign, a sweep, of another version or kind.
@@ -122,7 +123,7 @@ def read(path, kind: str) -> Contents:
     return contents
 
 
-def loaded(path, kind: str, made):
+def loaded(path: Any, kind: str, made: Callable[[Contents], Any]) -> Any:
     """`made(contents)` of the file `path`. `ValueError` in one line, as in `read`, where they do not fit together."""
     contents, named = read(path, kind), f"{kind} file {shown(os.fspath(path))}"
     if contents.axes != REP103:

@@ -58,7 +58,7 @@ def plain_of(value: Any) -> Any:
     return asdict(value)
 
 
-def law_of(plain: dict) -> Law | SampledLaw:
+def law_of(plain: dict[str, Any]) -> Law | SampledLaw:
     """The law that has become plain values."""
     if "rows" in plain:
         rows: dict[str, Any] = {name: np.frombuffer(b64decode(text), "<f8") for name, text in plain["rows"].items()}
@@ -68,7 +68,7 @@ def law_of(plain: dict) -> Law | SampledLaw:
     return Law(*terms, name=plain["name"], transition=plain["transition"])
 
 
-def _plain_body(body: Body) -> dict:
+def _plain_body(body: Body) -> dict[str, Any]:
     plain = body.arguments
     for name in HALF_AXES:
         value = plain[name]
@@ -91,7 +91,7 @@ def _plain_body(body: Body) -> dict:
     return plain
 
 
-def body_of(plain: dict) -> Body:
+def body_of(plain: dict[str, Any]) -> Body:
     """The body that has become plain values."""
     arguments = dict(plain)
     for name in HALF_AXES:
@@ -105,26 +105,26 @@ def body_of(plain: dict) -> Body:
     return Body(**arguments)
 
 
-def plain_robot(robot: Robot | None, body: Body) -> dict | None:
+def plain_robot(robot: Robot | None, body: Body) -> dict[str, Any] | None:
     """A robot on its `body` as plain values; None as it is. `ValueError` for a torque that is a function."""
     if robot is None:
         return None
     return {"parts": plain_of_robot(robot, body.length), "own_body": robot.body is not None}
 
 
-def robot_of(plain: dict | None, body: Body) -> Robot | None:
+def robot_of(plain: dict[str, Any] | None, body: Body) -> Robot | None:
     """The robot that has become plain values."""
     if plain is None:
         return None
     return Robot(**RobotReader().arguments(plain["parts"]) | {"body": body if plain["own_body"] else None})
 
 
-def accuracy_of(plain: dict) -> Accuracy | Budget:
+def accuracy_of(plain: dict[str, Any]) -> Accuracy | Budget:
     """The settings, or the budget of time, that have become plain values."""
     return Budget.of(plain["budget"]) if "budget" in plain else Accuracy(**plain)
 
 
-def stop_of(plain: dict | None) -> SimulationStopped | None:
+def stop_of(plain: dict[str, Any] | None) -> SimulationStopped | None:
     """The error that has become plain values."""
     if plain is None:
         return None
@@ -133,13 +133,13 @@ def stop_of(plain: dict | None) -> SimulationStopped | None:
     return error
 
 
-def each_once(values: tuple) -> dict:
+def each_once(values: tuple[Any, ...]) -> dict[str, Any]:
     """A row of values, of which many may be equal, as plain values."""
     places = {value: place for place, value in enumerate(dict.fromkeys(values))}
     return {"values": [plain_of(value) for value in places], "places": [places[value] for value in values]}
 
 
-def row_of(plain: dict, made: Callable) -> tuple:
+def row_of(plain: dict[str, Any], made: Callable[[Any], Any]) -> tuple[Any, ...]:
     """The row of `each_once`."""
     values = [made(value) for value in plain["values"]]
     return tuple(values[place] for place in plain["places"])
@@ -158,5 +158,5 @@ def _polynomial(body: Body, name: str) -> PolynomialHalfAxis:
     return found
 
 
-def _tuples(value):
+def _tuples(value: Any) -> Any:
     return tuple(_tuples(each) for each in value) if isinstance(value, list) else value

@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict
+from typing import Any
 
 import numpy as np
 from eel_base.wording import shown
@@ -21,7 +22,7 @@ from eel_dynamics.simulation.observations import OBSERVED, Observations
 OF_ROBOTS = "elastic", "damping_power", "damping_work"  # in the ledger
 
 
-def contents_of_run(run) -> Contents:
+def contents_of_run(run: Any) -> Contents:
     """The contents of a `Run`. `ValueError` for one without samples."""
     if not len(run.time):
         raise ValueError("a run without samples holds no data")
@@ -38,7 +39,7 @@ def contents_of_run(run) -> Contents:
     return Contents("run", values, arrays | _of_ledger(run.energy), run.axes)
 
 
-def fields_of_run(contents: Contents) -> dict:
+def fields_of_run(contents: Contents) -> dict[str, Any]:
     """The fields of the `Run` of these contents."""
     values, arrays = contents.values, contents.arrays
     if values.get("robot"):
@@ -63,7 +64,7 @@ def fields_of_run(contents: Contents) -> dict:
     }
 
 
-def fins_of(plain: Sequence[dict]) -> tuple[Fin, ...]:
+def fins_of(plain: Sequence[dict[str, Any]]) -> tuple[Fin, ...]:
     """The fins that have become plain values."""
     with_hold = (
         each | {"angle": RollHold(**each["angle"])} if isinstance(each["angle"], dict) else each for each in plain
@@ -82,7 +83,7 @@ def in_rep103_axes(contents: Contents) -> Contents:
 
 
 def contents_of_batch(
-    batch, out: Observations, works: np.ndarray, energy_at_start: np.ndarray, robots: np.ndarray | None
+    batch: Any, out: Observations, works: np.ndarray, energy_at_start: np.ndarray, robots: np.ndarray | None
 ) -> Contents:
     """The contents of a `Batch`, with all that was observed of its swimmers; without their robots and warnings."""
     values = {
@@ -102,7 +103,7 @@ def contents_of_batch(
     return Contents("batch", values, {name: each for name, each in arrays.items() if each.size})
 
 
-def with_warnings(batch, contents: Contents) -> Contents:
+def with_warnings(batch: Any, contents: Contents) -> Contents:
     """The `contents` of a `Batch`, and for each swimmer its robot and its warnings."""
     lines = [list(batch[index].warnings) if samples else [] for index, samples in enumerate(batch.samples)]
     robots = [plain.plain_robot(*each) for each in zip(batch.robots, batch.bodies, strict=True)]
@@ -141,7 +142,7 @@ def _ledger_of(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     return absent | {name: arrays[ENERGY + name] for name in LEDGER if name not in absent}
 
 
-def _count(name: str, value) -> int:
+def _count(name: str, value: Any) -> int:
     if not isinstance(value, int) or value < 0:
         raise ValueError(f"{name} must be a whole number >= 0, got {shown(value)}")
     return value

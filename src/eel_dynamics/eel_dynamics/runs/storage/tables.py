@@ -5,7 +5,7 @@ xarray and pandas are needed for theirs alone.
 """
 
 import csv
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,7 @@ from eel_dynamics.runs.storage.variables import LABELS, LEDGER, Contents
 COLUMNS = {"position": "xyz", "orientation": "xyzw", "center_of_mass": "xyz"}
 
 
-def needed(name: str, by: str, extra: str = "eel_dynamics[data]"):
+def needed(name: str, by: str, extra: str = "eel_dynamics[data]") -> Any:
     """The module `name`, which `by` needs. `ImportError` names the package and its `extra` that bring it."""
     try:
         return import_module(name)
@@ -27,7 +27,7 @@ def needed(name: str, by: str, extra: str = "eel_dynamics[data]"):
         raise ImportError(f"{by} needs {name} ({error}); install it with: pip install './src/{extra}'") from None
 
 
-def dataset_of(contents: Contents):
+def dataset_of(contents: Contents) -> Any:
     """An `xarray.Dataset` of all arrays, with units, and the file's attributes."""
     xarray = needed("xarray", "to_xarray")
     variables = {}
@@ -40,7 +40,7 @@ def dataset_of(contents: Contents):
     return xarray.Dataset(variables, coordinates, attributes_of(contents))
 
 
-def columns_of(run) -> dict[str, np.ndarray]:
+def columns_of(run: Any) -> dict[str, np.ndarray]:
     """The columns (T,) of a run's table by name: time, head, centre of mass, and the ledger where there is one."""
     columns = {"time": run.time}
     columns |= {
@@ -50,7 +50,7 @@ def columns_of(run) -> dict[str, np.ndarray]:
     return columns | ({} if run.energy is None else {name: run.energy[name] for name in LEDGER})
 
 
-def write_columns(columns: dict, path: Path):
+def write_columns(columns: Mapping[str, Any], path: Path) -> None:
     """Write `columns`, (n,) each by name, as a table (.csv). `NotWritten` where it cannot be completed."""
     with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)

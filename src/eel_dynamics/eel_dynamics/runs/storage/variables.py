@@ -5,8 +5,9 @@ They are those of `Observations` and `EnergyLedger`, and a few more. Files, labe
 documentation of `Run` and `Batch` take them from here.
 """
 
+from collections.abc import Callable
 from dataclasses import fields
-from typing import NamedTuple, TypeVar, get_type_hints
+from typing import Any, NamedTuple, TypeVar, get_type_hints
 
 import numpy as np
 from eel_model.axes import REP103
@@ -68,7 +69,7 @@ def variable_of(kind: str, name: str) -> Variable:
     return found._replace(dimensions=("swimmer", *found.dimensions))
 
 
-def documented_arrays(kind: str):
+def documented_arrays(kind: str) -> Callable[[Kind], Kind]:
     """Decorator of the dataclass of a `kind`: shape, unit and meaning of its arrays follow its docstring."""
 
     def documented(owner: Kind) -> Kind:
@@ -92,7 +93,7 @@ class Contents(NamedTuple):
     """
 
     kind: str
-    values: dict
+    values: dict[str, Any]
     arrays: dict[str, np.ndarray]
     axes: str = REP103
 
