@@ -98,14 +98,18 @@ class SteeredLaw:
 
     def _curvature(self) -> np.ndarray:
         size, speed = self.values["amplitude"], self.values["tempo"]
+        as_it_is = size is self._rest["amplitude"] and speed is self._rest["tempo"]
         zero: Any = np.zeros(self._swimmers) if self._swimmers else 0.0
         factors = [zero] * (6 * len(self._rows))  # of the rows, axis by axis and derivative by derivative
         for k, (frequency, axis) in enumerate(self._waves):
             s, c = np.sin(frequency * self.own_time), np.cos(frequency * self.own_time)
             if not self._swimmers:
                 s, c = float(s), float(c)
-            self._add(factors, axis, 2 * k, _product(size, c, -frequency * s, frequency, speed))
-            self._add(factors, axis, 2 * k + 1, _product(size, -s, -frequency * c, frequency, speed))
+            for row, (value, slope) in enumerate(((c, -frequency * s), (-s, -frequency * c)), 2 * k):
+                if as_it_is:  # of which there is the most
+                    self._add(factors, axis, row, (value, slope, -frequency * frequency * value))
+                else:
+                    self._add(factors, axis, row, _product(size, value, slope, frequency, speed))
             if frequency and axis == LAW_ROW["yaw"]:
                 for name, (now, later) in ROLLING.items():
                     number = self.values[name]
@@ -118,19 +122,17 @@ class SteeredLaw:
             if self.values[name] is not self._rest[name]:
                 value, rate, acceleration = self.values[name]
                 self._add(factors, LAW_ROW[bent], len(self._rows) - 1, (-value, -rate, -acceleration))
-        by_swimmer = np.array(factors).reshape(6, len(self._rows), *self._swimmers)
+        found = np.array(factors).reshape(6, len(self._rows), *self._swimmers)
         if self._swimmers:
-            by_swimmer = np.ascontiguousarray(by_swimmer.transpose(2, 0, 1))
-        return np.asarray(by_swimmer @ self._rows)
+            return np.asarray(np.ascontiguousarray(found.transpose(2, 0, 1)) @ self._rows)
+        return np.asarray(found.dot(self._rows))  # faster than @ for one
 
     def _add(self, factors: list[Any], axis: int, row: int, jet: Jet) -> None:
         """Add value, rate and acceleration to a row of an axis."""
-        count = len(self._rows)
-        value = 3 * axis * count + row
-        rate, acceleration = value + count, value + 2 * count
-        factors[value] = factors[value] + jet[0]
-        factors[rate] = factors[rate] + jet[1]
-        factors[acceleration] = factors[acceleration] + jet[2]
+        place = 3 * axis * len(self._rows) + row
+        for value in jet:
+            factors[place] = factors[place] + value
+            place += len(self._rows)
 
 
 def _product(number: Jet, f: Any, f1: Any, frequency: float, speed: Jet) -> tuple[Any, Any, Any]:
