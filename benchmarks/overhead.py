@@ -2,9 +2,11 @@
 """What observing, samples, ledger, error estimate and sweeps cost, by the motion alone."""
 
 import time
+import warnings
 from functools import partial
 
 import numpy as np
+from eel_dynamics.analysis.settling import Unsettled
 from eel_studies.sweeps.sweep import sweep
 from measuring import MOTION, Lines, median_ratio, times_in_turn
 
@@ -39,6 +41,7 @@ def overhead() -> Lines:
     for name in list(times)[1:]:
         yield f"simulate with {name}, by bare", median_ratio(times[name], times["bare"]), "times as long"
 
+    warnings.simplefilter("ignore", Unsettled)  # the runs of 10 s
     for duration in ("settled", 10.0):
         grid = partial(sweep, {"period": PERIODS}, gait="straight", duration=duration, progress=_silent)
         alone, threads = partial(_one_by_one, duration), {count: partial(grid, workers=count) for count in (1, 2)}
