@@ -31,6 +31,15 @@ def same_fields(one: Any, other: Any) -> bool:
     )
 
 
+class EqualByFields:
+    """Base of dataclasses that hold arrays: two are equal where all their fields are, and none can be hashed."""
+
+    def __eq__(self, other: object) -> bool:
+        return same_fields(self, other)
+
+    __hash__ = None  # type: ignore[assignment]  # typeshed has `object` hashable
+
+
 def _same_arrays(one: Any, other: Any) -> bool:
     if not (isinstance(one, np.ndarray) and isinstance(other, np.ndarray)):
         return False

@@ -25,7 +25,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Annotated, Any
 
 import numpy as np
-from eel_model.equality import same_fields
+from eel_model.equality import EqualByFields
 
 WORKS = (
     "actuator",
@@ -38,7 +38,7 @@ WORKS = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class EnergyLedger:
+class EnergyLedger(EqualByFields):
     """The energy ledger of one instant (floats) or of a run ((T,) arrays). Velocities are relative to the current.
 
     Energies, works and the residual are in J, powers in W. A power > 0 brings energy into body and water.
@@ -63,11 +63,6 @@ class EnergyLedger:
     elastic: Annotated[np.ndarray, "J", "elastic energy of a robot's springs, 0 without a robot"]
     damping_power: Annotated[np.ndarray, "W", "power of a robot's dampers, 0 without a robot"]
     damping_work: Annotated[np.ndarray, "J", "work of a robot's dampers since the start"]
-
-    def __eq__(self, other: object) -> bool:
-        return same_fields(self, other)
-
-    __hash__ = None  # type: ignore[assignment]  # typeshed has `object` hashable; this holds arrays
 
     def __repr__(self) -> str:
         shape = np.shape(self.residual)

@@ -34,7 +34,7 @@ from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.sampling import default_sample_period
 from eel_dynamics.runs.swim import Swim
 from eel_model.body.body import Body
-from eel_model.equality import same_fields
+from eel_model.equality import EqualByFields
 from eel_model.robot.actuators import at_limit
 from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
@@ -62,7 +62,7 @@ COMPANION_STEP = 2.0  # times the steps, of the companions
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Gradient:
+class Gradient(EqualByFields):
     """Derivatives of N measures by P parameters."""
 
     of: tuple[str, ...]  #: names of the measures
@@ -80,11 +80,6 @@ class Gradient:
         if measure not in self.of:
             raise KeyError(measure)
         return dict(zip(self.by, self.derivative[self.of.index(measure)].tolist(), strict=True))
-
-    def __eq__(self, other: object) -> bool:
-        return same_fields(self, other)
-
-    __hash__ = None  # type: ignore[assignment]  # typeshed has `object` hashable; this holds arrays
 
     def __repr__(self) -> str:
         return f"Gradient(of {', '.join(self.of)}; by {', '.join(self.by)})"

@@ -21,7 +21,7 @@ from eel_base.quantity import number, positive
 from eel_base.wording import shown
 from eel_dynamics.runs.run import Run
 from eel_model.body.body import Body
-from eel_model.equality import same_fields
+from eel_model.equality import EqualByFields
 from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
 
@@ -42,7 +42,7 @@ UNLIKELY = 1e-3  # probability of such residuals, for the noise given, below whi
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Identified:
+class Identified(EqualByFields):
     """P parameters that were fitted to measurements."""
 
     names: tuple[str, ...]
@@ -64,11 +64,6 @@ class Identified:
             raise KeyError(name)
         index = self.names.index(name)
         return float(self.value[index]), float(self.low[index]), float(self.high[index])
-
-    def __eq__(self, other: object) -> bool:
-        return same_fields(self, other)
-
-    __hash__ = None  # type: ignore[assignment]  # typeshed has `object` hashable; this holds arrays
 
     def __repr__(self) -> str:
         return f"Identified({', '.join(f'{name}={value:.4g}' for name, value in self.numbers.items())})"

@@ -8,7 +8,7 @@ import numpy as np
 from eel_base.wording import shown
 from eel_dynamics.analysis.measures import described
 from eel_dynamics.runs.run import Run
-from eel_model.equality import same_fields
+from eel_model.equality import EqualByFields
 
 from eel_studies.pictures import BLUE, GREY, LOOKS, Axes, Figure, write_picture
 from eel_studies.table import Table
@@ -22,7 +22,7 @@ FAR = 2.0  # times the front's greatest cost and speed: gaits beyond are not dra
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Front:
+class Front(EqualByFields):
     """The gaits of least cost at S speeds, by P parameters, slowest first.
 
     Speeds and costs are those of `runs`, whose errors are estimated; they begin at the wanted speed, and last twice as
@@ -43,11 +43,6 @@ class Front:
 
     def __len__(self) -> int:
         return len(self.runs)
-
-    def __eq__(self, other: object) -> bool:
-        return same_fields(self, other)
-
-    __hash__ = None  # type: ignore[assignment]  # typeshed has `object` hashable; this holds arrays
 
     def __repr__(self) -> str:
         return f"Front({len(self)} speeds, {self.cost_name} by {', '.join(self.names)})"
