@@ -6,10 +6,61 @@ import pytest
 from random_robots import drawn
 from random_scenes import with_weight_and_fins
 
-from eel_dynamics import Accuracy, SimulationStopped, simulate
+from eel_dynamics import Accuracy, SimulationStopped, simulate, simulate_batch
 
-FAST, ALL = 60, 5000
+FAST, ALL = 500, 5000
 EXACT = Accuracy(name="exact", resolution=120.0, tolerance=1e-7)  # at 36 the torque of some is off by a hundredth
+NEAR = Accuracy(name="near", resolution=60.0, tolerance=1e-6)
+ROUGH = Accuracy(name="rough", resolution=24.0, tolerance=1e-3)  # some twentieth of the error of a target of 0.03
+
+
+def error_of(run, exact) -> float:
+    """The error of a run's position and torque, whichever is greater."""
+    position = np.linalg.norm(run.position - exact.position, axis=1).max() / max(exact.path_length, 1.0)
+    torque = np.linalg.norm(run.torque - exact.torque, axis=2).max() / np.linalg.norm(exact.torque, axis=2).max()
+    return float(max(position, torque))
+
+
+def swum_together(seeds, accuracy, estimate: bool = True):
+    draws = [drawn(seed) for seed in seeds]
+    return simulate_batch(
+        [each.law for each in draws],
+        0.02,
+        robots=[each.robot for each in draws],
+        scenes=[each.scene for each in draws],
+        accuracy=accuracy,
+        estimate=estimate,
+        stations=5,
+        sample_period=0.01,
+    )
+
+
+def check_refused(seeds, runs):
+    refused = [(seed, error) for seed, error in zip(seeds, runs.error, strict=True) if error is not None]
+    for seed, error in refused:
+        assert any(part.name in str(error) for part in drawn(seed).robot.parts), (seed, error)
+    assert len(refused) <= 0.05 * len(seeds)
+
+
+def test_500_random_robots_run_or_are_refused_with_the_part_to_blame():
+    runs = swum_together(range(FAST), 0.1, estimate=False)
+    check_refused(range(FAST), runs)
+    assert np.isfinite(runs.torque).all() and np.isfinite(runs.joint_angle).all()
+
+
+LONG = [pytest.param(range(first, first + 100), marks=pytest.mark.soak) for first in range(0, ALL, 100)]
+
+
+@pytest.mark.parametrize("seeds", [range(0, FAST, 10), *LONG], ids=lambda seeds: f"{seeds[0]}-{seeds[-1]}")
+def test_many_random_robots_keep_their_target_or_tell(seeds):
+    target = 0.03
+    runs, exact = swum_together(seeds, target), swum_together(seeds, ROUGH, estimate=False)
+    check_refused(seeds, runs)
+    swum = [index for index in range(len(seeds)) if runs.error[index] is None and exact.error[index] is None]
+    missed = [index for index in swum if error_of(runs[index], exact[index]) > target]
+    told = [index for index in swum if runs[index].error_estimate.worst > target]
+    print(f"{len(seeds)} robots, {len(swum)} compared, {len(missed)} above the target, {len(told)} told")
+    assert not [seeds[index] for index in missed if index not in told]
 
 
 def swum(seed: int, accuracy, estimate: bool = True):
@@ -19,32 +70,21 @@ def swum(seed: int, accuracy, estimate: bool = True):
     )
 
 
-@pytest.mark.filterwarnings("ignore")
-@pytest.mark.parametrize("seeds", [range(FAST), pytest.param(range(FAST, ALL), marks=pytest.mark.soak)])
-def test_random_robots_run_or_are_refused_with_the_part_to_blame(seeds):
-    refused = 0
-    for seed in seeds:
-        try:
-            run = swum(seed, 1e-2)
-        except (SimulationStopped, ValueError) as error:
-            refused += 1
-            assert any(part.name in str(error) for part in drawn(seed).robot.parts), (seed, error)
-            continue
-        assert np.isfinite(run.torque).all() and np.isfinite(run.joint_angle).all(), seed
-    assert refused <= 0.05 * len(seeds)
-
-
-SEEN = 2, 7, 19, 21, 126, 128, 217, 283  # seeds that have missed their target unseen, before
+# Seeds that have missed their target unseen, before: motors and stops at their limits between two samples, a companion
+# that was as exact as the run by chance (158), and a torque at the start that was off by the grid (1206, 1430).
+SEEN = [(seed, 1e-3) for seed in (2, 158, 188, 202, 1223, 1430)] + [(seed, 1e-2) for seed in (1032, 1206, 1442)]
 
 
 @pytest.mark.filterwarnings("ignore")
-@pytest.mark.parametrize("seeds", [SEEN, pytest.param(range(100), marks=pytest.mark.soak)])
-def test_error_of_random_robots_is_within_the_target_or_told(seeds):
-    for seed in seeds:
-        run, exact = swum(seed, 1e-3), swum(seed, EXACT, False)
-        position = np.linalg.norm(run.position - exact.position, axis=1).max() / max(exact.path_length, 1.0)
-        apart = np.linalg.norm(run.torque - exact.torque, axis=2).max() / np.linalg.norm(exact.torque, axis=2).max()
-        assert max(position, apart) < 1e-3 or run.error_estimate.worst > 1e-3, (seed, position, apart)
+@pytest.mark.parametrize(
+    ("cases", "reference"),
+    [(SEEN, NEAR), pytest.param([(seed, 1e-3) for seed in range(100)], EXACT, marks=pytest.mark.soak)],
+)
+def test_error_of_random_robots_is_within_the_target_or_told(cases, reference):
+    for seed, target in cases:
+        run = swum(seed, target)
+        error = error_of(run, swum(seed, reference, False))
+        assert error < target or run.error_estimate.worst > target, (seed, error)
 
 
 def swims_in_water(count: int):
@@ -79,6 +119,5 @@ def test_error_of_random_robots_in_all_waters_is_within_the_target_or_told(count
     for seed, _, arguments in swims_in_water(count):
         fine = Accuracy(name="exact", resolution=40.0, tolerance=1e-6)
         run, exact = simulate(accuracy=1e-3, **arguments), simulate(accuracy=fine, estimate=False, **arguments)
-        position = np.linalg.norm(run.position - exact.position, axis=1).max() / max(exact.path_length, 1.0)
-        apart = np.linalg.norm(run.torque - exact.torque, axis=2).max() / np.linalg.norm(exact.torque, axis=2).max()
-        assert max(position, apart) < 1e-3 or run.error_estimate.worst > 1e-3, (seed, position, apart)
+        error = error_of(run, exact)
+        assert error < 1e-3 or run.error_estimate.worst > 1e-3, (seed, error)

@@ -70,8 +70,9 @@ LOOSER, FEWER_POINTS, LONGER_STEPS = 30.0, 0.5, 1.5
 FEW_POINTS, FEWER_OF_FEW = 22.0, 0.6
 FINE, LOOSER_THAN_FINE = 1e-6, 20.0
 # The errors of a robot's steps go with the tolerance itself, so that the distance to a companion of ten times the
-# tolerance is some nine times the error. Three times the error that this gives is a safe estimate.
-ROBOT_LOOSER, ROBOT_SAFETY = 10.0, 3.0
+# tolerance is some nine times the error. Half of it is a safe estimate. No less is one for a companion that is looser
+# still: where motors and stops reach their limits, it may be as exact as the run by chance.
+ROBOT_LOOSER, ROBOT_SAFETY = 10.0, 4.5
 LEAST_ROBOT_TIGHTER = 1.0 / 4.0
 ORDERS[ROBOTS] = (3,)
 ADAMS_ERROR = 3.0  # some times that of the embedded pair at the same tolerance
@@ -200,7 +201,8 @@ class Accuracy:
         """Part of the distance to a run with the settings of a `companion` that counts as the error."""
         if self.method != ROBOTS or companion.tolerance <= self.tolerance:
             return 1.0
-        return min(1.0, ROBOT_SAFETY / (companion.tolerance / self.tolerance - 1.0))
+        looser = min(ROBOT_LOOSER, companion.tolerance / self.tolerance)
+        return min(1.0, ROBOT_SAFETY / (looser - 1.0))
 
     def as_it_is(self) -> "Accuracy":
         """The same settings without a target. No scene and no motion changes them."""

@@ -49,10 +49,6 @@ class ErrorEstimate:
         """The greater of the two."""
         return max(self.position, self.torque or 0.0)
 
-    def times(self, share: float) -> "ErrorEstimate":
-        """The same, with `share` of its errors."""
-        return replace(self, position=share * self.position, torque=self.torque and share * self.torque)
-
     def at_least(self, share: float, other: "ErrorEstimate") -> "ErrorEstimate":
         """The same, with no error below `share` of that of `other`, where this is known."""
         position, torque = (

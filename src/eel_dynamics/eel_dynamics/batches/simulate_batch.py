@@ -20,7 +20,6 @@ from eel_base.wording import shown
 from eel_model.flow.flow import check_covers
 from numpy.typing import ArrayLike
 
-from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.batches.batch import Batch, Swimmer, batch_of
@@ -109,10 +108,10 @@ def simulate_batch(
     def swim(index: int) -> None:
         request = SwimRequest(Run, *swimmers[index], times, wrench[index], load)
         try:
-            settings_to_try = Accuracy.to_refine(request.setup.accuracy) if estimate else None
-            fits = wrench[index] == any(wrench) and len(request.setup.fins) == most_fins
+            request = request.to_refine() if estimate else request
+            fits = wrench[index] == any(wrench) and len(request.setup.fins) == most_fins and request.every == 1
             space = out[index] if fits else None
-            found = request.swim(request.simulation(settings_to_try), out=space)
+            found = request.swim(request.simulation(), out=space)
             found = with_error_estimate(found, request) if estimate else found
         except (SimulationStopped, ValueError) as error:
             errors[index] = _stopped_at_start(error)

@@ -27,12 +27,13 @@ COMPARED_EVERY, MANY_SAMPLES = 3, 100
 HALVINGS = 8  # of an unstable step, at most, in the search for a stable one
 
 
-def relative_errors(run, reference) -> ErrorEstimate:
+def relative_errors(run, reference, share: float = 1.0) -> ErrorEstimate:
     """Distance of `run` from `reference`, a run of the same swimmer with the same stations, at the reference's samples.
 
     Of the head's position: the greatest over the later half of the samples, relative to the length of the path, or of
     the body if that is longer. Of the torque: the greatest over samples and stations, relative to its own maximum,
-    which counts for no less than `least_torque`. growth_rate: of the distance of the heads.
+    which counts for no less than `least_torque`. growth_rate: of the distance of the heads. share: of the distances,
+    which counts; but at the start that of the torques counts in full, as the steps have no part in it yet.
     """
     time, here = reference.time, np.searchsorted(run.time, reference.time)
     distance = np.linalg.norm(run.position[here] - reference.position, axis=1)
@@ -40,10 +41,11 @@ def relative_errors(run, reference) -> ErrorEstimate:
     later = distance[time >= 0.5 * time[-1]]
     position, rate = float(later.max()) / scale, growth_rate_of(time, distance, SMALL * scale)
     if run.torque is None or reference.torque is None:
-        return ErrorEstimate(position, None, rate)
+        return ErrorEstimate(share * position, None, rate)
     least = least_torque(run.law, run.body_mass, run.body.length, float(time[-1]))
-    size, distance = torque_size(reference.torque).max(), torque_size(run.torque[here] - reference.torque).max()
-    return ErrorEstimate(position, float(distance / max(size, least)), rate)
+    size, apart = torque_size(reference.torque).max(), torque_size(run.torque[here] - reference.torque)
+    distance = max(share * apart.max(), apart[0].max())
+    return ErrorEstimate(share * position, float(distance / max(size, least)), rate)
 
 
 def with_error_estimate(swim: Any, request: Any) -> Any:
@@ -60,11 +62,10 @@ def with_error_estimate(swim: Any, request: Any) -> Any:
     for refinement in range(MOST_REFINEMENTS + 1):
         error = ErrorEstimate(np.inf, None)
         if companion is not None:
-            error = relative_errors(swim.run, companion.run)
             share = swim.run.accuracy.share_of_distance(companion.run.accuracy)
             if refinement:  # of a robot, whose grid is not as much finer as its steps are
                 share = max(share, min(1.0, (companion.run.nodes / swim.run.nodes) ** GRID_ORDER))
-            error = error.times(share)
+            error = relative_errors(swim.compared, companion.compared, share)
         if refinement and companion is not None:  # it falls no faster than this: else the two agree by chance
             share = swim.run.accuracy.tolerance / companion.run.accuracy.tolerance
             if request.setup.scene.friction in ("blended", "taylor"):
@@ -113,14 +114,15 @@ def _with_resampling(run, request, others: list):
 
 
 def _for_comparison(request):
-    """The `request` for what is compared: motion and torque, at some of the samples, the last one among them.
+    """The `request` for what is compared: motion and torque, at some of the instants, the last one among them.
 
     Adams' method is the cheaper one without a ledger.
     """
-    times = request.times
+    times = request.instants
     if len(times) > MANY_SAMPLES:
         times = times[(len(times) - 1) % COMPARED_EVERY :: COMPARED_EVERY]
-    return request.changed(scene=replace(request.setup.scene, ledger=False))._replace(load=False, times=times)
+    request = request.changed(scene=replace(request.setup.scene, ledger=False))
+    return request._replace(load=False, times=times, every=1)
 
 
 def _for_target(swim, target: float | None):

@@ -87,8 +87,7 @@ def simulate(
     seconds: Any = duration  # a text is refused below
     law = law_from(law, seconds, setup.body.length)
     request = SwimRequest.of(Run, law, setup, seconds, sample_period, load, runs=2 if estimate else 1)
-    if estimate:
-        request = request.changed(accuracy=Accuracy.to_refine(setup.accuracy))
+    request = request.to_refine() if estimate else request
     swim = request.swim_to_end(ProgressMonitor(float(seconds), progress).update)
     run: Run = (with_error_estimate(swim, request) if estimate else swim).run
     if run.error_estimate is not None and (missed := run.error_estimate.over_target(run.accuracy.target, seconds)):

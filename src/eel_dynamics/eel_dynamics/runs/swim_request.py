@@ -22,6 +22,8 @@ from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.simulation_setup import SimulationSetup, check_planar_law
 from eel_dynamics.simulation.stopping import SimulationStopped
 
+LEAST_COMPARED = 40  # gaps between the instants at which a robot's torque is compared
+
 Kind = TypeVar("Kind", bound=RunData)
 
 
@@ -34,12 +36,13 @@ class SwimResult(NamedTuple, Generic[Kind]):
     energy_at_start: float  # J
     stopped: SimulationStopped | None
     joints: JointMotion | None = None  # of a robot
+    compared: Any = None  # the run at all instants of the request, for the estimate of its error
 
 
 class SwimRequest(NamedTuple, Generic[Kind]):
     """A swimmer that swims by `law`, the times (T,) [s] of its samples, and whether to record wrench and load.
 
-    kind: class of the run.
+    kind: class of the run. every: so many instants are observed for each sample, for the estimate of the error.
     """
 
     kind: type[Kind]
@@ -48,6 +51,7 @@ class SwimRequest(NamedTuple, Generic[Kind]):
     times: np.ndarray
     wrench: bool
     load: bool
+    every: int = 1
 
     @staticmethod
     def of(
@@ -72,6 +76,22 @@ class SwimRequest(NamedTuple, Generic[Kind]):
         """The same with other fields of its `setup`."""
         return self._replace(setup=replace(self.setup, **changes))
 
+    def to_refine(self) -> "SwimRequest[Kind]":
+        """The same for a run whose error is measured, and that is made finer where it misses its target.
+
+        The torque of a robot jumps where motors and stops reach their limits: an error there is seen only by instants
+        that lie close together.
+        """
+        gaps = len(self.times) - 1
+        every = -(-LEAST_COMPARED // gaps) if self.setup.robot is not None and self.wrench and gaps else 1
+        return self.changed(accuracy=Accuracy.to_refine(self.setup.accuracy))._replace(every=every)
+
+    @property
+    def instants(self) -> np.ndarray:
+        """(N,) [s], at which the swimmer is observed: the samples, and those between them."""
+        between = np.arange(self.every) / self.every
+        return np.append(self.times[:-1, None] + np.diff(self.times)[:, None] * between, self.times[-1])
+
     def simulation(self, accuracy: Accuracy | None = None) -> Simulation:
         """A simulation at its start, with other settings if `accuracy` is given."""
         setup = self.setup if accuracy is None else replace(self.setup, accuracy=accuracy)
@@ -84,24 +104,37 @@ class SwimRequest(NamedTuple, Generic[Kind]):
         out: Observations | None = None,
     ) -> SwimResult[Kind]:
         """Swim it with a `simulation` of its own, at its start. look, out: as in `Simulation.record`."""
-        out, works, done, stopped = simulation.record(self.times, self.wrench, self.load, look, out)
+        instants = self.instants
+        out, works, done, stopped = simulation.record(instants, self.wrench, self.load, look, out)
         start, (steps, _, evaluations) = simulation.energy_at_start, simulation.evaluations
-        run = self.kind.of(
-            self.setup,
-            out,
-            works=works[:done],
-            start=start,
-            time=self.times[:done],
-            wrench=self.wrench,
-            load=self.load,
-            law=self.law,
-            accuracy=simulation.accuracy,
-            steps=steps,
-            evaluations=evaluations,
-            nodes=len(simulation.grid.x),
-            joints=simulation.joints,
-        )
-        return SwimResult(run, out, works, start, stopped, simulation.joints)
+        joints = simulation.joints
+
+        def run_of(out: Observations, time: np.ndarray) -> Kind:
+            return self.kind.of(
+                self.setup,
+                out,
+                works=works[: len(time)],
+                start=start,
+                time=time,
+                wrench=self.wrench,
+                load=self.load,
+                law=self.law,
+                accuracy=simulation.accuracy,
+                steps=steps,
+                evaluations=evaluations,
+                nodes=len(simulation.grid.x),
+                joints=joints,
+            )
+
+        run = compared = run_of(out, instants[:done])
+        if self.every > 1:
+            setup, all_of_it = self.setup, out.arrays()
+            out = Observations.empty(len(self.times), len(setup.x), self.wrench, self.load, fins=len(setup.fins))
+            for name, array in out.arrays().items():
+                array[...] = all_of_it[name][:: self.every]
+            works, joints = works[:: self.every], joints and joints.every(self.every)
+            run = run_of(out, compared.time[:: self.every])
+        return SwimResult(run, out, works, start, stopped, joints, compared)
 
     def swim_to_end(self, look: Callable[[float], None] | None = None) -> SwimResult[Kind]:
         """Swim it. `SimulationStopped`, with the samples so far as its `run`, where it does not come to its end."""

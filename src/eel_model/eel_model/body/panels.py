@@ -13,6 +13,7 @@ from eel_model.body.grid import Panel
 
 FILLED = 8  # the number of nodes is a multiple of this: what any processor takes at once
 WIDEST_PANEL = 24  # points; a longer panel is cut into equal parts
+LONG_OF_ROBOT = 4.0 / 3.0  # times the points of a long panel where modes bend others
 CLOSEST = 1e-3  # lengths between a kink of the body and a knot of a law that still gets a panel
 
 
@@ -24,7 +25,8 @@ def panels_of(
 
     Together they have about `resolution` points per body length, and each has three to spare. With `edges`, none has
     fewer than 2 + resolution / 8: a mode bends a joint's short panel, which must be finer too where the rest is. With
-    three points the torque of a stiff joint that starts is off by 0.008, with four by 2e-5, with five by 1e-7. Where
+    three points the torque of a stiff joint that starts is off by 0.008, with four by 2e-5, with five by 1e-7. The part
+    behind the last joint needs more points per length than a bent body, or its torque was off by 0.001 at 18. Where
     the internal `wrench` is wanted, the first panel has more: the body and its loads go like roots of X there (they
     weigh little).
     So has the last panel where they do so at the tail.
@@ -35,8 +37,9 @@ def panels_of(
     kinks = np.array([0.0, *body.panel_ends])
     inner = [knot for knot in knots if np.min(np.abs(kinks - knot)) > least and kinks[1] < knot < body.length]
     panels, start, spare, least_points = [], 0.0, 3, 2 + nearest(resolution / 8.0) if edges else 0
+    dense = resolution * (LONG_OF_ROBOT if edges else 1.0)
     for end in sorted({*body.panel_ends, *inner, *edges}):
-        points = max(least_points, spare + nearest(resolution * (end - start) / body.length))
+        points = max(least_points, spare + nearest(dense * (end - start) / body.length))
         graded = "start" if start == 0.0 else "end" if end == body.length and body.pointed_tail else ""
         if graded:
             points = 1 + (max(points, 3 + nearest(math.sqrt(resolution))) if wrench else points)

@@ -85,6 +85,10 @@ class JointMotion:
     def __init__(self, on_grid: ModesOnGrid, places: dict[str, tuple[int, int]], rows: np.ndarray):
         self._on_grid, self._places, self._rows = on_grid, places, rows
 
+    def every(self, count: int) -> "JointMotion":
+        """That at every so many of the instants."""
+        return JointMotion(self._on_grid, self._places, self._rows[::count])
+
     def _of(self, name: str) -> np.ndarray:
         return self._rows[:, slice(*self._places[name])]
 
