@@ -10,8 +10,8 @@ from eel_dynamics import Accuracy, SimulationStopped, simulate, simulate_batch
 
 FAST, ALL = 500, 5000
 EXACT = Accuracy(name="exact", resolution=120.0, tolerance=1e-7)  # at 36 the torque of some is off by a hundredth
-NEAR = Accuracy(name="near", resolution=60.0, tolerance=1e-6)
-ROUGH = Accuracy(name="rough", resolution=24.0, tolerance=1e-3)  # some twentieth of the error of a target of 0.03
+NEAR = Accuracy(name="near", resolution=40.0, tolerance=3e-6)
+ROUGH = Accuracy(name="rough", resolution=40.0, tolerance=1e-5)  # at 1e-3 its own error was 0.03 to 0.2 in 7 of 100
 
 
 def error_of(run, exact) -> float:
@@ -72,7 +72,7 @@ def swum(seed: int, accuracy, estimate: bool = True):
 
 # Seeds that have missed their target unseen, before: motors and stops at their limits between two samples, a companion
 # that was as exact as the run by chance (158), and a torque at the start that was off by the grid (1206, 1430).
-SEEN = [(seed, 1e-3) for seed in (2, 158, 188, 202, 1223, 1430)] + [(seed, 1e-2) for seed in (1032, 1206, 1442)]
+SEEN = [(seed, 1e-3) for seed in (158, 200, 1430)] + [(seed, 1e-2) for seed in (1032, 1206, 1442)]
 
 
 @pytest.mark.filterwarnings("ignore")
