@@ -135,6 +135,20 @@ def test_the_error_under_steps_of_commands_is_not_underrated():
     assert measured.error_estimate.torque > apart / size > 2e-5
 
 
+def test_series_springs_that_ring_after_each_command_keep_their_target():
+    torques = []
+    for accuracy in (1e-3, Accuracy(name="exact", resolution=40.0, tolerance=1e-6)):
+        simulation, torque = swimming(Robot.named("series_elastic"), accuracy=accuracy, stations=11), []
+        for k in range(25):
+            for index, joint in enumerate(simulation.robot.joints):
+                simulation.command(joint.name, position=0.3 * np.sin(2.0 * np.pi * (0.02 * k - index / 8.0)))
+            simulation.advance(0.02 * (k + 1))
+            torque.append(simulation.observe(load=False).torque)
+        torques.append(np.array(torque))
+    torque, exact = torques
+    assert np.linalg.norm(torque - exact, axis=2).max() < 1e-3 * np.linalg.norm(exact, axis=2).max()
+
+
 @pytest.mark.fault(
     "parameters",
     "a command for an unknown joint, one without a servo, in two modes at once, or with NaN",

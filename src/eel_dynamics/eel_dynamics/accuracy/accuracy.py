@@ -40,6 +40,8 @@ CONTROL_STEPS_ERRORS = 300.0
 # The same of a robot's steps, which are of order 3: errors were 0.2 to 6 times the tolerance (18 for a tail with little
 # damping), at any tolerance.
 ROBOT_STEPS, SAFE_ROBOT_STEPS = 10.0, 20.0
+# Times as many behind series springs: they ring after each command, and the torque's error is 50 times the tolerance.
+RINGING = 4.0
 POINTS_PER_DECADE = 8.0  # per body length: one block of nodes, which processors take at once
 COARSE_POINTS = 7.0, -3.0  # per decade, and at a target of one, where these are fewer: for runs that are made finer
 # The pair's output between steps is of order 4 and Adams' is a cubic: below this target its torque needs shorter steps.
@@ -189,11 +191,14 @@ class Accuracy:
         tolerance = max(FINEST_TOLERANCE, self.target / steps)
         return replace(self.as_it_is(), tolerance=tolerance, method="dormand_prince", order=5)
 
-    def for_robot(self) -> "Accuracy":
-        """These settings in a scene, for the steps of a robot. Steps of one length stay as they are."""
+    def for_robot(self, rings: bool = False) -> "Accuracy":
+        """These settings in a scene, for the steps of a robot. Steps of one length stay as they are.
+
+        rings: whether it has series springs.
+        """
         if self.method in ("classical", ROBOTS):
             return self
-        steps = ROBOT_STEPS if self.refinable else SAFE_ROBOT_STEPS
+        steps = (ROBOT_STEPS if self.refinable else SAFE_ROBOT_STEPS) * (RINGING if rings else 1.0)
         tolerance = self.tolerance if self.target is None else max(FINEST_TOLERANCE, self.target / steps)
         return replace(self, tolerance=tolerance, method=ROBOTS, order=3)
 

@@ -176,7 +176,9 @@ class SimulationSetup:
         """The settings of the accuracy in this scene."""
         assert not isinstance(self.accuracy, Budget)  # `Simulation` has replaced it
         settings = self.accuracy.in_scene(self.scene)
-        return settings if self.robot is None else settings.for_robot()
+        if self.robot is None:
+            return settings
+        return settings.for_robot(any(servo and servo.series_stiffness is not None for servo in self.robot.servos))
 
 
 @lru_cache(maxsize=64)
