@@ -31,7 +31,7 @@ def swum_together(seeds, accuracy, estimate: bool = True):
         accuracy=accuracy,
         estimate=estimate,
         stations=5,
-        sample_period=0.01,
+        sample_period=0.001,  # at three samples the torque may be a twentieth of what it is between them
     )
 
 
