@@ -31,7 +31,7 @@ def swum_together(seeds, accuracy, estimate: bool = True):
         accuracy=accuracy,
         estimate=estimate,
         stations=5,
-        sample_period=0.001,  # at three samples the torque may be a twentieth of what it is between them
+        sample_period=0.0005,  # at fewer samples the torque may be much less than its maximum
     )
 
 
