@@ -29,7 +29,8 @@ from eel_studies.workers import in_threads
 TARGET = 1e-3  # of settings that have none of their own
 FINER = 0.1  # of the target
 SAMPLES, STATIONS = 96, 33  # a torque that jumps from limit to limit shows between fewer of them
-MOST_EVALUATIONS = 1e4  # per simulated second and decade of the target: a map takes minutes, not hours
+# Per simulated second and decade of the target, and of a cell in all as in this duration [s]: a map takes minutes.
+MOST_EVALUATIONS, LONGEST = 1e4, 4.0
 OUTCOMES = ACCURATE, SENSITIVE, INACCURATE, STOPPED, REFUSED, UNCHECKED, SILENT = (
     *("accurate", "sensitive", "inaccurate", "stopped", "refused", "unchecked", "silent"),
 )
@@ -167,6 +168,7 @@ def _cell(outcome: str, text: str = "", **about: Any) -> np.ndarray:
 
 
 def _swum(swim: Swim, target: float) -> Run | Exception:
-    most = MOST_EVALUATIONS * max(1.0, -np.log10(target)) / min(1.0, float(swim.duration))
-    how = {"sample_period": float(swim.duration) / SAMPLES, "stations": STATIONS, "most_evaluations": most}
+    duration = float(swim.duration)
+    most = MOST_EVALUATIONS * max(1.0, -np.log10(target)) * min(max(1.0, duration), LONGEST) / duration
+    how = {"sample_period": duration / SAMPLES, "stations": STATIONS, "most_evaluations": most}
     return attempt(swim._replace(scene=replace(swim.scene, ledger=True)), **how)
