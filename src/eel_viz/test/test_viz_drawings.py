@@ -320,8 +320,8 @@ def test_the_summary_counts_path_speed_and_greatest_torque():
     assert "law **falling**, swimming" in text
     assert "until 3.00 s: mean speed **0.500 m/s**, path 1.50 m" in text  # the torque of 4 s has not come
     assert "now +0.6 N m at X = 0.00 m" in text
-    assert "greatest torque C3 in 3 s **0.7 N m** at X = 0.50 m" in text
-    assert "since the start -0.7 N m at X = 0.50 m, 2.00 s" in text
+    assert "greatest torque |C3| in 3 s **0.7 N m** at X = 0.50 m" in text
+    assert "since the start **-0.7 N m** at X = 0.50 m, 2.00 s" in text
     assert not summary.add_torque(6 * 10**9, np.array([0.0, 0.5, 1.0]), np.array([0.5, 0.1, 0.2]))
     assert summary.text() == text
     assert summary.add_position(6 * 10**9, np.array([3.0, 0.0, 0.0]))

@@ -149,9 +149,10 @@ class Summary:
             lines.append(f"until {self.stamp / 1e9:.2f} s: {path}")
         if self._torques.peak.value:
             now, recent, peak = self._torques
-            lines.append(f"greatest torque C3 in 3 s **{recent.value:.2g} N m** at X = {recent.x:.2f} m")
-            lines.append(f"now {now.value:+.2g} N m at X = {now.x:.2f} m")
-            lines.append(f"since the start {peak.value:+.2g} N m at X = {peak.x:.2f} m, {peak.stamp / 1e9:.2f} s")
+            lines.append(f"greatest torque |C3| in 3 s **{recent.value:.2g} N m** at X = {recent.x:.2f} m")
+            lines.append(f"greatest C3 now {now.value:+.2g} N m at X = {now.x:.2f} m")
+            most = f"**{peak.value:+.2g} N m** at X = {peak.x:.2f} m, {peak.stamp / 1e9:.2f} s"
+            lines.append(f"greatest C3 since the start {most}")
         return "  \n".join(line for line in lines if line)
 
     def numbers(self) -> dict[str, float | str]:
@@ -180,7 +181,8 @@ def look_text(scales: Drawing, body: Body | None = None) -> str:
     """Markdown: what to look at, a sentence each, and the scales of the arrows; with what `body` has of parts."""
     lines = [
         "The eel swims towards its eyes, along the white arrow; bends run from nose to tail.",
-        "Red and blue on its flanks: the torque **C3** that bends it sideways, on the scale below the picture.",
+        "Red and blue on its flanks: the torque **C3** that bends it sideways, on the scale of the last 3 s below "
+        "the picture (C1 twists, C2 bends it up and down).",
         f"Arrows: the **force of the water**, {scales.load_scale:g} m for 1 N/m; magenta at nose and tail, "
         f"{scales.end_force_scale:g} m for 1 N. Violet ribbon: what the tail leaves in the **wake**.",
     ]

@@ -16,7 +16,7 @@ LETTERS = 0.043  # height of a capital [radii]
 AHEAD = (0.06, 0.26)  # from head to begin and end of the arrow [body lengths]
 NEARER = 0.25
 SLOW = 0.01  # body lengths per second, below which no direction is shown
-NAME = "greatest torque C3 in 3 s"
+NAME = "greatest torque |C3| in 3 s"
 ABOVE, BESIDE = 0.28, 0.12  # of the words over the body, and over the arrow [radii]
 Frame = tuple[np.ndarray, float]  # centre (3,) and radius [m] of what the camera sees
 
