@@ -24,11 +24,11 @@ def panels_of(
     """Panels between the kinks of `body`, the `knots` [m] of a law's splines and the `edges` [m] of a robot's modes.
 
     Together they have about `resolution` points per body length, and each has three to spare. With `edges`, none has
-    fewer than 2 + resolution / 8: a mode bends a joint's short panel, which must be finer too where the rest is. With
-    three points the torque of a stiff joint that starts is off by 0.008, with four by 2e-5, with five by 1e-7. The part
-    behind the last joint needs more points per length than a bent body, or its torque was off by 0.001 at 18. Where
-    the internal `wrench` is wanted, the first panel has more: the body and its loads go like roots of X there (they
-    weigh little).
+    fewer than 2 + (resolution + 1.5) / 8: a mode bends a joint's short panel, which must be finer too where the rest
+    is. With three points the torque of a stiff joint that starts is off by 0.008 to 0.04, with four by 2e-5, with five
+    by 1e-7. The part behind the last joint needs more points per length than a bent body, or its torque was off by
+    0.001 at 18. Where the internal `wrench` is wanted, the first panel has more: the body and its loads go like roots
+    of X there (they weigh little).
     So has the last panel where they do so at the tail.
 
     Processors take up to eight nodes at once. The grid fills these: the panels that would have a point next get one.
@@ -36,7 +36,7 @@ def panels_of(
     least = CLOSEST * body.length
     kinks = np.array([0.0, *body.panel_ends])
     inner = [knot for knot in knots if np.min(np.abs(kinks - knot)) > least and kinks[1] < knot < body.length]
-    panels, start, spare, least_points = [], 0.0, 3, 2 + nearest(resolution / 8.0) if edges else 0
+    panels, start, spare, least_points = [], 0.0, 3, 2 + nearest((resolution + 1.5) / 8.0) if edges else 0
     dense = resolution * (LONG_OF_ROBOT if edges else 1.0)
     for end in sorted({*body.panel_ends, *inner, *edges}):
         points = max(least_points, spare + nearest(dense * (end - start) / body.length))
