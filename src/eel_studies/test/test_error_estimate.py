@@ -115,7 +115,7 @@ def test_a_refined_run_has_a_smaller_error():
 def test_the_estimate_of_a_refined_run_falls_with_the_tolerance_at_most(monkeypatch):
     """Errors vary unevenly with the tolerance, so that two runs may have nearly the same one."""
     apart = iter([ErrorEstimate(5e-3, None), ErrorEstimate(1e-12, None)])
-    monkeypatch.setattr(companion, "relative_errors", lambda run, other: next(apart))
+    monkeypatch.setattr(companion, "relative_errors", lambda run, other, share: next(apart))
     run = simulate(straight(), 1.0, scene=Scene(internal_wrench=False, ledger=False), accuracy=1e-3)
     assert run.error_estimate.position == pytest.approx(5e-3 * run.accuracy.tolerance / (1e-3 / settings.STEPS_ERRORS))
 
