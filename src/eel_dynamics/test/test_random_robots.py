@@ -64,7 +64,7 @@ def test_many_random_robots_keep_their_target_or_tell(seeds):
     if silent:  # the torque jumps at stops: the reference itself may be late there
         runs, exact = swum_together(silent, target), swum_together(silent, EXACT, estimate=False)
     unseen = [seed for index, seed in enumerate(silent) if error_of(runs[index], exact[index]) > target]
-    # 12 of 5,000: ten where a torque jumps at a stop, and run and companion are late alike, two of three and five steps.
+    # 12 of 5,000: ten of robots with stops, where a torque jumps and both are late alike; two of five steps.
     assert len(unseen) <= 0.02 * len(seeds), unseen
 
 
