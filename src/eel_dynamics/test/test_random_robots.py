@@ -65,7 +65,7 @@ def test_many_random_robots_keep_their_target_or_tell(seeds):
         runs, exact = swum_together(silent, target), swum_together(silent, EXACT, estimate=False)
     unseen = [seed for index, seed in enumerate(silent) if error_of(runs[index], exact[index]) > target]
     # 12 of 5,000: ten of robots with stops, where a torque jumps and both are late alike; two of five steps.
-    assert len(unseen) <= 0.02 * len(seeds), unseen
+    assert len(unseen) <= 2 * (len(seeds) // 100), unseen  # none of the 50 that are swum each time
 
 
 def swum(seed: int, accuracy, estimate: bool = True):
