@@ -22,9 +22,9 @@ def test_a_page_without_the_marker_lines_is_refused():
 
 
 def test_a_value_is_replaced_wherever_it_stands():
-    page = "It grows by <!-- growth -->4<!-- / --> = <!-- growth --><!-- / -->, by <!-- other -->5<!-- / -->.\n"
+    page = "It grows by <!--growth-->4<!--/--> = <!--growth--><!--/-->, by <!--other-->5<!--/-->.\n"
     bare = page.replace("-->4<", "--><")
-    assert with_part(page, "growth", r"\1 m") == bare.replace("growth --><", r"growth -->\1 m<")
+    assert with_part(page, "growth", r"\1 m") == bare.replace("growth--><", r"growth-->\1 m<")
 
 
 def test_a_table_has_a_line_for_its_head_and_each_row():

@@ -162,7 +162,7 @@ def test_page_names_every_figure_and_takes_its_numbers_from_the_runs(readings, k
     for other in (control, runs[0]):
         outputs.write({}, notes.values_of(readings, other, kern[0]))
         said.append(outputs.page.read_text())
-    page, other = (re.sub("<!-- [a-z_]+ -->|<!-- / -->", "", each) for each in said)
+    page, other = (re.sub("<!--[a-z_]+-->|<!--/-->", "", each) for each in said)
     assert set(re.findall(r"\]\((\w+)\.svg\)", page)) == set(command.FIGURES)
     x, y, z = runs[0].position[-1]
     assert f"({x:+.2f}, {y:+.2f}, {z:+.2f}) m" in " ".join(page.split())

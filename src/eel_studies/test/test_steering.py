@@ -140,6 +140,6 @@ def test_the_page_is_written(tmp_path, capsys):
     shutil.copy(PAGE, page)
     assert main(["--points", "3", "--page", str(page), "--out", str(tmp_path)]) == 0
     text = page.read_text()
-    assert "e^<!-- exponent -->1.468<!-- / --> a period" in text and "(steering.svg)" in text
+    assert "e^<!--exponent-->1.468<!--/--> a period" in text and "(steering.svg)" in text
     assert "0 mm,4.339,4.339," in (tmp_path / "steering.csv").read_text()
     assert (tmp_path / "steering.png").stat().st_size > 10_000

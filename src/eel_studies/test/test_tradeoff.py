@@ -213,10 +213,10 @@ def test_the_kept_pages_are_written_anew_and_keep_their_words(tmp_path):
     for words in (swum, drawn):
         assert main([*words.split(), "--out", str(tmp_path)]) == 0
     short, accuracy = ((tmp_path / f"{name}.md").read_text() for name in ("tradeoff", "accuracy"))
-    assert "the scene <!-- gait -->straight<!-- / -->" in short and "](tradeoff_straight.png)" in short
+    assert "the scene <!--gait-->straight<!--/-->" in short and "](tradeoff_straight.png)" in short
     names = {"delivered.png", "delivered.svg"}
     assert names <= {path.name for path in tmp_path.iterdir()}
-    assert "<!-- swims -->2<!-- / --> random swims" in accuracy and "no target was missed in silence" in accuracy
+    assert "<!--swims-->2<!--/--> random swims" in accuracy and "no target was missed in silence" in accuracy
 
 
 @pytest.mark.parametrize("words, named", [("--count 0", "--count"), ("--seed -1", "--seed")])

@@ -2,7 +2,7 @@
 """Pages in Markdown: tables, and parts between marker lines that a command writes.
 
 A part stands between the lines `<!-- NAME: written by ... -->` and `<!-- end of NAME -->`. A value within a sentence
-stands between `<!-- NAME -->` and `<!-- / -->`; it may occur more than once.
+stands between `<!--NAME-->` and `<!--/-->`; it may occur more than once.
 """
 
 import os
@@ -25,7 +25,7 @@ def with_part(page: str, name: str, text: str) -> str:
     found = re.search(f"({first}).*?(?={re.escape(last)})", page, re.DOTALL)
     if found:
         return f"{page[: found.start()]}{found[1]}{text}\n{page[found.end() :]}"
-    written, count = re.subn(rf"(<!-- {mark} -->)[^\n]*?(?=<!-- / -->)", lambda value: value[1] + text, page)
+    written, count = re.subn(rf"(<!--{mark}-->)[^\n]*?(?=<!--/-->)", lambda value: value[1] + text, page)
     if not count:
         raise ValueError(f"the page must have the lines '<!-- {name}: written by ... -->' and {last!r}")
     return written
