@@ -129,9 +129,9 @@ class RunData:
 
     @classmethod
     def of_snapshots(cls, snapshots: Sequence[Snapshot], swimmer: Any, law: Law, **others: Any) -> Self:
-        """The run that the `snapshots` of a `swimmer` tell, a `Simulation` or others that observe.
+        """The run that the `snapshots` of a `swimmer` hold: of a `Simulation`, or of another object with `observe`.
 
-        law: what it is told to swim by. others: further fields of the run. Its steps are not counted.
+        law: the one that the swimmer follows. others: further fields of the run. Its numbers of steps are 0.
         """
         names = (*(name for name in OBSERVED if name not in WHOLE), "time", "closure_torque", "closure_force")
         rows = {name: [getattr(each, name) for each in snapshots] for name in names}

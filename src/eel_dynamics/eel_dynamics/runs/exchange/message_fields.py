@@ -33,7 +33,8 @@ def _by_axis(**names: str) -> dict[str, MessageField]:
 
 POSE = {"position": MessageField("position", parts="xyz"), "orientation": MessageField("orientation", parts="xyzw")}
 TWIST = {"angular": MessageField("twist", ANGULAR, "xyz"), "linear": MessageField("twist", LINEAR, "xyz")}
-FIELDS: dict[str, dict[str, MessageField]] = {  # by topic, and by the path of the field in its message
+# Of each topic: the path of a field in its message, and what the field holds.
+FIELDS: dict[str, dict[str, MessageField]] = {
     "head_pose": {f"pose.{name}": each for name, each in POSE.items()},
     "head_twist": {f"twist.{name}": each for name, each in TWIST.items()},
     "odom": {
