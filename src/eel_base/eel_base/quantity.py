@@ -8,6 +8,8 @@ ROS node declares its parameters from the same fields. Metadata of a field:
     exclusive       the minimum itself is refused
     whole           a whole number, though a float
     after           the name of another field, than which this one must be greater
+    profile         a number, or a function along the body
+    plain           no number: the class checks it
     choices         of a text
     number          a text or a number
     changeable      of a ROS parameter: while the node runs (True), or with effect at the next reset (`AT_RESET`)
@@ -16,7 +18,7 @@ ROS node declares its parameters from the same fields. Metadata of a field:
 import math
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, dataclass, field, fields
-from typing import Any, Self, TypeVar
+from typing import Any, ClassVar, Self, TypeVar
 
 import numpy as np
 
@@ -42,17 +44,39 @@ def quantity(
     return field(default=default, metadata=metadata | more)
 
 
+def required(unit: str, description: str, minimum: float | None = None, **more: Any) -> Any:
+    """As `quantity`, of a field without a default."""
+    return quantity(MISSING, unit, description, minimum, **more)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Quantities:
-    """Base of parameter sets. Every field gets the type of its default, or a `ValueError` names it (`checked`)."""
+    """Base of parameter sets. Every field gets the type of its default, or a `ValueError` names it (`checked`).
+
+    A field whose default is None may be None. `what` begins the names of the fields in errors. A subclass with
+    `repr=False` shows the fields that differ from their defaults.
+    """
+
+    what: ClassVar[str] = ""
 
     def __post_init__(self) -> None:
         for item in fields(self):
-            object.__setattr__(self, item.name, checked(item, getattr(self, item.name), item.name))
+            value, about = getattr(self, item.name), item.metadata
+            if about.get("plain") or (value is None is item.default) or (about.get("profile") and callable(value)):
+                continue
+            take = _in_bounds if item.default is None else checked
+            object.__setattr__(self, item.name, take(item, value, f"{self.what} {item.name}".lstrip()))
         for later, before in ((item, item.metadata.get("after")) for item in fields(self)):
             if before and not getattr(self, later.name) > (least := getattr(self, before)):
                 unit, got = later.metadata["unit"], getattr(self, later.name)
                 raise ValueError(f"{later.name} must be > {before} ({least:g} {unit}), got {got}")
+
+    def __repr__(self) -> str:
+        values = ((item, getattr(self, item.name)) for item in fields(self))
+        said = (
+            f"{item.name}={value!r}" for item, value in values if value is not item.default and value != item.default
+        )
+        return f"{type(self).__name__}({', '.join(said)})"
 
     @classmethod
     def among(cls, values: Mapping[str, Any]) -> Self:
@@ -177,15 +201,21 @@ def checked(item: Field[Any], value: Any, name: str) -> Any:
         return value
     if isinstance(default, tuple):
         return _checked_row(default, value, name)
-    if isinstance(default, int):
-        _of_kind(isinstance(value, int) and not isinstance(value, bool), value, f"{name} must be an integer")
-    bounds = {key: about[key] for key in ("minimum", "maximum", "exclusive") if key in about}
     if default is None and number(name, value) == 0.0:
         return None
+    return _in_bounds(item, value, name)
+
+
+def _in_bounds(item: Field[Any], value: Any, name: str) -> float:
+    """`value` as a number within the metadata of the field `item`."""
+    about, integer = item.metadata, isinstance(item.default, int)
+    if integer and not about.get("whole"):
+        _of_kind(isinstance(value, int) and not isinstance(value, bool), value, f"{name} must be an integer")
+    bounds = {key: about[key] for key in ("minimum", "maximum", "exclusive") if key in about}
     result = number(name, value, about.get("unit", ""), **bounds)
     if about.get("whole") and result != int(result):
         raise ValueError(f"{name} must be a whole number, got {result:g}")
-    return int(value) if isinstance(default, int) else result
+    return int(value) if integer else result
 
 
 def _of_kind(good: bool, value: Any, rule: str) -> Any:

@@ -52,18 +52,17 @@ def time_scale(twist: np.ndarray, length: float) -> float:
     return min(length / speed if speed else np.inf, 1.0 / spin if spin else np.inf)
 
 
-def checked_quaternion(name: str, quaternion: ArrayLike) -> np.ndarray:
-    """`quaternion` (x, y, z, w) as an array (4,), normalised (`unit_quaternion`)."""
-    return np.array(unit_quaternion(name, checked_row(name, quaternion, 4).tolist()))
-
-
-def check_planar(position: np.ndarray, orientation: np.ndarray, twist: np.ndarray) -> None:
-    """`ValueError` unless the initial state lies in the plane z = const and stays there."""
-    x, y, _, _ = orientation.tolist()
-    if abs(x) > 1e-12 or abs(y) > 1e-12:
-        raise ValueError(f"orientation must be a turn about z in a planar scene, got {shown(orientation.tolist())}")
-    roll, pitch, _, _, _, heave = twist.tolist()
-    if roll or pitch or heave:
-        raise ValueError(
-            f"twist must lie in the plane of a planar scene (Omega_1 = Omega_2 = V_3 = 0), got {shown(twist.tolist())}"
-        )
+def checked_state(planar: bool, position: ArrayLike, orientation: ArrayLike, twist: ArrayLike) -> InitialState:
+    """The state of these arguments of `Simulation`. `ValueError` where a `planar` scene does not allow it."""
+    place, turn = checked_row("position", position, 3), checked_row("orientation", orientation, 4).tolist()
+    quaternion, motion = unit_quaternion("orientation", turn), checked_row("twist", twist, 6)
+    if planar:
+        x, y, _, _ = quaternion
+        if abs(x) > 1e-12 or abs(y) > 1e-12:
+            raise ValueError(f"orientation must be a turn about z in a planar scene, got {shown(list(quaternion))}")
+        roll, pitch, _, _, _, heave = rates = motion.tolist()
+        if roll or pitch or heave:
+            raise ValueError(
+                f"twist must lie in the plane of a planar scene (Omega_1 = Omega_2 = V_3 = 0), got {shown(rates)}"
+            )
+    return InitialState(place, np.array(quaternion), motion)

@@ -23,9 +23,10 @@ the printed load of the nose, change the momentum of body and water, and the thr
 a run shows how much of a motion is due to the wake. It is no model of a fish.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from typing import ClassVar
 
-from eel_base.quantity import Quantities, checked, documented, positive, quantity
+from eel_base.quantity import Quantities, documented, quantity
 from eel_base.wording import shown
 
 import eel_core
@@ -42,6 +43,8 @@ class Scene(Quantities):
     """Physics of a run. Immutable; every field has a default. `ValueError` names a field that does not fit.
 
     Fields, with default, meaning, unit, and bounds or choices:"""
+
+    what: ClassVar[str] = "scene"
 
     planar: bool = quantity(
         False, "", "motion in the plane z = 0 only: one angle in place of a rotation; a pitch term is refused"
@@ -97,17 +100,8 @@ class Scene(Quantities):
     fluid_density: float = quantity(1000.0, "kg/m^3", "density of the water", 0.0)
     viscosity: float = quantity(1e-6, "m^2/s", "kinematic viscosity of the water", 0.0)
 
-    def __repr__(self) -> str:
-        others = [item for item in fields(self) if getattr(self, item.name) != item.default]
-        return f"Scene({', '.join(f'{item.name}={getattr(self, item.name)!r}' for item in others)})"
-
     def __post_init__(self) -> None:
-        for item in fields(self):
-            value, name = getattr(self, item.name), f"scene {item.name}"
-            if item.default is not None:
-                object.__setattr__(self, item.name, checked(item, value, name))
-            elif value is not None:
-                object.__setattr__(self, item.name, positive(name, value, item.metadata["unit"]))
+        super().__post_init__()
         if self.weight and self.metacentric_height:
             raise ValueError(
                 f"scene metacentric_height must be 0 m where weight is on, got {self.metacentric_height} m: give the "

@@ -2,7 +2,6 @@
 """Robots: parts and their bounds, and what the mechanics get of them."""
 
 import copy
-import math
 import pickle
 from itertools import pairwise
 
@@ -186,11 +185,11 @@ def test_references_are_the_law_s_bend_from_midpoint_to_midpoint():
 def test_the_law_is_imposed_where_no_motor_and_no_part_is():
     x = np.array([0.1, 0.3, 0.59, 0.61, 0.9])
     tail = mode_table(Robot.named("passive_tail"), BODY)
-    assert tail.imposed(x).tolist() == [[True, True]] * 3 + [[True, False]] * 2
+    assert tail.imposed(x).T.tolist() == [[True, True]] * 3 + [[True, False]] * 2
     servos = mode_table(Robot.named("eight_servos"), BODY)
-    assert servos.imposed(x).tolist() == [[True, False]] * 5
+    assert servos.imposed(x).T.tolist() == [[True, False]] * 5
     hinge = mode_table(Robot([Joint(0.6, "pitch", width=0.04, stiffness=1.0)]), BODY)
-    assert hinge.imposed(x).tolist() == [[True, True]] * 2 + [[False, True]] * 2 + [[True, True]]
+    assert hinge.imposed(x).T.tolist() == [[True, True]] * 2 + [[False, True]] * 2 + [[True, True]]
     both = mode_table(Robot([Joint(0.3, actuator=Servo()), PassiveTail(0.6, 1.0)]), BODY)
     assert both.projection[0].sum() == pytest.approx(0.6) and not both.projection[1:].any()
 
@@ -210,8 +209,9 @@ def test_a_stiff_gear_adds_rotor_and_friction_to_the_joint_and_a_series_spring_d
         Robot([Joint(0.3, armature=1e-3, damping=0.1, actuator=stiff), Joint(0.5, armature=1e-3, actuator=soft)]), BODY
     )
     assert table.armature == pytest.approx([2e-3, 1e-3]) and np.diag(table.damping) == pytest.approx([0.12, 0.0])
-    assert table.actuators.inertia == pytest.approx([1e-3, 1e-3]) and table.actuators.series.tolist() == [False, True]
-    assert table.actuators.torque_limit.tolist() == [math.inf, math.inf] and len(table.actuators) == 2
+    assert [mode for mode, _ in table.motors] == [0, 1] and [motor for _, motor in table.motors] == [stiff, soft]
+    assert [each.inertia for each in (stiff, soft)] == pytest.approx([1e-3, 1e-3])
+    assert [each.has_spring for each in (stiff, soft)] == [False, True]
 
 
 def test_the_moment_of_a_muscle_is_projected_on_its_modes():

@@ -7,7 +7,7 @@ from eel_model.axes import REP103
 
 import eel_core
 from eel_dynamics.curvature.law_follower import LawFollower
-from eel_dynamics.simulation.bending.shape_of_run import shapes_of_run
+from eel_dynamics.simulation.bending.modes_on_grid import shapes_of_run
 from eel_dynamics.simulation.simulation import Simulation
 
 

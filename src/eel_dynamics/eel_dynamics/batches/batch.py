@@ -34,7 +34,7 @@ from eel_dynamics.runs.storage.run_contents import (
 )
 from eel_dynamics.runs.storage.tables import dataset_of, frame_of_all, needed
 from eel_dynamics.runs.storage.variables import COUNTS, Contents, documented_arrays
-from eel_dynamics.simulation.bending.joint_motion import MotionOfMany
+from eel_dynamics.simulation.bending.joint_motion import Motion
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import FINS, LOAD, Observations
 from eel_dynamics.simulation.stopping import SimulationStopped
@@ -92,7 +92,7 @@ class Batch:
     mode_amplitude: np.ndarray | None = None
     mode_rate: np.ndarray | None = None
     _out: tuple[Any, ...] = ()  # observations, works, energy at the start, of all, for `__getitem__`
-    _joints: MotionOfMany | None = None
+    _joints: Motion | None = None
 
     def __len__(self) -> int:
         return len(self.laws)

@@ -10,17 +10,14 @@ from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.body.body import Body
 from eel_model.flow.flow import Flow
+from eel_model.initial_state import InitialState
 from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.runs.motions import LAWS
-from eel_dynamics.simulation.simulation_setup import (
-    SimulationSetup,
-    check_planar_law,
-    checked_stations,
-)
+from eel_dynamics.simulation.simulation_setup import SimulationSetup, check_planar_law, checked_stations
 
 
 def swimmers_of(
@@ -61,11 +58,10 @@ def swimmers_of(
     swimmers = []
     for index, (law, *own) in enumerate(zip(laws, bodies, scenes, settings, flows, robots, fins, strict=True)):
         more: dict[str, Any] = dict(zip(names, own, strict=True)) | {"stations": x[own[0].length]}
-        state = tuple(rows[index] for rows in states)
+        more |= dict(zip(InitialState._fields, (rows[index] for rows in states), strict=True))
         try:
-            setup = SimulationSetup.of(initial_state=state, most_evaluations=most, **more)
-            if setup.scene.planar:
-                check_planar_law(law)
+            setup = SimulationSetup.of(most_evaluations=most, **more)
+            check_planar_law(law, setup.scene)
         except ValueError as error:
             raise ValueError(f"swimmer {index}: {error}") from None
         swimmers.append((law, setup))

@@ -30,7 +30,7 @@ from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
 from eel_dynamics.runs.settled_duration import duration_of
 from eel_dynamics.runs.swim_request import SwimRequest
-from eel_dynamics.simulation.bending.joint_motion import JointMotion, MotionOfMany
+from eel_dynamics.simulation.bending.joint_motion import JointMotion, Motion
 from eel_dynamics.simulation.energy import WORKS
 from eel_dynamics.simulation.observations import FINS, Observations
 from eel_dynamics.simulation.stopping import SimulationStopped
@@ -133,7 +133,7 @@ def simulate_batch(
     swum = [Swimmer(law, *(getattr(setup, name) for name in Swimmer._fields[1:])) for law, setup in swimmers]
     robots = None
     if any(setup.robot for _, setup in swimmers):
-        robots = MotionOfMany.of(joints, samples, len(times))
+        robots = Motion.of_many(joints, samples, len(times))
     found = settings, errors, estimates, counts, robots
     return batch_of(swum, found, times, out, works, start, wrench, load, stations)
 

@@ -20,7 +20,7 @@ from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
-from eel_dynamics.simulation.bending.joint_motion import JointMotion, KeptMotion
+from eel_dynamics.simulation.bending.joint_motion import JointMotion, Motion
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import FINS, LOAD, OBSERVED, WRENCH, Observations, Snapshot
 
@@ -86,7 +86,7 @@ class RunData:
         time: np.ndarray,
         wrench: bool,
         load: bool,
-        joints: JointMotion | KeptMotion | None = None,
+        joints: JointMotion | Motion | None = None,
         **others: Any,
     ) -> Self:
         """The run of the samples in `out` that were reached.
@@ -109,8 +109,8 @@ class RunData:
             observed[name] = observed[name][:, : len(setup.fins)]
         robot = None
         if joints is not None:
-            observed |= {name: array[: len(time)] for name, array in joints.arrays().items()}
-            robot = joints.ledger()[: len(time)]
+            observed |= {name: array[: len(time)] for name, array in joints.arrays.items()}
+            robot = joints.ledger[: len(time)]
         energies, powers, closure = (observed.pop(name) for name in WHOLE)
         return cls(
             body=setup.body,

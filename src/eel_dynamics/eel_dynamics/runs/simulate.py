@@ -72,17 +72,8 @@ def simulate(
             and `Run.joint_angle` and the like are what they do; None: the law is imposed.
         fins: a list of `Fin`, and of pairs of them (`Fin.pair`); None: none.
     """
-    setup = SimulationSetup.of(
-        body=body,
-        scene=scene,
-        accuracy=accuracy,
-        stations=stations,
-        initial_state=(position, orientation, twist),
-        most_evaluations=most_evaluations,
-        flow=flow,
-        robot=robot,
-        fins=fins,
-    )
+    swimmer = body, scene, accuracy, stations, position, orientation, twist, flow, robot, fins
+    setup = SimulationSetup.of(*swimmer, most_evaluations)
     duration = settling_time(law, setup) if until_settled(duration) else duration
     seconds: Any = duration  # a text is refused below
     law = law_from(law, seconds, setup.body.length)

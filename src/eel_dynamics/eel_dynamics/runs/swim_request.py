@@ -64,8 +64,7 @@ class SwimRequest(NamedTuple, Generic[Kind]):
         runs: int = 1,
     ) -> "SwimRequest[Kind]":
         """The request of these arguments of `simulate`, of which `runs` are kept at once. `ValueError` as there."""
-        if setup.scene.planar:
-            check_planar_law(law)
+        check_planar_law(law, setup.scene)
         period = default_sample_period([law], duration) if sample_period is None else sample_period
         times, wrench = checked_times(duration, period), setup.scene.internal_wrench
         check_covers(setup.flow, float(times[-1]))
@@ -168,13 +167,9 @@ def simulated_again(
         raise ValueError(f"run must begin at t = 0 to be simulated again, got {run.time[0]:g} s")
     axes, run = run.axes, run.in_axes(REP103)
     orientation = run.orientation[0] / np.linalg.norm(run.orientation[0])
-    setup = SimulationSetup.of(
-        accuracy=accuracy,
-        stations=run.x,
-        initial_state=(run.position[0], orientation, run.twist[0]),
-        most_evaluations=most_evaluations,
-        **run.swimmer,
-    )
+    start = {"position": run.position[0], "orientation": orientation, "twist": run.twist[0]}
+    how = {"accuracy": accuracy, "stations": run.x, "most_evaluations": most_evaluations}
+    setup = SimulationSetup.of(**run.swimmer, **start, **how)
     sample_period = float(run.time[1] - run.time[0]) / finer if len(run.time) > 1 else 1.0
     load = load or run.fluid_force is not None
     request = SwimRequest.of(type(run), law, setup, float(run.time[-1]), sample_period, load)

@@ -101,7 +101,7 @@ class ErrorMeter:
         """As the `march` has done before its start: `March.from_start`."""
         if (there := self._companion) is not None:
             try:
-                self._companion = type(there).from_start(there.setup, law, origin, there.settings)
+                self._companion = March.from_start(there.setup, law, origin, there.settings)
             except FAILURES:
                 self._companion = None
         if self._has_same_grid(march):

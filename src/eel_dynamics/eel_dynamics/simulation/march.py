@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The march in time of a swimmer: under one law after another, on a grid that fits the law."""
+"""The march in time of a swimmer: under one law after another, on a grid that fits the law.
+
+A robot, whose joints, tails and muscles bend by themselves, takes the steps of eel_core/bending/rosenbrock.hpp, at any
+`Accuracy.method`.
+"""
 
 from collections.abc import Callable
 from copy import deepcopy
@@ -7,6 +11,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.fins.fins import given_angles, knots_of, servo_time
@@ -15,10 +20,13 @@ from eel_model.initial_state import InitialState, time_scale
 from eel_model.robot.robot import Robot
 
 import eel_core
+from eel_dynamics.accuracy.error_estimate import TORQUE_FLOOR
 from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
 from eel_dynamics.accuracy.step_bounds import step_bounds_of
 from eel_dynamics.curvature.curvature_samples import CurvatureSample
 from eel_dynamics.curvature.law_follower import LawFollower
+from eel_dynamics.simulation.bending.joint_motion import JointMotion
+from eel_dynamics.simulation.bending.modes_on_grid import RobotTables
 from eel_dynamics.simulation.discretisation import Discretisation, discretise
 from eel_dynamics.simulation.observations import Observations, Snapshot
 from eel_dynamics.simulation.sample_check import first_bad_sample
@@ -39,6 +47,7 @@ class March:
         time: [s], the present.
         settings: of the grid.
         discretisation: body and scene on the grid.
+        robot: its modes on the grid; None without one.
         follower: what drives the shape, and its blends.
         law_on_grid: the law or the samples in force, on the grid.
         energy_at_start: [J], kinetic and potential.
@@ -48,33 +57,29 @@ class March:
         self.setup, self._needs, self._time_scale = setup, needs, setup.time_scale
         self.time, self.settings = 0.0, settings
         self._commands: dict[str, float] = {}  # rad, of fins
-        self.discretisation = self._discretise(settings)
+        self._rows: np.ndarray | None = None  # (T, R), the numbers of a robot's coordinates in the last `record`
+        self.discretisation, self.robot = self._on_grid(settings)
         self.follower = LawFollower(self.discretisation.tabulation, setup.default_transition, law, origin)
-        self.core = self._new_core()
-        self.law_on_grid, self._bounds = self.follower.law_on_grid, self._step_bounds()
+        self.core: Any = (eel_core.March if self.robot is None else eel_core.BentMarch)(*self._mechanics)
         self._hand_over_law()
         position, orientation, _ = setup.initial_state
-        self.energy_at_start = self._start(position, orientation, setup.initial_twist)
+        shape = () if self.robot is None else self.robot.at_start(self.law_on_grid, self._reference)
+        self.energy_at_start: float = self.core.start(position, orientation, setup.initial_twist, *shape)
         if not np.isfinite(self.energy_at_start):
             if self.core.outside is not None:
                 raise self._left_grid(self.core.outside)
             raise SimulationStopped(0.0, "kinetic energy", self.energy_at_start, "start slower")
 
+    def _on_grid(self, settings: GridSettings) -> tuple[Discretisation, RobotTables | None]:
+        setup, table = self.setup, self.setup.modes
+        further = b"" if table is None else table.points.tobytes()
+        here = discretise(setup.body, setup.scene, settings, setup.x.tobytes(), further, setup.fins)
+        return here, None if table is None else RobotTables.of(table, here.grid, here.tabulation)
+
     @property
-    def _method(self) -> tuple[str, int, bool]:
-        return self.setup.settings.method, self.setup.settings.order, bool(self.setup.scene.planar)
-
-    def _discretise(self, settings: GridSettings) -> Discretisation:
-        return discretise(self.setup.body, self.setup.scene, settings, self.setup.x.tobytes(), fins=self.setup.fins)
-
-    def _new_core(self) -> Any:
-        return eel_core.March(self.discretisation.swimmer, *self._method)
-
-    def _start(self, *state) -> float:
-        return self.core.start(*state)
-
-    def _change_core(self) -> None:
-        self.core.change(self.discretisation.swimmer, *self._method)
+    def _mechanics(self) -> tuple[Any, ...]:
+        swimmer, settings, planar = self.discretisation.swimmer, self.setup.settings, bool(self.setup.scene.planar)
+        return (swimmer, *((settings.method, settings.order) if self.robot is None else (self.robot.modes,)), planar)
 
     @classmethod
     def from_start(
@@ -147,33 +152,34 @@ class March:
 
     def _change_grid(self, settings: GridSettings):
         old, twist = self.discretisation.grid, self.twist
-        self.discretisation = new = self._discretise(settings)
-        self.follower.move(new.tabulation, old.interpolation_at(new.tabulation.x))
+        self.discretisation, self.robot = self._on_grid(settings)
+        there = self.discretisation.tabulation
+        self.follower.move(there, old.interpolation_at(there.x))
         self.settings = settings
-        self._change_core()
+        self.core.change(*self._mechanics)
         self._hand_over_law()
         self.core.set_twist(twist)
 
     def _hand_over_law(self, smoothly: bool = False):
         """Continue under the follower's law. The next step begins anew, unless the motion goes on `smoothly`."""
-        self.law_on_grid, self._bounds = self.follower.law_on_grid, self._step_bounds()
-        ledger, water = bool(self.setup.scene.ledger), self._water(smoothly)
-        self.core.follow(self.law_on_grid, self._breakpoints, self._bounds, ledger, *water)
-
-    @property
-    def _breakpoints(self) -> list[float]:
-        """Times [s] at which a derivative of shape, flow or fins jumps."""
-        setup = self.setup
+        setup, robot, follower = self.setup, self.robot, self.follower
+        self.law_on_grid, self._bounds = follower.law_on_grid, self._step_bounds()
         flow = () if setup.flow is None else setup.flow.breakpoints
-        return sorted({*self.follower.breakpoints, *flow, *knots_of(setup.fins)})
-
-    def _water(self, smoothly: bool) -> tuple:
-        """Current and flow, whether the motion goes on `smoothly`, and what the fins' servos are given."""
-        return self.setup.current, self.setup.core_flow, smoothly, given_angles(self.setup.fins, self._commands)
+        breakpoints = sorted({*follower.breakpoints, *flow, *knots_of(setup.fins)})  # s: a derivative jumps there
+        water = setup.current, setup.core_flow, smoothly, given_angles(setup.fins, self._commands)
+        if robot is None:
+            self.core.follow(self.law_on_grid, breakpoints, self._bounds, bool(setup.scene.ledger), *water)
+            return
+        bent, self._reference = robot.law(follower, self.discretisation.tabulation)
+        scale = min(follower.time_scale, self._time_scale, 1.0)
+        floor = TORQUE_FLOOR * self.discretisation.mass * (setup.body.length / scale) ** 2
+        steps = breakpoints, self._bounds, floor, bool(setup.scene.ledger)
+        self.core.follow(bent, self._reference, robot.drive, robot.push, *steps, *water)
 
     def _step_bounds(self) -> eel_core.StepBounds:
         setup, follower, here = self.setup, self.follower, self.discretisation
-        return step_bounds_of(
+        of_flow = np.inf if setup.flow is None else setup.flow.time_scale
+        bounds = step_bounds_of(
             accuracy=setup.settings,
             ledger=bool(setup.scene.ledger),
             between_samples=follower.between_samples,
@@ -181,11 +187,12 @@ class March:
             mass=here.mass,
             length=setup.body.length,
             speed=follower.speed(setup.body.length),
-            scale=min(
-                follower.time_scale, self._time_scale, here.weight_time, setup.flow_time_scale, servo_time(setup.fins)
-            ),
+            scale=min(follower.time_scale, self._time_scale, here.weight_time, of_flow, servo_time(setup.fins)),
             most_evaluations=setup.most_evaluations,
         )
+        if self.robot is not None and setup.settings.method == "classical":  # steps of one length
+            return with_tolerance(bounds, np.inf)
+        return bounds
 
     # -- march
 
@@ -224,10 +231,12 @@ class March:
     def record(self, times: np.ndarray, out: Observations, works: np.ndarray, wrench: bool, load: bool, look) -> tuple:
         """As `Simulation.record`, into `out` and `works` (T, 6) [J]."""
         done, status = 0, MARCHED
+        self._rows = None if self.robot is None else self._empty_rows(len(times))
+        rows = () if self._rows is None else (self._rows,)
         while status == MARCHED and done < len(times):
             event, status = self._pass_event(), UNFINISHED
             while status == UNFINISHED:
-                done, status = self._record(times, done, out, works, bool(wrench), bool(load), event)
+                done, status = self.core.record(times, done, out.whole, works, *rows, bool(wrench), bool(load), event)
                 if status == MARCHED and done < len(times):
                     status = self.core.advance(event)
                 if look is not None and status == UNFINISHED:
@@ -235,8 +244,8 @@ class March:
             self.time = self.core.time
         checked = bool(self.setup.scene.ledger) and self.setup.settings.method == "classical"
         floor = self._bounds.momentum_floor**2 / self.discretisation.mass if checked else np.inf
-        robot = None if self.joints is None else self.joints.ledger()
-        failure = first_bad_sample(out, works, done, self.energy_at_start, floor, robot)
+        ledger = None if self.joints is None else self.joints.ledger
+        failure = first_bad_sample(out, works, done, self.energy_at_start, floor, ledger)
         if failure:
             done, quantity, value = failure
         if done:
@@ -248,16 +257,25 @@ class March:
             return done, SimulationStopped(self.time, quantity, value, remedy(self.setup.settings))
         return done, None if status == MARCHED else self._stopped(status)
 
-    def _record(self, times: np.ndarray, first: int, out: Observations, works: np.ndarray, *rest) -> tuple[int, int]:
-        return self.core.record(times, first, out.whole, works, *rest)
-
     def _stopped(self, status: int) -> SimulationStopped:
-        if status != MARCHED and self.core.outside is not None:
-            return self._left_grid(self.core.outside)
+        """The error for the `status` of a march; of a robot with the part that is to blame, and what would help."""
         height, flow = self.core.state[2], self.setup.flow
-        if flow is not None and height > flow.surface_height:
-            return SimulationStopped(self.time, "the head is above the surface of the flow, z", height, "dive deeper")
-        return stopped_by(status, self.time, self._bounds, self.setup.settings)
+        if status != MARCHED and self.core.outside is not None:
+            stopped = self._left_grid(self.core.outside)
+        elif flow is not None and height > flow.surface_height:
+            what = "the head is above the surface of the flow, z"
+            stopped = SimulationStopped(self.time, what, height, "dive deeper")
+        else:
+            stopped = stopped_by(status, self.time, self._bounds, self.setup.settings)
+        if self.robot is None:
+            return stopped
+        singular = self.core.singular_mode() if status == SINGULAR else None
+        part = shown(self.robot.on_grid.part_of(self.core.hardest if singular is None else singular))
+        if status == SINGULAR:
+            hint = f"{part} has no inertia of its own: give it an armature, or a support apart from the others"
+        else:
+            hint = f"{part} asks for the shortest steps: give it damping or an armature; or {stopped.hint}"
+        return SimulationStopped(stopped.time, stopped.quantity, stopped.value, hint)
 
     def _left_grid(self, where: tuple[float, ...]) -> SimulationStopped:
         """The error for a swimmer with a point at a time [s] and a place [m] where the flow is not known."""
@@ -265,11 +283,26 @@ class March:
         found = self.setup.flow and self.setup.flow.outside(time, place)
         return left_grid(time, place, *(found or ("", np.nan)))
 
-    joints: Any = None  # of a robot: `JointMotion` of the last `record`
+    # -- joints of a robot
+
+    @property
+    def joints(self) -> JointMotion | None:
+        """As `Simulation.joints`."""
+        return None if self._rows is None else self._motion(self._rows)
+
+    def _empty_rows(self, samples: int) -> np.ndarray:
+        return np.zeros((samples, max(end for _, end in self.core.row.values())))
+
+    def _motion(self, rows: np.ndarray) -> JointMotion:
+        assert self.robot is not None
+        return JointMotion(self.robot.on_grid, self.core.row, rows)
 
     def command(self, joint: str, kind: str, value: float) -> None:
-        """Of a robot alone: `BentMarch.command`."""
-        raise ValueError("joints can be commanded where there is a robot, got none")
+        """As `Simulation.command`. kind: angle [rad], rate [rad/s], torque [N m], or law."""
+        assert self.robot is not None
+        modes, table = [motor.mode for motor in self.robot.on_grid.motors], self.robot.on_grid.table
+        mode = table.name.index(joint)
+        self.core.command(modes.index(mode), kind, float(table.sign[mode] * value))
 
     # -- the present
 
@@ -278,16 +311,16 @@ class March:
         scene = self.setup.scene
         wrench, load = bool(wrench and scene.internal_wrench), bool(load)
         snapshot = Snapshot(self.time, self.setup.x, wrench, load, len(self.setup.fins))
-        if not self._observe(snapshot, wrench, load):
+        rows = () if self.robot is None else (self._empty_rows(1),)
+        for row in rows:
+            snapshot.keep_joints(self._motion(row))
+        if not self.core.observe(snapshot.whole, *rows, wrench, load):
             raise self._stopped(SINGULAR)
         if self.setup.flow is not None and self.core.outside is not None:
             raise self._left_grid(self.core.outside)
         if scene.ledger:
             snapshot.keep_ledger(np.array(self.core.works), self.energy_at_start)
         return snapshot
-
-    def _observe(self, snapshot: Snapshot, wrench: bool, load: bool) -> bool:
-        return self.core.observe(snapshot.whole, wrench, load)
 
     @property
     def twist(self) -> np.ndarray:
@@ -318,3 +351,9 @@ class March:
         self._hand_over_law()
         self.core.set_state(state.position, state.orientation, relative)
         self.energy_at_start += energy - present
+
+
+def with_tolerance(bounds: eel_core.StepBounds, tolerance: float) -> eel_core.StepBounds:
+    """The same `bounds` with another tolerance; infinite: steps of one length."""
+    names = ["longest", "smallest", "length", "momentum_floor", "part_of_span", "most_steps", "spare_steps"]
+    return eel_core.StepBounds(tolerance=tolerance, **{name: getattr(bounds, name) for name in names})

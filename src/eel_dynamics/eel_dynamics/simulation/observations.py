@@ -152,7 +152,7 @@ class Snapshot(Observations):
     @property
     def joints(self) -> dict[str, np.ndarray]:
         """The arrays of `JOINT_ARRAYS` at the instant, without the dimension "time"; empty without a robot."""
-        return {} if self._joints is None else {name: row[0] for name, row in self._joints.arrays().items()}
+        return {} if self._joints is None else {name: row[0] for name, row in self._joints.arrays.items()}
 
     def keep_ledger(self, works: np.ndarray, energy_at_start: float) -> None:
         """Have a ledger, from the `works` (6,) [J] since the start and the energy [J] there."""
@@ -162,7 +162,7 @@ class Snapshot(Observations):
     def energy(self) -> EnergyLedger | None:
         """One float per field; None without a ledger."""
         if self._energy is None and self._works is not None:
-            robot = None if self._joints is None else self._joints.ledger()[0]
+            robot = None if self._joints is None else self._joints.ledger[0]
             self._energy = EnergyLedger.of(self.energies, self.powers, self._works, self._energy_at_start, robot)
         return self._energy
 

@@ -8,7 +8,7 @@ from eel_base.wording import shown
 from eel_model.body.body import Body
 from eel_model.flow.flow import Flow, core_flow, parts_of
 from eel_model.flow.functions import FlowField
-from eel_model.initial_state import InitialState, time_scale
+from eel_model.initial_state import InitialState, checked_state, time_scale
 from eel_model.scene import Scene
 from numpy.typing import NDArray
 
@@ -22,7 +22,7 @@ from eel_dynamics.simulation.discretisation import discretise
 from eel_dynamics.simulation.march import MARCHED, SINGULAR, UNFINISHED
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
-from eel_dynamics.simulation.simulation_setup import check_flow, checked_state
+from eel_dynamics.simulation.simulation_setup import check_flow
 from eel_dynamics.simulation.stopping import SimulationStopped, stopped_by
 
 LEFT_OUT = -1
@@ -104,7 +104,7 @@ class SampledSwimmers:
         The nodes stay those of the samples: `ValueError` for a flow that asks for more.
         """
         self.check(rows)
-        state = checked_state(self.scene, position, orientation, twist)
+        state = checked_state(self.scene.planar, position, orientation, twist)
         relative, water = state.in_water(self._setup.current), self._water_of(flow, state)
         scale = np.inf if flow is None else flow.time_scale
         self._bounds[index] = bounds = self._bounds_of(relative, scale)

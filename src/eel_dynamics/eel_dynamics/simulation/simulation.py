@@ -20,6 +20,7 @@ from eel_model.body.body import Body
 from eel_model.fins.fins import Fin, checked_commands
 from eel_model.flow.flow import Flow
 from eel_model.flow.stream import CurrentStream
+from eel_model.initial_state import checked_state
 from eel_model.robot.actuators import Servo
 from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
@@ -30,13 +31,12 @@ from eel_dynamics.accuracy.budget import Budget
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
-from eel_dynamics.simulation.bending.bent_march import march_of
 from eel_dynamics.simulation.energy import WORKS
 from eel_dynamics.simulation.error_meter import ErrorMeter
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Observations
 from eel_dynamics.simulation.present import Present
-from eel_dynamics.simulation.simulation_setup import SimulationSetup, checked_state
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 
@@ -80,18 +80,8 @@ class Simulation(Present):
         robot: Robot | None = None,
         fins: Iterable[Any] | None = None,
     ) -> None:
-        setup = SimulationSetup.of(
-            body=body,
-            scene=scene,
-            accuracy=accuracy,
-            stations=stations,
-            initial_state=(position, orientation, twist),
-            default_transition=default_transition,
-            most_evaluations=most_evaluations,
-            flow=flow,
-            robot=robot,
-            fins=fins,
-        )
+        swimmer = body, scene, accuracy, stations, position, orientation, twist, flow, robot, fins
+        setup = SimulationSetup.of(*swimmer, most_evaluations, default_transition)
         if isinstance(setup.accuracy, Budget):
             start = tuple(tuple(each.tolist()) for each in setup.initial_state)
             water = setup.flow, setup.robot, setup.fins, start
@@ -99,7 +89,7 @@ class Simulation(Present):
             setup = replace(setup, accuracy=within_budget(setup.accuracy, setup.scene, at_hand))
         self._setup = setup
         self.body, self.scene, self.x, self.robot = setup.body, setup.scene, setup.x, setup.robot
-        self._march = march_of(setup).from_start(setup, law)
+        self._march = March.from_start(setup, law)
         self.ready, self._started = law is not None, False
         self.currents = CurrentStream(setup.default_transition)
         self._meter = ErrorMeter(self._march) if measure_error else None
@@ -124,7 +114,7 @@ class Simulation(Present):
             if meter is not None:
                 meter.change_law(march, law, origin, blend, needs)
         else:
-            self._march = march = march_of(self._setup).from_start(march.setup, law, origin, march.settings)
+            self._march = march = March.from_start(march.setup, law, origin, march.settings)
             if meter is not None:
                 meter.begin_with(march, law, origin)
         self.ready = True
@@ -285,7 +275,7 @@ class Simulation(Present):
         The shape and its motion go on. The momentum becomes that of the twist. The ledger leaves out the jump of the
         energy. `ValueError` for a state that the scene does not allow, or without a finite energy.
         """
-        self._march.set_state(checked_state(self.scene, position, orientation, twist))
+        self._march.set_state(checked_state(self.scene.planar, position, orientation, twist))
         if self._meter is not None:
             self._meter.begin_again(self._march)
 
@@ -294,7 +284,7 @@ class Simulation(Present):
 
         `ValueError` for a law that cannot begin from the initial state; the simulation then stays as it is.
         """
-        self._march = march_of(self._setup).from_start(self._setup, self.law)
+        self._march = March.from_start(self._setup, self.law)
         self.currents = CurrentStream(self._setup.default_transition)
         self.ready, self._started = self.law is not None, False
         if self._meter is not None:
@@ -365,7 +355,7 @@ def swim_time(
 
 def _place(part: Any) -> tuple[Any, ...]:
     """Kind and place of a part of a robot, and whether it has coordinates of its own."""
-    own = getattr(getattr(part, "actuator", None), "series_stiffness", None) is not None
+    own = getattr(getattr(part, "actuator", None), "has_spring", False)
     return (
         type(part),
         *(getattr(part, name, None) for name in ("position", "start", "end", "width", "modes", "axis")),

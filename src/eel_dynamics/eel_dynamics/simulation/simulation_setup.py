@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The set-up of a simulation: its checked arguments, and the accuracy and grid that follow from them."""
 
-from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from dataclasses import dataclass, fields
+from functools import cached_property
 
 import numpy as np
 from eel_base.quantity import checked_instance, checked_row, positive
@@ -12,7 +12,7 @@ from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.body.body import Body, checked_body
 from eel_model.fins.fins import Fin, checked_fins, edges_of
 from eel_model.flow.flow import Flow, check_covers, checked_flow, core_flow
-from eel_model.initial_state import InitialState, check_planar, checked_quaternion, time_scale
+from eel_model.initial_state import InitialState, checked_state, time_scale
 from eel_model.robot.compiled import ModeTable, mode_table
 from eel_model.robot.robot import Robot, checked_robot
 from eel_model.scene import Scene
@@ -27,18 +27,6 @@ from eel_dynamics.curvature.curvature_samples import check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 
 FITTING = 1e-6  # part of the body's length by which the rows of a law may be shorter or longer
-
-
-def checked_state(scene: Scene, position, orientation, twist) -> InitialState:
-    """The head's position (3,) [m], orientation (4,) and twist (6,). `ValueError` if `scene` does not allow them."""
-    state = InitialState(
-        checked_row("position", position, 3),
-        checked_quaternion("orientation", orientation),
-        checked_row("twist", twist, 6),
-    )
-    if scene.planar:
-        check_planar(*state)
-    return state
 
 
 def check_flow(flow: Flow | None, scene: Scene, start: InitialState) -> None:
@@ -60,35 +48,24 @@ class SimulationSetup:
     accuracy: Accuracy | Budget  # as it was asked for
     x: np.ndarray  # (M,) m, stations
     initial_state: InitialState
-    default_transition: float = DEFAULT_TRANSITION  # s
-    most_evaluations: float = MOST_EVALUATIONS  # by simulated second
-    flow: Flow | None = None
-    robot: Robot | None = None
-    fins: tuple[Fin, ...] = ()
+    default_transition: float  # s
+    most_evaluations: float  # by simulated second
+    flow: Flow | None
+    robot: Robot | None
+    fins: tuple[Fin, ...]
 
     @staticmethod
     def of(
-        *,
-        body: Body | None,
-        scene: Scene | None,
-        accuracy,
-        stations,
-        initial_state: tuple,
-        default_transition: float = DEFAULT_TRANSITION,
-        most_evaluations: float = MOST_EVALUATIONS,
-        flow: Flow | None = None,
-        robot: Robot | None = None,
-        fins=None,
-    ) -> "SimulationSetup":
-        """The set-up from the arguments of `Simulation`. `ValueError` names the one that does not fit.
-
-        initial_state: (position, orientation, twist).
-        """
+        body=None, scene=None, accuracy="standard", stations=51,
+        position=(0.0, 0.0, 0.0), orientation=(0.0, 0.0, 0.0, 1.0), twist=(0.0,) * 6,
+        flow=None, robot=None, fins=None, most_evaluations=MOST_EVALUATIONS, default_transition=DEFAULT_TRANSITION,
+    ) -> "SimulationSetup":  # fmt: skip
+        """The set-up from the arguments of `Simulation`. `ValueError` names the one that does not fit."""
         robot = checked_robot(robot)
         body = checked_body(robot.body if body is None and robot is not None else body)
         scene = Scene() if scene is None else checked_instance("scene", scene, Scene)
         accuracy, x = Accuracy.of(accuracy), checked_stations(stations, body.length)
-        start = checked_state(scene, *initial_state)
+        start = checked_state(scene.planar, position, orientation, twist)
         check_flow(flow, scene, start)
         fins = checked_fins(fins, body, scene)
         if robot is not None:
@@ -100,8 +77,8 @@ class SimulationSetup:
     @property
     def arguments(self) -> dict:
         """The arguments of `Simulation` that give such a set-up, without a law."""
-        own = ("body", "scene", "accuracy", "default_transition", "most_evaluations", "flow", "robot", "fins")
-        return {name: getattr(self, name) for name in own} | {"stations": self.x} | self.initial_state._asdict()
+        own = {item.name: getattr(self, item.name) for item in fields(self)}
+        return own.pop("initial_state")._asdict() | {"stations": own.pop("x"), **own}
 
     def __deepcopy__(self, memo: dict) -> "SimulationSetup":
         return self
@@ -115,11 +92,6 @@ class SimulationSetup:
     def core_flow(self) -> eel_core.Flow | None:
         """The flow for the compiled mechanics."""
         return None if self.flow is None else core_flow(self.flow, bool(self.scene.planar))
-
-    @property
-    def flow_time_scale(self) -> float:
-        """Shortest period [s] of the flow at a fixed place; infinite without one."""
-        return np.inf if self.flow is None else self.flow.time_scale
 
     def grid_for(self, needs: ShapeNeeds) -> GridSettings:
         """The settings of the grid for the `needs` of a law, and those of the flow."""
@@ -153,15 +125,11 @@ class SimulationSetup:
         if law is None:
             return ShapeNeeds()
         checked_instance("law", law, (Law, SampledLaw))
-        if self.scene.planar:
-            check_planar_law(law)
-        if isinstance(law, SampledLaw):
-            return self._needs_of_rows(law)
-        check_cost(law, self.most_evaluations)
-        return ShapeNeeds(check_law(law, self.body.length), knots_of_law(law))
-
-    def _needs_of_rows(self, law: SampledLaw) -> ShapeNeeds:
+        check_planar_law(law, self.scene)
         length = self.body.length
+        if isinstance(law, Law):
+            check_cost(law, self.most_evaluations)
+            return ShapeNeeds(check_law(law, length), knots_of_law(law))
         if abs(law.length - length) > FITTING * length:
             raise ValueError(f"law {shown(law.name)} is for a body of {law.length:g} m, the body has {length:g} m")
         check_points(len(law.x))
@@ -178,13 +146,7 @@ class SimulationSetup:
         settings = self.accuracy.in_scene(self.scene)
         if self.robot is None:
             return settings
-        return settings.for_robot(any(servo and servo.series_stiffness is not None for servo in self.robot.servos))
-
-
-@lru_cache(maxsize=64)
-def equidistant(length: float, count: int) -> np.ndarray:
-    """X (count,) [m] of `count` equidistant stations from the nose to the tail."""
-    return np.linspace(0.0, length, count)
+        return settings.for_robot(any(servo and servo.has_spring for servo in self.robot.servos))
 
 
 def checked_stations(stations, length: float) -> np.ndarray:
@@ -192,14 +154,14 @@ def checked_stations(stations, length: float) -> np.ndarray:
     if isinstance(stations, (int, np.integer)) and not isinstance(stations, bool):
         if not 2 <= stations <= 100_000:
             raise ValueError(f"stations must be 2 or more, or their X in m, got {shown(stations)}")
-        return equidistant(length, int(stations)).copy()
+        return np.linspace(0.0, length, int(stations))
     x = checked_row("stations", stations, None)
     if len(x) < 1 or np.any(np.diff(x) <= 0.0) or x[0] < 0.0 or x[-1] > length * (1 + 1e-12):
         raise ValueError(f"stations must rise within 0 to {length} m, got {shown(stations)}")
     return np.minimum(x, length)
 
 
-def check_planar_law(law: Law | SampledLaw) -> None:
-    """`ValueError` unless `law` bends the body in the plane."""
-    if not law.in_plane:
+def check_planar_law(law: Law | SampledLaw, scene: Scene) -> None:
+    """`ValueError` for a `law` that bends the body out of the plane of a planar `scene`."""
+    if scene.planar and not law.in_plane:
         raise ValueError(f"law {shown(law.name)} has a pitch term: a planar scene cannot bend out of its plane")

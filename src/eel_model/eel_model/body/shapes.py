@@ -129,3 +129,14 @@ def piecewise(
         here = home == index
         result[here] = function(x[here])
     return result
+
+
+def values_along(function: Callable[..., Any], x: np.ndarray) -> np.ndarray:
+    """Values of a `function` of X at `x` [m]; it takes arrays, or one number at a time."""
+    try:
+        values = np.asarray(function(x), dtype=float)
+        if values.shape not in (x.shape, ()):
+            raise ValueError
+    except (TypeError, ValueError):
+        values = np.array([float(function(float(each))) for each in x.ravel()]).reshape(x.shape)
+    return np.broadcast_to(values, x.shape)

@@ -10,10 +10,19 @@ drag that goes with it, and beyond the stall a plate's across the stream; and it
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
-from eel_base.quantity import checked_instance, checked_row, is_finite, number, positive
+from eel_base.quantity import (
+    Quantities,
+    checked_instance,
+    checked_row,
+    documented,
+    is_finite,
+    number,
+    quantity,
+    required,
+)
 from eel_base.wording import not_one_of, shown
 
 import eel_core
@@ -28,71 +37,64 @@ Table = tuple[tuple[float, ...], tuple[float, ...]]  # times [s], angles [rad]
 
 
 @dataclass(frozen=True)
-class RollHold:
+class RollHold(Quantities):
     """The angle of a fin that holds the roll level: -k_p roll - k_d Omega1 on the right side, the opposite on the left.
 
     roll [rad] is that of the section at the fin's station, 0 upright; Omega1 [rad/s] its angular velocity about E1.
     """
 
-    k_p: float = 2.0  #: rad of the fin by rad of roll
-    k_d: float = 0.15  #: s
+    what: ClassVar[str] = "roll hold"
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "k_p", number("roll hold k_p", self.k_p))
-        object.__setattr__(self, "k_d", number("roll hold k_d", self.k_d, "s"))
+    k_p: float = quantity(2.0, "", "rad of the fin by rad of roll")
+    k_d: float = quantity(0.15, "s", "rad of the fin by rad/s")
 
 
+@documented
 @dataclass(frozen=True)
-class Fin:
+class Fin(Quantities):
     """A fin. Immutable; `ValueError` names what does not fit.
 
-    station: X [m] of its hinge, inside the body. side: "left" or "right". area [m^2]. aspect_ratio: effective, twice
-    span^2 by area. dihedral [rad]: how much its tip rises. angle: [rad], or (times [s], angles [rad]), which a smooth
-    spline joins, a `RollHold`, or "commanded": what `Simulation.command_fins` asks for, 0 at first; above 0 the leading
-    edge rises. time_constant [s]: of the servo that follows the angle; None: none, the fin has the angle. limit [rad]:
-    of the servo; initial_angle [rad]: that it starts with (of a `RollHold` on the right). lift_slope: of sine times
-    cosine of the incidence; None: Whicker's and Fehlner's. normal_drag, friction_drag: coefficients of a plate across
-    the stream and along it. efficiency: of its lift, in the induced drag. added_mass: by that of
-    a flat plate; 0: none.
-    """
+    Fields, with default, meaning, unit, and bounds:"""
 
-    station: float
-    side: str
-    area: float
-    aspect_ratio: float
-    dihedral: float = 0.0
-    angle: Any = 0.0
-    time_constant: float | None = None
-    limit: float = 0.6
-    initial_angle: float = 0.0
-    lift_slope: float | None = None
-    normal_drag: float = 1.2
-    friction_drag: float = 0.01
-    efficiency: float = 0.9
-    added_mass: float = 1.0
+    what: ClassVar[str] = "fin"
+
+    station: float = required("m", "X of its hinge, inside the body", 0.0, exclusive=True)
+    side: str = required("", "left or right", plain=True)
+    area: float = required("m^2", "of the plate", 0.0, exclusive=True)
+    aspect_ratio: float = required("", "effective, twice span^2 by area", 0.0, exclusive=True)
+    dihedral: float = quantity(0.0, "rad", "how much its tip rises", -1.5, 1.5)
+    angle: Any = quantity(
+        0.0,
+        "rad",
+        "a number; (times [s], angles), which a smooth spline joins; a `RollHold`; or commanded: what "
+        "`Simulation.command_fins` asks for, 0 at first. Above 0 the leading edge rises",
+        plain=True,
+    )
+    time_constant: float | None = quantity(
+        None, "s", "of the servo that follows the angle; None: none, the fin has the angle", 0.0, exclusive=True
+    )
+    limit: float = quantity(0.6, "rad", "of the servo", 0.0, exclusive=True)
+    initial_angle: float = quantity(0.0, "rad", "of the servo at the start (of a `RollHold` on the right)")
+    lift_slope: float | None = quantity(
+        None, "", "of sine times cosine of the incidence; None: Whicker's and Fehlner's", 0.0
+    )
+    normal_drag: float = quantity(1.2, "", "coefficient of a plate across the stream", 0.0)
+    friction_drag: float = quantity(0.01, "", "coefficient of a plate along the stream", 0.0)
+    efficiency: float = quantity(0.9, "", "of its lift, in the induced drag", 0.0, exclusive=True)
+    added_mass: float = quantity(1.0, "", "by that of a flat plate; 0: none", 0.0)
 
     def __post_init__(self) -> None:
         if self.side not in SIDES:
             raise ValueError(not_one_of("fin side", self.side, tuple(SIDES)))
-        values: dict[str, Any] = {"station": positive("fin station", self.station, "m")}
-        units = {"area": "m^2", "aspect_ratio": "", "limit": "rad", "efficiency": ""}
-        values |= {name: positive(f"fin {name}", getattr(self, name), unit) for name, unit in units.items()}
-        values["dihedral"] = number("fin dihedral", self.dihedral, "rad", minimum=-1.5, maximum=1.5)
-        values["angle"] = _checked_angle(self.angle)
+        super().__post_init__()
+        object.__setattr__(self, "angle", _checked_angle(self.angle))
         if self.time_constant is not None:
-            values["time_constant"] = positive("fin time_constant", self.time_constant, "s")
-        elif isinstance(self.angle, RollHold) or self.angle == COMMANDED:
+            return
+        if isinstance(self.angle, RollHold) or self.angle == COMMANDED:
             kind = "a RollHold" if self.angle != COMMANDED else "a commanded fin"
             raise ValueError(f"fin time_constant must be given for {kind}, in s, got none")
-        values["initial_angle"] = number("fin initial_angle", self.initial_angle, "rad")
-        if values["initial_angle"] and self.time_constant is None:
+        if self.initial_angle:
             raise ValueError(f"fin initial_angle needs a time_constant, in s, got {shown(self.initial_angle)} and none")
-        if self.lift_slope is not None:
-            values["lift_slope"] = number("fin lift_slope", self.lift_slope, minimum=0.0)
-        for name in ("normal_drag", "friction_drag", "added_mass"):
-            values[name] = number(f"fin {name}", getattr(self, name), minimum=0.0)
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
 
     @staticmethod
     def pair(station: float, area: float, aspect_ratio: float, **others: Any) -> tuple["Fin", "Fin"]:

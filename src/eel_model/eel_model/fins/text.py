@@ -7,6 +7,7 @@ left station=0.5 area=0.0005 aspect_ratio=3 angle=commanded time_constant=0.1
 k_p and k_d make a `RollHold` of the angle. angle=commanded: the topic fin_command gives it.
 """
 
+from dataclasses import fields
 from typing import Any
 
 from eel_base.quantity import is_finite
@@ -15,10 +16,7 @@ from eel_base.wording import not_one_of, shown
 from eel_model.fins.fins import COMMANDED, SIDES, Fin, RollHold
 
 JOINED, PAIR = " + ", "pair"
-NUMBERS = (
-    *("station", "area", "aspect_ratio", "dihedral", "angle", "time_constant", "limit", "initial_angle", "lift_slope"),
-    *("normal_drag", "friction_drag", "efficiency", "added_mass"),
-)
+NUMBERS = tuple(item.name for item in fields(Fin) if item.name != "side")
 GAINS = "k_p", "k_d"
 
 

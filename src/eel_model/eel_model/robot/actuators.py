@@ -20,15 +20,13 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from eel_base.quantity import checked_row, documented, is_finite, quantity
+from eel_base.quantity import Quantities, checked_row, documented, is_finite, quantity
 from eel_base.wording import shown
-
-from eel_model.robot.part import Part
 
 
 @documented
 @dataclass(frozen=True, kw_only=True, repr=False)
-class Servo(Part):
+class Servo(Quantities):
     """A motor that follows the law by its own feedback. Immutable; `ValueError` names a field that does not fit.
 
     Fields, with default, meaning, unit, and bounds:"""
@@ -61,9 +59,14 @@ class Servo(Part):
         """gear^2 rotor_inertia [kg m^2]: of the rotor at the joint."""
         return self.gear**2 * self.rotor_inertia
 
+    @property
+    def has_spring(self) -> bool:
+        """Whether a series spring lies between gear and joint: the motor then has an angle of its own."""
+        return self.series_stiffness is not None
+
 
 @dataclass(frozen=True, repr=False)
-class Torque(Part):
+class Torque(Quantities):
     """A torque [N m] on a joint that is given over time.
 
     Args:
@@ -73,8 +76,6 @@ class Torque(Part):
 
     `ValueError` names what does not fit.
     """
-
-    what: ClassVar[str] = "torque"
 
     torque: Callable[[float], float] | tuple[float, ...]
     time: tuple[float, ...] | None = None

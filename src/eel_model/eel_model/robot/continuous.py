@@ -13,11 +13,11 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from eel_base.quantity import checked_instance, checked_row, documented, quantity
+from eel_base.quantity import checked_instance, checked_row, documented, quantity, required
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 
-from eel_model.robot.part import MOST_MODES, Part, checked_axis, required
+from eel_model.robot.part import MOST_MODES, Part
 
 Profile = float | Callable[..., object]
 
@@ -45,9 +45,30 @@ class ProfileTable:
         return np.asarray(pchip_interpolate(self.x, self.values, np.clip(x, self.x[0], self.x[-1])))
 
 
+class ContinuousPart(Part):
+    """Base of passive tails and muscles."""
+
+    start: float
+    end: float | None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.axis.startswith("-"):
+            raise ValueError(f"{self.what} axis must be yaw or pitch, got {shown(self.axis)}")
+        if self.end is not None and self.end <= self.start:
+            raise ValueError(f"{self.what} end must be > start ({self.start:g} m), got {self.end:g}")
+        if not isinstance(self.name, str) or not self.name:
+            raise ValueError(f"{self.what} name must be a text, got {shown(self.name)}")
+
+    @property
+    def support(self) -> tuple[float, float]:
+        assert self.end is not None
+        return self.start, self.end
+
+
 @documented
 @dataclass(frozen=True, repr=False)
-class PassiveTail(Part):
+class PassiveTail(ContinuousPart):
     """A part that springs and dampers alone hold straight, up to the tail or to `end`. Immutable.
 
     `ValueError` names a field that does not fit. Fields, with default, meaning, unit, and bounds:"""
@@ -62,14 +83,10 @@ class PassiveTail(Part):
     axis: str = quantity("yaw", "", "yaw or pitch", plain=True)
     name: str = quantity("tail", "", "in messages and tables", plain=True)
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        checked_span(self)
-
 
 @documented
 @dataclass(frozen=True, repr=False)
-class Muscle(Part):
+class Muscle(ContinuousPart):
     """A part that muscles bend against its own stiffness. Immutable; `ValueError` names a field that does not fit.
 
     Fields, with default, meaning, unit, and bounds:"""
@@ -87,18 +104,6 @@ class Muscle(Part):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        checked_span(self)
         other = {term.axis for term in checked_instance("muscle moment", self.moment, Law).terms} - {self.axis}
         if other:
             raise ValueError(f"muscle moment must have terms in {self.axis} alone, got {', '.join(other)}")
-
-
-def checked_span(part: PassiveTail | Muscle) -> None:
-    """`ValueError` unless axis, ends and name of a continuous part fit."""
-    checked_axis(part.what, part.axis)
-    if part.axis.startswith("-"):
-        raise ValueError(f"{part.what} axis must be yaw or pitch, got {shown(part.axis)}")
-    if part.end is not None and part.end <= part.start:
-        raise ValueError(f"{part.what} end must be > start ({part.start:g} m), got {part.end:g}")
-    if not isinstance(part.name, str) or not part.name:
-        raise ValueError(f"{part.what} name must be a text, got {shown(part.name)}")

@@ -14,11 +14,11 @@ positive where the body bends to the left (yaw) or up (pitch), as the gaits' `le
 from dataclasses import dataclass
 from typing import ClassVar
 
-from eel_base.quantity import checked_instance, documented, quantity
+from eel_base.quantity import checked_instance, documented, quantity, required
 from eel_base.wording import shown
 
 from eel_model.robot.actuators import Actuator, Servo, Torque
-from eel_model.robot.part import Part, checked_axis, checked_range, required
+from eel_model.robot.part import Part, checked_range
 
 LONGEST_NAME = 100
 
@@ -52,7 +52,6 @@ class Joint(Part):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        checked_axis(self.what, self.axis)
         if self.limits is not None:
             object.__setattr__(self, "limits", checked_range("joint limits", self.limits, "rad"))
         start = self.initial_angle
@@ -62,3 +61,8 @@ class Joint(Part):
             checked_instance("joint actuator", self.actuator, (Servo, Torque))
         if not isinstance(self.name, str) or len(self.name) > LONGEST_NAME:
             raise ValueError(f"joint name must be a text of at most {LONGEST_NAME} characters, got {shown(self.name)}")
+
+    @property
+    def support(self) -> tuple[float, float]:
+        assert self.width is not None
+        return self.position - 0.5 * self.width, self.position + 0.5 * self.width

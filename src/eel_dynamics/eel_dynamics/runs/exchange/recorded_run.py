@@ -136,7 +136,7 @@ def _in_order(message: Any, robot: Robot) -> Any:
 
 def _robot(found: dict[str, Any], robot: Robot | None) -> dict[str, Any]:
     """No message tells the angle of a motor behind a series spring, nor how tails bend."""
-    stiff = robot is not None and all(servo is None or servo.series_stiffness is None for servo in robot.servos)
+    stiff = robot is not None and all(servo is None or not servo.has_spring for servo in robot.servos)
     return {"robot": robot, "motor_angle": found["joint_angle"] if stiff else None}
 
 

@@ -15,11 +15,9 @@ from eel_model.scene import Scene
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.storage.variables import COUNTS, ENERGY, LEDGER, OWN, Contents
-from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS, MotionOfMany
+from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS, OF_LEDGER, Motion
 from eel_dynamics.simulation.energy import WORKS, EnergyLedger
 from eel_dynamics.simulation.observations import OBSERVED, Observations
-
-OF_ROBOTS = "elastic", "damping_power", "damping_work"  # in the ledger
 
 
 def contents_of_run(run: Any) -> Contents:
@@ -110,11 +108,11 @@ def with_warnings(batch: Any, contents: Contents) -> Contents:
     return contents._replace(values=contents.values | {"robots": robots, "warnings": lines})
 
 
-def motion_of_batch(contents: Contents) -> MotionOfMany:
+def motion_of_batch(contents: Contents) -> Motion:
     """The motion of the robots of a batch."""
     none, ledger = np.zeros((*contents.arrays["position"].shape[:2], 0)), _ledger_of(contents.arrays)
     arrays = {name: contents.arrays.get(name, none) for name in JOINT_ARRAYS}
-    return MotionOfMany(arrays, np.stack([ledger[name] for name in OF_ROBOTS], axis=-1))
+    return Motion(arrays, np.stack([ledger[name] for name in OF_LEDGER], axis=-1))
 
 
 def observed_of_batch(contents: Contents) -> tuple[Observations, np.ndarray]:
@@ -137,7 +135,7 @@ def observed_of_batch(contents: Contents) -> tuple[Observations, np.ndarray]:
 def _ledger_of(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The arrays of the ledger; files of still water or imposed bending need not have theirs."""
     none = np.zeros_like(arrays[ENERGY + "residual"])
-    later = "flow_power", "flow_work", "fins_power", "fins_work", *OF_ROBOTS
+    later = "flow_power", "flow_work", "fins_power", "fins_work", *OF_LEDGER
     absent = {name: none for name in later if ENERGY + name not in arrays}
     return absent | {name: arrays[ENERGY + name] for name in LEDGER if name not in absent}
 

@@ -27,57 +27,39 @@ JOINT_ARRAYS = {
     "mode_amplitude": Variable(("time", "mode"), "rad/m", "curvature of the modes of tails and muscles"),
     "mode_rate": Variable(("time", "mode"), "rad/m/s", "its rate"),
 }
-ELASTIC, DAMPING_POWER, DAMPING_WORK = "elastic", "damping_power", "damping_work"
+OF_LEDGER = "elastic", "damping_power", "damping_work"  # what a robot adds to the ledger [J, W, J]
 
 
-class KeptMotion(NamedTuple):
-    """The motion of one robot's joints as a batch keeps it; as `JointMotion` otherwise."""
+class Motion(NamedTuple):
+    """The motion of the joints of one robot, or of B swimmers; of fewer joints or modes than the most, 0 fills the
+    rest."""
 
-    kept: dict[str, np.ndarray]  # of JOINT_ARRAYS
-    robot: np.ndarray  # (T, 3)
-
-    def arrays(self) -> dict[str, np.ndarray]:
-        """The arrays of `JOINT_ARRAYS`."""
-        return self.kept
-
-    def ledger(self) -> np.ndarray:
-        """As of `JointMotion`."""
-        return self.robot
-
-
-class MotionOfMany(NamedTuple):
-    """The motion of the robots of B swimmers; of fewer joints or modes than the most, 0 fills the rest."""
-
-    arrays: dict[str, np.ndarray]  # of JOINT_ARRAYS, (B, T, J) or (B, T, N)
-    ledger: np.ndarray  # (B, T, 3)
+    arrays: dict[str, np.ndarray]  # of JOINT_ARRAYS: (T, J) or (T, N), of several (B, T, J) or (B, T, N)
+    ledger: np.ndarray  # (..., T, 3) of OF_LEDGER
 
     @staticmethod
-    def of(motions: Sequence["JointMotion | None"], samples: np.ndarray, times: int) -> "MotionOfMany":
+    def of_many(motions: Sequence["JointMotion | None"], samples: np.ndarray, times: int) -> "Motion":
         """Those of `motions`, None without a robot, of which the first `samples` (B,) of T `times` are valid."""
-        found = [{} if each is None else each.arrays() for each in motions]
-        arrays = {}
-        for name in JOINT_ARRAYS:
-            most = max((each[name].shape[1] for each in found if each), default=0)
-            arrays[name] = np.zeros((len(motions), times, most))
-            for row, each, count in zip(arrays[name], found, samples.tolist(), strict=True):
+        rows = [{} if each is None else each.arrays | {"ledger": each.ledger} for each in motions]
+        found = {}
+        for name in (*JOINT_ARRAYS, "ledger"):
+            most = max((each[name].shape[1] for each in rows if each), default=3 if name == "ledger" else 0)
+            found[name] = np.zeros((len(motions), times, most))
+            for space, each, count in zip(found[name], rows, samples.tolist(), strict=True):
                 if each:
-                    row[:count, : each[name].shape[1]] = each[name][:count]
-        ledger = np.zeros((len(motions), times, 3))
-        for row, motion, count in zip(ledger, motions, samples.tolist(), strict=True):
-            if motion is not None:
-                row[:count] = motion.ledger()[:count]
-        return MotionOfMany(arrays, ledger)
+                    space[:count, : each[name].shape[1]] = each[name][:count]
+        return Motion(found, found.pop("ledger"))
 
-    def one(self, index: int, robot: Robot) -> KeptMotion:
-        """That of swimmer `index`."""
+    def one(self, index: int, robot: Robot) -> "Motion":
+        """That of swimmer `index` of several."""
         modes = sum(part.modes for part in robot.parts if not isinstance(part, Joint))
         sizes = {"joint": len(robot.joints), "mode": modes}
         cut = {name: sizes[about.dimensions[1]] for name, about in JOINT_ARRAYS.items()}
-        return KeptMotion({name: self.arrays[name][index, :, :most] for name, most in cut.items()}, self.ledger[index])
+        return Motion({name: self.arrays[name][index, :, :most] for name, most in cut.items()}, self.ledger[index])
 
 
 class JointMotion:
-    """The motion of a robot's coordinates at T instants.
+    """The motion of a robot's coordinates at T instants: as `Motion`, computed when it is asked for.
 
     rows: (T, R), as the core writes them at the `places` of their names. on_grid: the robot's modes.
     """
@@ -92,35 +74,34 @@ class JointMotion:
     def _of(self, name: str) -> np.ndarray:
         return self._rows[:, slice(*self._places[name])]
 
+    @property
     def ledger(self) -> np.ndarray:
-        """(T, 3): elastic energy [J], power [W] and work [J] of the dampers."""
-        return np.concatenate([self._of(name) for name in (ELASTIC, DAMPING_POWER, DAMPING_WORK)], axis=1)
+        """(T, 3): of `OF_LEDGER`."""
+        return np.concatenate([self._of(name) for name in OF_LEDGER], axis=1)
 
+    @property
     def arrays(self) -> dict[str, np.ndarray]:
         """The arrays of `JOINT_ARRAYS`."""
         table, x, rate = self._on_grid.table, self._of("x"), self._of("rate")
-        joints = np.flatnonzero(table.degree == HINGE)
-        motor = joints.copy()  # the coordinate of each joint's motor
+        joints, soft = np.flatnonzero(table.degree == HINGE), np.flatnonzero(table.degree != HINGE)
+        coordinate = joints.copy()  # of each joint's motor
         torque = self._of("pushing")[:, joints].copy()
-        drives = table.actuators
-        place = {int(mode): index for index, mode in enumerate(joints)}
-        for index, mode in enumerate(drives.mode):
-            motor[place[int(mode)]] = self._on_grid.coordinate[index]
-        for column, mode in enumerate(self._on_grid.servo_modes):
-            torque[:, place[int(mode)]] += self._of("torque")[:, column]
+        place = {mode: index for index, mode in enumerate(joints.tolist())}
+        for column, motor in enumerate(self._on_grid.motors):
+            coordinate[place[motor.mode]] = motor.coordinate
+            torque[:, place[motor.mode]] += self._of("torque")[:, column]
         on_joint = torque.copy()
-        for index in np.flatnonzero(drives.series).tolist():
-            at, own = place[int(drives.mode[index])], int(self._on_grid.coordinate[index])
-            between, slip = x[:, own] - x[:, joints[at]], rate[:, own] - rate[:, joints[at]]
-            on_joint[:, at] = drives.series_stiffness[index] * between + drives.series_damping[index] * slip
+        for servo, mode, own in self._on_grid.sprung:
+            between, slip = x[:, own] - x[:, mode], rate[:, own] - rate[:, mode]
+            on_joint[:, place[mode]] = servo.series_stiffness * between + servo.series_damping * slip
         sign = table.sign[joints]
         return {
             "joint_angle": x[:, joints] * sign + 0.0,
             "joint_rate": rate[:, joints] * sign + 0.0,
             "joint_torque": on_joint * sign + 0.0,
-            "motor_angle": x[:, motor] * sign + 0.0,
+            "motor_angle": x[:, coordinate] * sign + 0.0,
             "motor_torque": torque * sign + 0.0,
-            "motor_power": torque * rate[:, motor],
-            "mode_amplitude": x[:, np.flatnonzero(table.degree != HINGE)].copy(),
-            "mode_rate": rate[:, np.flatnonzero(table.degree != HINGE)].copy(),
+            "motor_power": torque * rate[:, coordinate],
+            "mode_amplitude": x[:, soft],
+            "mode_rate": rate[:, soft],
         }

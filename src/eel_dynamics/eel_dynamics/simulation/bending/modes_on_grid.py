@@ -5,21 +5,36 @@ A body with modes follows a law of more rows: those of the imposed law, masked w
 mode, whose factor is its coordinate. The coordinates are those of the modes and, behind series springs, the motors'.
 """
 
-from typing import NamedTuple
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 from eel_model.body.grid import Grid
+from eel_model.robot.actuators import Servo, Torque
 from eel_model.robot.compiled import HINGE, ModeTable
 
 import eel_core
 from eel_dynamics.curvature.law_follower import LawFollower
-from eel_dynamics.curvature.tabulated_law import TabulatedLaw, Tabulation
+from eel_dynamics.curvature.tabulated_law import SEGMENT_AXES, TabulatedLaw, Tabulation
+from eel_dynamics.simulation.discretisation import Discretisation
+
+BETWEEN = np.array(((1.0, -1.0), (-1.0, 1.0)))  # what a spring between two coordinates does to each, by the other
+
+
+class Motor(NamedTuple):
+    """A servo, the mode of its joint, and the coordinate that it drives: behind a spring its own, else the mode's."""
+
+    servo: Servo
+    mode: int
+    coordinate: int
 
 
 class ModesOnGrid:
     """The M modes of `table` on a `grid`, whose panels end at their edges. C coordinates: modes, then motors.
 
-    Attributes, as `eel_core.Modes` takes them:
+    Attributes:
+        motors: the servos.
+        As `eel_core.Modes` takes them:
         axis, first, last: (M,) 0 pitch, 1 yaw; first node of the support, and the node behind its last.
         continuous: (M,) 1 for a mode of a tail or muscle, 0 for a joint.
         span, moment: (M,) integral of |B| [1, or m]; internal torque for a unit of the mode's force [1, or 1/m].
@@ -38,45 +53,47 @@ class ModesOnGrid:
         self.continuous = (~joints).astype(np.uint64)
         self.span = np.where(joints, 1.0, table.end - table.start)
         self.moment = np.where(joints, 1.0, (2 * table.degree + 1) / self.span)  # P_n has the norm span / (2 n + 1)
-        drives, count = table.actuators, len(table)
-        motors = np.flatnonzero(drives.series)
-        size = count + len(motors)
-        self.inertia = np.concatenate((table.armature, drives.inertia[motors])).astype(float)
-        self.rest = np.concatenate((table.rest, np.zeros(len(motors)))).astype(float)
-        self.stiffness, self.damping = np.zeros((size, size)), np.zeros((size, size))
-        self.stiffness[:count, :count], self.damping[:count, :count] = table.stiffness, table.damping
-        self.coordinate = drives.mode.astype(int).copy()  # (A,) that each actuator drives
-        for place, index in enumerate(motors):
-            mode, motor = drives.mode[index], count + place
-            self.coordinate[index] = motor
-            for matrix, value in (
-                (self.stiffness, drives.series_stiffness[index]),
-                (self.damping, drives.series_damping[index]),
-            ):
-                matrix[np.ix_((mode, motor), (mode, motor))] += value * np.array(((1.0, -1.0), (-1.0, 1.0)))
-            self.damping[motor, motor] += drives.friction[index]
+        self.motors, size = [], len(table)
+        for mode, actuator in table.motors:
+            if isinstance(actuator, Servo):
+                self.motors.append(Motor(actuator, mode, size if actuator.has_spring else mode))
+                size += actuator.has_spring
+        sprung = self.sprung
+        self.inertia = np.array([*table.armature, *(motor.servo.inertia for motor in sprung)])
         # the rest angle is the joint's own spring's: a series spring has none between joint and motor
-        self.rest[count:] = self.rest[drives.mode[motors]] if len(motors) else []
-        servos = [index for index, kind in enumerate(drives.kind) if kind == "servo"]
-        self.servo_modes = drives.mode[servos].astype(int)
-        gains = np.stack((drives.kp, drives.kd, drives.torque_limit, drives.speed_limit), axis=1)
-        self.servos = [(int(self.coordinate[index]), *_four(gains[index])) for index in servos]
-        ends = np.column_stack((table.limits, table.stop_stiffness, table.stop_damping)).reshape(count, 4)
-        limited = np.flatnonzero(np.isfinite(table.limits).any(axis=1))
-        self.stops = [(int(mode), *_four(ends[mode])) for mode in limited]
+        self.rest = np.array([*table.rest, *(table.rest[motor.mode] for motor in sprung)])
+        self.stiffness, self.damping = (
+            np.pad(matrix, (0, size - len(table))) for matrix in (table.stiffness, table.damping)
+        )
+        for servo, *pair in sprung:
+            self.stiffness[np.ix_(pair, pair)] += servo.series_stiffness * BETWEEN
+            self.damping[np.ix_(pair, pair)] += servo.series_damping * BETWEEN
+            self.damping[pair[1], pair[1]] += servo.friction
+        self.servos = [
+            (coordinate, servo.kp, servo.kd, servo.torque_limit or np.inf, servo.speed_limit or np.inf)
+            for servo, _, coordinate in self.motors
+        ]
+        ends = np.column_stack((table.limits, table.stop_stiffness, table.stop_damping))
+        limited = np.flatnonzero(np.isfinite(table.limits).any(axis=1)).tolist()
+        self.stops = [(mode, *ends[mode].tolist()) for mode in limited]
         self.torques = [
-            _given(int(mode), float(table.sign[mode]), torque)
-            for mode, torque in zip(drives.mode, drives.torque, strict=True)
-            if torque is not None
+            _given(mode, float(table.sign[mode]), actuator)
+            for mode, actuator in table.motors
+            if isinstance(actuator, Torque)
         ]
 
+    @property
+    def sprung(self) -> list[Motor]:
+        """The motors behind series springs, in the order of their coordinates."""
+        return [motor for motor in self.motors if motor.servo.has_spring]
 
-def _four(row: np.ndarray) -> tuple[float, float, float, float]:
-    first, second, third, fourth = row.tolist()
-    return first, second, third, fourth
+    def part_of(self, coordinate: int) -> str:
+        """The name of the part that has a `coordinate`."""
+        count = len(self.table)
+        return self.table.name[coordinate if coordinate < count else self.sprung[coordinate - count].mode]
 
 
-def _given(coordinate: int, sign: float, torque) -> tuple:
+def _given(coordinate: int, sign: float, torque: Torque) -> tuple[Any, ...]:
     """A torque over time for the compiled mechanics."""
     if torque.spline is None:
         return coordinate, lambda time: sign * float(torque.at(time))
@@ -98,18 +115,24 @@ class RobotTables(NamedTuple):
     def of(table: ModeTable, grid: Grid, tabulation: Tabulation) -> "RobotTables":
         """The tables of a robot on a grid and the points of a `tabulation`."""
         on_grid, x = ModesOnGrid(table, grid), tabulation.x
-        behind = x > table.start[:, None]  # a node at a support's start belongs to the panel ahead
-        rows = tabulation.columns(np.where(behind, table.shape(x), 0.0))
-        imposed = np.ones((2, len(x)))
-        for axis, start, end in table.free:
-            imposed[axis - 1, (x > start) & (x <= end)] = 0.0
-        n, s = tabulation.nodes, tabulation.stations
+        rows = tabulation.columns(table.shape(x))
+        imposed, n, s = table.imposed(x).astype(float), tabulation.nodes, tabulation.stations
         nodes, stations = imposed[:, :n], imposed[:, n : n + s]
         mask = np.concatenate(
             (nodes, np.tile(nodes, 3), stations, np.tile(stations, 3), np.ones((2, tabulation.further))), axis=1
         )
         drive, push = _muscles(table, len(on_grid.inertia))
         return RobotTables(eel_core.Modes(on_grid), on_grid, rows, mask, drive, push)
+
+    def at_start(self, law: eel_core.LawOnGrid, reference: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Coordinates (C,) and rates under a `law`: as given, as the servos' `reference` is, or where springs rest."""
+        factors, given = np.array(law.factors(0.0)), self.on_grid.table.initial
+        first, rate = self.on_grid.rest.copy(), np.zeros(len(self.on_grid.rest))
+        first[: len(given)] = np.where(np.isnan(given), first[: len(given)], given)
+        for (_, mode, coordinate), row in zip(self.on_grid.motors, reference, strict=True):
+            there = factors[:2, : len(row)] @ row if np.isnan(given[mode]) else (given[mode], 0.0)
+            first[[coordinate, mode]], rate[[coordinate, mode]] = there
+        return first, rate
 
     def law(self, follower: LawFollower, tabulation: Tabulation) -> tuple[eel_core.LawOnGrid, np.ndarray]:
         """The law in force with the modes' rows, and what the servos follow: (servos, rows of the law)."""
@@ -118,7 +141,7 @@ class RobotTables(NamedTuple):
         bent = np.concatenate((rows * self.mask[axis], self.rows))
         tables = tabulation.law_tables(bent, np.concatenate((axis, table.axis - 1)))
         at_points = rows[:, tabulation.width - tabulation.further :]
-        modes = self.on_grid.servo_modes
+        modes = [motor.mode for motor in self.on_grid.motors]
         same = (table.axis[modes] - 1)[:, None] == axis
         reference = np.where(same, table.projection[modes] @ at_points.T, 0.0)
         return follower.on_tables(tables), np.ascontiguousarray(reference)
@@ -141,3 +164,29 @@ def _muscles(table: ModeTable, coordinates: int) -> tuple[eel_core.LawOnGrid | N
         count += len(source.rows)
     empty = eel_core.LawTables(np.concatenate(axes).tolist(), np.zeros((count, 0)), 0, 0)
     return eel_core.LawOnGrid(empty, 0.0, waves, None, None), np.ascontiguousarray(np.concatenate(pushes, axis=1))
+
+
+def shapes_of_run(run: Any, table: ModeTable, here: Discretisation) -> Iterator[eel_core.LawOnGrid]:
+    """For each sample of a robot's `run` a law whose curvature and rate at that time are the run's, on the grid `here`:
+    for what is evaluated after the run."""
+    tabulation = here.tabulation
+    tables = RobotTables.of(table, here.grid, tabulation)
+    joints, sign = table.degree == HINGE, table.sign[table.degree == HINGE]
+    motion = np.zeros((2, len(run.time), len(table)))  # coordinates, and their rates
+    motion[0][:, joints], motion[1][:, joints] = run.joint_angle * sign, run.joint_rate * sign
+    motion[0][:, ~joints], motion[1][:, ~joints] = run.mode_amplitude, run.mode_rate
+    follower, now = LawFollower(tabulation, law=run.law), 0.0
+    for sample, time in enumerate(run.time.tolist()):
+        follower.pass_events(now, now := time)
+        rows, axis = follower.rows()
+        factors = np.array(follower.law_on_grid.factors(time))
+        ends = np.zeros((2, 6, tabulation.width))  # for pitch and yaw: value, rate and acceleration at two instants
+        for each in (0, 1):
+            imposed, own = axis == each, table.axis - 1 == each
+            for derivative in (0, 1):
+                ends[each, derivative] = (
+                    factors[derivative, imposed] @ rows[imposed] * tables.mask[each]
+                    + motion[derivative, sample, own] @ tables.rows[own]
+                )
+        law_tables = tabulation.law_tables(ends.reshape(12, -1), SEGMENT_AXES)
+        yield eel_core.LawOnGrid(law_tables, 0.0, [], (0, time, time + 1.0), None)
