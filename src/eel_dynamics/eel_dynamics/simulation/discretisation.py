@@ -11,18 +11,12 @@ from eel_model.body.panels import panels_of
 from eel_model.fins.fins import Fin
 from eel_model.inertia import check_inertia
 from eel_model.scene import Scene
-from eel_model.section_data import (
-    SectionData,
-    check_weight,
-    core_swimmer,
-    nose_of,
-    sections_on,
-    weight_time,
-)
+from eel_model.section_data import SectionData, check_weight, core_swimmer, nose_of, sections_on, weight_time
 
 import eel_core
 from eel_dynamics.accuracy.grid_settings import GridSettings
 from eel_dynamics.curvature.tabulated_law import Tabulation
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
 
 
 class Discretisation(NamedTuple):
@@ -39,22 +33,16 @@ class Discretisation(NamedTuple):
         return self
 
 
-def discretise(
-    body: Body,
-    scene: Scene,
-    settings: GridSettings,
-    stations: bytes,
-    further: bytes = b"",
-    fins: tuple[Fin, ...] = (),
-) -> Discretisation:
-    """Tabulate `body` in `scene` on a grid of these `settings`, and at the `stations`.
+def discretise(setup: SimulationSetup, settings: GridSettings) -> Discretisation:
+    """Tabulate the body in its scene on a grid of these `settings`, and at the stations.
 
-    stations, further: the bytes of the arrays of their X [m]; the latter are points at which laws are tabulated too.
     `ValueError` for a body without inertia in some direction.
     """
+    body, scene = setup.body, setup.scene
     wrench = scene.internal_wrench or scene.ledger
     panels = panels_of(body, settings.resolution, settings.knots, wrench, settings.edges)
-    return _on_panels(body, scene, panels, settings.kinks, stations, further, fins)
+    further = b"" if setup.modes is None else setup.modes.points.tobytes()
+    return _on_panels(body, scene, panels, settings.kinks, setup.x.tobytes(), further, setup.fins)
 
 
 @lru_cache(maxsize=256)
@@ -67,7 +55,10 @@ def _on_panels(
     further: bytes,
     fins: tuple[Fin, ...],
 ) -> Discretisation:
-    """Many resolutions give the same `panels`: nodes fill blocks of eight."""
+    """Many resolutions give the same `panels`: nodes fill blocks of eight.
+
+    stations, further: the bytes of the arrays of their X [m]; the latter are points at which laws are tabulated too.
+    """
     x, grid = np.frombuffer(stations), Grid.of(panels)
     sections = sections_on(body, scene, grid)
     check_inertia(grid, sections, nose_of(body, scene)[0], body.length, scene.planar, body.offset)

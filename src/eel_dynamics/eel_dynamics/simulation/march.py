@@ -71,9 +71,7 @@ class March:
             raise SimulationStopped(0.0, "kinetic energy", self.energy_at_start, "start slower")
 
     def _on_grid(self, settings: GridSettings) -> tuple[Discretisation, RobotTables | None]:
-        setup, table = self.setup, self.setup.modes
-        further = b"" if table is None else table.points.tobytes()
-        here = discretise(setup.body, setup.scene, settings, setup.x.tobytes(), further, setup.fins)
+        here, table = discretise(self.setup, settings), self.setup.modes
         return here, None if table is None else RobotTables.of(table, here.grid, here.tabulation)
 
     @property

@@ -71,7 +71,7 @@ class SampledSwimmers:
         self._points, self._waves = points, waves
         sample = self.check(np.zeros((6, len(points))))
         settings = GridSettings.of(self.accuracy, ShapeNeeds(sample.waves))
-        self._discretisation = discretise(self.body, self.scene, settings, self.x.tobytes())
+        self._discretisation = discretise(setup, settings)
         self.grid = self._discretisation.grid
         self._marches = eel_core.SampledMarches(
             self._discretisation.swimmer,

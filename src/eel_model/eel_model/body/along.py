@@ -1,39 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A number of the body along X, such as its mass per length: one value, a function, or values at the body's points."""
+"""What a body is given along X: its half-axes, and numbers such as its mass per length.
+
+A half-axis grows like sqrt(X) at a rounded nose. Only its square is smooth there.
+"""
 
 from collections.abc import Sequence
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from eel_base.quantity import checked_row, is_finite, number
 from eel_base.wording import shown
+from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
-from eel_model.body.shapes import piecewise
+from eel_model.body.shapes import piecewise, values_along
 
 ROUND_OFF = 1e-12  # of the greatest value, by which one may be below a minimum
+DEGREE = 48  # of the polynomial through the square of a half-axis on each panel, for its derivative
+Bounds = Sequence[float]  # m: 0, kinks, length; between two of them a field is smooth
 
 
 class AlongBody:
-    """Values along X [m], smooth between the `bounds` (0, kinks, length) [m].
+    """Values along X [m], smooth between the `bounds`.
 
     given: a number, a function of X, or an array at the points `x` (M,) [m], between which monotone cubics go.
     `ValueError` for values that are not finite, or below `minimum`.
     """
 
     def __init__(
-        self,
-        name: str,
-        unit: str,
-        given: Any,
-        x: np.ndarray | None,
-        bounds: Sequence[float],
-        minimum: float | None = None,
+        self, name: str, unit: str, given: Any, x: np.ndarray | None, bounds: Bounds, minimum: float | None = None
     ) -> None:
         self.given, self._length, self._cubics = given, bounds[-1], None
         if callable(given):
-            at = np.concatenate([np.linspace(*ends, 64) for ends in pairwise(bounds)])
+            at = _points(bounds)
             values = self(at)
         elif is_finite(given):
             self.given = number(name, given, minimum=minimum, unit=unit)
@@ -41,9 +42,7 @@ class AlongBody:
         elif x is None:
             raise ValueError(f"{name} must be a number or a function of X, or an array with x=, got {shown(given)}")
         else:
-            self.given = values = checked_row(name, given, None)
-            if values.shape != x.shape:
-                raise ValueError(f"{name} must have as many values as x, {len(x)}, got {len(values)}")
+            self.given = values = _checked_values(name, given, x)
             at, self._cubics = x, _cubics(x, values, bounds)
         least = -np.inf if minimum is None else minimum - ROUND_OFF * np.max(np.abs(values))
         wrong = ~np.isfinite(values) | (values < least)
@@ -60,15 +59,91 @@ class AlongBody:
         return np.array(np.broadcast_to(self.given(at) if callable(self.given) else self.given, at.shape), dtype=float)
 
 
-def _cubics(x: np.ndarray, values: np.ndarray, bounds: Sequence[float]) -> tuple[list[Any], np.ndarray]:
+class HalfAxis:
+    """A half-axis along X [m]: a function that returns m, or an array [m] at the points `x` (M,) [m].
+
+    Monotone cubics (Fritsch and Butland) go through the squares of an array. `ValueError` for a half-axis that is not 0
+    at the nose, or not positive inside.
+
+    Attributes:
+        given: the function, or X and values (2, M).
+        breaks: X [m] inside the body where a derivative may jump: the points of an array.
+    """
+
+    def __init__(self, name: str, given: Any, x: np.ndarray | None, bounds: Bounds) -> None:
+        self._bounds = bounds
+        if x is None:
+            if not callable(given):
+                raise ValueError(f"body {name} must be a function of X, or an array with x=, got {shown(given)}")
+            self.given, self.breaks, self._cubics = given, np.empty(0), None
+            at = _points(bounds)
+            values = values_along(given, at)
+            if not np.isfinite(values).all():
+                worst = np.flatnonzero(~np.isfinite(values))[0]
+                raise ValueError(f"body {name} must be finite, got {values[worst]} at X = {at[worst]:.6g} m")
+        else:
+            at, values = x, _checked_values(f"body {name}", given, x)
+            self.given, self.breaks = np.stack((x, values)), x[1:-1]
+            self._cubics = _cubics(x, values**2, bounds)
+        _check_shape(name, at, values, bounds[-1])
+
+    def square(self, x: np.ndarray) -> np.ndarray:
+        """[m^2] at `x` [m]."""
+        x = np.clip(x, 0.0, self._bounds[-1])
+        if self._cubics is None:
+            return values_along(self.given, x) ** 2
+        return np.asarray(np.maximum(0.0, piecewise(*self._cubics, x)))
+
+    def slope(self, x: np.ndarray) -> np.ndarray:
+        """Derivative of the square by X [m] at `x` [m]; of a function, from the polynomial through it on each panel."""
+        return piecewise(*self._slopes, np.clip(x, 0.0, self._bounds[-1]))
+
+    @cached_property
+    def _slopes(self) -> tuple[list[Any], Any]:
+        if self._cubics is not None:
+            return [piece.derivative() for piece in self._cubics[0]], self._cubics[1]
+        # Gauss points lie inside the panel: a jump at its ends is not seen.
+        series = (
+            chebyshev.Chebyshev.interpolate(lambda x: values_along(self.given, x) ** 2, DEGREE, domain=ends)
+            for ends in pairwise(self._bounds)
+        )
+        return [each.deriv() for each in series], self._bounds
+
+
+def _points(bounds: Bounds) -> np.ndarray:
+    """X [m] at which a function is checked."""
+    return np.concatenate([np.linspace(*ends, 64) for ends in pairwise(bounds)])
+
+
+def _checked_values(name: str, given: Any, x: np.ndarray) -> np.ndarray:
+    values = checked_row(name, given, None)
+    if values.shape != x.shape:
+        raise ValueError(f"{name} must have as many values as x, {len(x)}, got {len(values)}")
+    return values
+
+
+def _cubics(x: np.ndarray, values: np.ndarray, bounds: Bounds) -> tuple[list[Any], np.ndarray]:
     """Monotone cubics (Fritsch and Butland), one between two kinks that are points, and where they start."""
     from scipy.interpolate import PchipInterpolator
 
-    cuts = cuts_at(x, bounds)
+    near = [int(np.argmin(np.abs(x - kink))) for kink in bounds[1:-1] if np.min(np.abs(x - kink)) < 1e-9 * x[-1]]
+    cuts = [0, *near, len(x) - 1]
     return [PchipInterpolator(x[i : j + 1], values[i : j + 1]) for i, j in pairwise(cuts)], x[cuts[:-1]]
 
 
-def cuts_at(x: np.ndarray, bounds: Sequence[float] | np.ndarray) -> list[int]:
-    """The indices of the points `x` (M,) [m] at which a curve through them is cut: the ends, and those at a kink."""
-    near = [int(np.argmin(np.abs(x - kink))) for kink in bounds[1:-1] if np.min(np.abs(x - kink)) < 1e-9 * x[-1]]
-    return [0, *near, len(x) - 1]
+def _check_shape(name: str, x: np.ndarray, values: np.ndarray, length: float) -> None:
+    """`ValueError` unless the half-axis is 0 at the nose and positive inside."""
+    if np.any(values < 0.0):
+        worst = np.argmin(values)
+        raise ValueError(f"body {name} must be >= 0 m, got {values[worst]:.6g} at X = {x[worst]:.6g} m")
+    if values[0] > 1e-9 * length:
+        raise ValueError(
+            f"body {name} must be 0 m at the nose (X = 0): a blunt nose would shed a wake, got {values[0]:.6g}"
+        )
+    inside = (x > 0.0) & (x < length)
+    if np.any(values[inside] == 0.0):
+        worst = x[inside][np.argmin(values[inside])]
+        raise ValueError(
+            f"body {name} must be > 0 m between nose and tail, got 0 at X = {worst:.6g} m: such a section is singular, "
+            f"without inertia along axes 1 and {3 if name == 'half_width' else 2}"
+        )

@@ -21,10 +21,9 @@ from eel_base.wording import not_one_of, shown
 from eel_gaits.sources.tables import read_table
 from numpy.typing import ArrayLike
 
-from eel_model.body.along import AlongBody
+from eel_model.body.along import AlongBody, HalfAxis
 from eel_model.body.body_picture import lines_of_body, picture_of_body
 from eel_model.body.grid import Grid
-from eel_model.body.half_axis import ArrayHalfAxis, FunctionHalfAxis
 from eel_model.body.moments import with_moments
 from eel_model.body.panels import panels_of
 from eel_model.body.shapes import KINKS, NamedHalfAxis
@@ -111,20 +110,11 @@ class Body:
         self.kinks = self._checked_kinks(kinks)
         self.panel_ends = (*(self.kinks or (PANEL_OF_NOSE * self.length,)), self.length)
         bounds = (0.0, *self.panel_ends)
-        kind = (
-            FunctionHalfAxis
-            if x is None
-            else (
-                lambda name, values, bounds: ArrayHalfAxis(name, x, checked_row(f"body {name}", values, None), bounds)
-            )
-        )
-        self._half_width = kind("half_width", half_width, bounds)
-        self._half_height = kind("half_height", half_height, bounds)
-        self._mass = (
-            None
-            if mass_per_length is None
-            else AlongBody("body mass_per_length", "kg/m", mass_per_length, x, bounds, 0.0)
-        )
+        self._half_width = HalfAxis("half_width", half_width, x, bounds)
+        self._half_height = HalfAxis("half_height", half_height, x, bounds)
+        self._mass: AlongBody | None = None
+        if mass_per_length is not None:
+            self._mass = AlongBody("body mass_per_length", "kg/m", mass_per_length, x, bounds, 0.0)
         self._offset = AlongBody("body centre_of_mass_offset", "m", centre_of_mass_offset, x, bounds)
         self.offset = self._checked_offset()
         self.nose = self._checked_nose(nose)
@@ -171,20 +161,15 @@ class Body:
         """The half-axes as they were given: functions of X, or arrays (2, M) of X and half-axis [m]."""
         return {"half_width": self._half_width.given, "half_height": self._half_height.given}
 
-    @cached_property
+    @property
     def breaks(self) -> np.ndarray:
         """X [m] inside the body where a derivative of a half-axis from data may jump: its data points."""
         return self._half_width.breaks
 
     def squares(self, x: ArrayLike) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """a^2, b^2 [m^2] and their derivatives by X [m] at `x` (M,) [m]. A kink has the derivative ahead of it."""
-        x = np.asarray(x, dtype=float)
-        return (
-            self._half_height.square(x),
-            self._half_width.square(x),
-            self._half_height.slope(x),
-            self._half_width.slope(x),
-        )
+        at, height, width = np.asarray(x, dtype=float), self._half_height, self._half_width
+        return height.square(at), width.square(at), height.slope(at), width.slope(at)
 
     @cached_property
     def pointed_tail(self) -> bool:
@@ -227,20 +212,19 @@ class Body:
     def arguments(self) -> dict[str, Any]:
         """The arguments of an equal body."""
         shape = self.half_axes
-        if isinstance(self._half_width, ArrayHalfAxis):
+        if len(self.breaks):
             shape = {"x": shape["half_width"][0], **{name: values[1] for name, values in shape.items()}}
-        names = ("length", "kinks", "nose", *NUMBERS, "name")
-        given = None if self._mass is None else self._mass.given
-        masses = {"mass_per_length": given, "centre_of_mass_offset": self._offset.given}
-        own = {"density": self._density if given is None else None}
-        return shape | {name: own[name] if name in own else getattr(self, name) for name in names} | masses
+        shape |= {name: getattr(self, name) for name in ("length", "kinks", "nose")}
+        shape |= {"density": self._density if self._mass is None else None}
+        own = {name: getattr(self, name) for name in (*NUMBERS[1:], "name")}
+        masses = {"mass_per_length": self._mass and self._mass.given, "centre_of_mass_offset": self._offset.given}
+        return shape | own | masses
 
     def changed(self, **changes: Any) -> "Body":
         """The same body with other `arguments`."""
-        unknown = [name for name in changes if name not in self.arguments]
-        if unknown:
-            raise ValueError(f"body has no {shown(unknown[0])}, it has: {', '.join(self.arguments)}")
         own = self.arguments
+        if unknown := [name for name in changes if name not in own]:
+            raise ValueError(f"body has no {shown(unknown[0])}, it has: {', '.join(own)}")
         if changes.get("mass_per_length") is not None:
             own["density"] = None
         return Body(**own | changes)
