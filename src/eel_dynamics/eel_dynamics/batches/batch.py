@@ -2,7 +2,7 @@
 """Many swimmers at once: what `simulate_batch` returns."""
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,6 +14,7 @@ from eel_model.equality import same_fields
 from eel_model.fins.fins import Fin
 from eel_model.flow.flow import Flow
 from eel_model.flow.plain import flow_of
+from eel_model.robot.joint import Joint
 from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
 
@@ -25,18 +26,12 @@ from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.run_picture import lines_of_batch, picture_of_batch
 from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.storage.netcdf import loaded, write
-from eel_dynamics.runs.storage.run_contents import (
-    contents_of_batch,
-    fins_of,
-    motion_of_batch,
-    observed_of_batch,
-    with_warnings,
-)
+from eel_dynamics.runs.storage.run_contents import contents_of_batch, fins_of, with_warnings
 from eel_dynamics.runs.storage.tables import dataset_of, frame_of_all, needed
-from eel_dynamics.runs.storage.variables import COUNTS, Contents, documented_arrays
-from eel_dynamics.simulation.bending.joint_motion import Motion
+from eel_dynamics.runs.storage.variables import COUNTS, OWN, VARIABLES, Contents, documented_arrays, fields_of_arrays
+from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS
 from eel_dynamics.simulation.energy import EnergyLedger
-from eel_dynamics.simulation.observations import FINS, LOAD, Observations
+from eel_dynamics.simulation.observations import FINS, LOAD, WRENCH
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 ALONG = "backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force"
@@ -91,8 +86,8 @@ class Batch:
     motor_power: np.ndarray | None = None
     mode_amplitude: np.ndarray | None = None
     mode_rate: np.ndarray | None = None
-    _out: tuple[Any, ...] = ()  # observations, works, energy at the start, of all, for `__getitem__`
-    _joints: Motion | None = None
+    _arrays: dict[str, np.ndarray] = field(default_factory=dict)  # all, as of `storage.variables.arrays_of`
+    _energy_at_start: np.ndarray | None = None  # (B,) J
 
     def __len__(self) -> int:
         return len(self.laws)
@@ -122,8 +117,8 @@ class Batch:
 
     @property
     def _contents(self) -> Contents:
-        out, works, start = self._out
-        return contents_of_batch(self, out, works, start, None if self._joints is None else self._joints.ledger)
+        assert self._energy_at_start is not None
+        return contents_of_batch(self, self._arrays, self._energy_at_start)
 
     @property
     def valid(self) -> np.ndarray:
@@ -144,26 +139,32 @@ class Batch:
     def __getitem__(self, index: int) -> Run:
         """Swimmer `index` as a `Run`, with the samples that it has."""
         index = range(len(self))[index]
-        out, works, start = self._out
         scene, robot, done = self.scenes[index], self.robots[index], int(self.samples[index])
+        swimmer = Swimmer(
+            *(self.laws[index], self.bodies[index], scene, self.x[index]),
+            *(self.flows[index], robot, self.fins[index]),
+        )
+        parts = () if robot is None else robot.parts
+        modes = [part.modes for part in parts if not isinstance(part, Joint)]
+        most = {"fin": len(swimmer.fins), "joint": len(parts) - len(modes), "mode": sum(modes)}
+        absent = {*(() if scene.internal_wrench and self.backbone is not None else WRENCH)}
+        absent |= {*(() if self.fluid_force is not None else LOAD), *(() if scene.ledger else VARIABLES.keys() - OWN)}
+        absent |= {*(() if swimmer.fins else FINS), *(JOINT_ARRAYS if robot is None else ())}
+        arrays = {}
+        for name, array in self._arrays.items():
+            if name not in absent:
+                own = most.get("".join(VARIABLES[name].dimensions[1:2]))  # of fins, joints and modes
+                arrays[name] = array[index, :done] if own is None else array[index, :done, :own]
         return Run.of(
-            Swimmer(
-                *(self.laws[index], self.bodies[index], scene, self.x[index]),
-                *(self.flows[index], robot, self.fins[index]),
-            ),
-            out[index],
-            works=works[index, :done],
-            start=start[index],
-            time=self.time[:done],
-            wrench=scene.internal_wrench and self.backbone is not None,
-            load=self.fluid_force is not None,
+            swimmer,
+            self.time[:done],
+            arrays,
             law=self.laws[index],
             accuracy=self.accuracies[index],
             steps=int(self.steps[index]),
             evaluations=int(self.evaluations[index]),
             nodes=int(self.nodes[index]),
             error_estimate=self.error_estimates[index],
-            joints=None if robot is None or self._joints is None else self._joints.one(index, robot),
         )
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -214,26 +215,26 @@ def batch_of(
     swimmers: list[Swimmer],
     found: tuple[Any, ...],
     times: np.ndarray,
-    out: Observations,
-    works: np.ndarray,
+    arrays: dict[str, np.ndarray],
     start: np.ndarray,
-    wrench: list[bool],
-    load: bool,
-    stations: Any,
+    stations: bool,
 ) -> Batch:
-    """The batch of these `swimmers`: what was `found` of each, and all that was observed."""
-    settings, errors, estimates, (samples, steps, evaluations, nodes), joints = found
-    ledger_of_robots = None if joints is None else joints.ledger
-    finned = any(each.fins for each in swimmers)
-    absent = {"energies", "powers", "closure", *LOAD, *FINS}
-    absent -= {*(("fluid_force",) if load else ()), *(FINS if finned else ())}
-    observed: dict[str, Any] = {name: array for name, array in out.arrays().items() if name not in absent}
-    none = [*(ALONG if stations is None else ()), *(() if all(wrench) else ("torque", "force"))]
-    ledger = all(each.scene.ledger for each in swimmers)
+    """The batch of these `swimmers`: what was `found` of each, and all `arrays` of them.
+
+    start (B,) [J]: the energies there. stations: whether there are profiles.
+    """
+    settings, errors, estimates, (samples, steps, evaluations, nodes) = found
+    scenes = tuple(each.scene for each in swimmers)
+    wrench = all(each.internal_wrench for each in scenes)
+    none = [*(() if stations else ALONG), *(() if wrench else ("torque", "force"))]
+    if any(each.robot for each in swimmers):
+        arrays = dict.fromkeys(JOINT_ARRAYS, np.zeros((*arrays["position"].shape[:2], 0))) | arrays
+    energy = fields_of_arrays(arrays, None)["energy"] if all(each.ledger for each in scenes) else None
+    names = {item.name for item in fields(Batch)} & OWN.keys() - {"time", "x"}
     return Batch(
         laws=tuple(each.law for each in swimmers),
         bodies=tuple(each.body for each in swimmers),
-        scenes=tuple(each.scene for each in swimmers),
+        scenes=scenes,
         accuracies=tuple(settings),
         time=times,
         samples=samples,
@@ -243,14 +244,13 @@ def batch_of(
         nodes=nodes,
         error_estimates=tuple(estimates),
         x=np.array([each.x for each in swimmers]),
-        energy=EnergyLedger.of(out.energies, out.powers, works, start[:, None], ledger_of_robots) if ledger else None,
+        energy=energy,
         flows=tuple(each.flow for each in swimmers),
         robots=tuple(each.robot for each in swimmers),
         fins=tuple(each.fins for each in swimmers),
-        _joints=joints,
-        _out=(out, works, start),
-        **({} if joints is None else joints.arrays),
-        **{"fluid_force": None} | observed | dict.fromkeys(none),
+        _arrays={name: array for name, array in arrays.items() if array.size},
+        _energy_at_start=start,
+        **dict.fromkeys(names) | {name: arrays[name] for name in names & arrays.keys()} | dict.fromkeys(none),
     )
 
 
@@ -275,14 +275,13 @@ def _batch_from(
     count = len(arrays["samples"])
     if any(len(each) != count for each in (laws, bodies, scenes, settings, errors, estimates)):
         raise ValueError(f"there must be a law, a body, a scene and settings for each of {count} swimmers")
-    out, works = observed_of_batch(contents)
-    stations, start = values["stations"] or None, arrays["energy_at_start"]
-    wrench = [scene.internal_wrench and stations is not None for scene in scenes]
     flows = flows or [flow_of(each) for each in values.get("flows", count * [None])]
     fins = fins or [fins_of(each) for each in values.get("fins", count * [()])]
     robots = robots or [
         plain.robot_of(each, body) for each, body in zip(values.get("robots", count * [None]), bodies, strict=True)
     ]
     swum = list(map(Swimmer, laws, bodies, scenes, arrays["x"], flows, robots, fins))
-    found = settings, errors, estimates, counts, motion_of_batch(contents) if any(robots) else None
-    return batch_of(swum, found, arrays["time"], out, works, start, wrench, "fluid_force" in arrays, stations)
+    absent = {name for group in (WRENCH, LOAD, FINS) if group[0] not in arrays for name in group}  # 0 in older files
+    ours = {name: each for name, each in arrays.items() if name in VARIABLES.keys() - absent - {"time", "x"}}
+    found = settings, errors, estimates, counts
+    return batch_of(swum, found, arrays["time"], ours, arrays["energy_at_start"], bool(values["stations"]))

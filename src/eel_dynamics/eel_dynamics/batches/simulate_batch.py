@@ -29,6 +29,7 @@ from eel_dynamics.runs.motions import check_duration
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
 from eel_dynamics.runs.settled_duration import duration_of
+from eel_dynamics.runs.storage.variables import arrays_of
 from eel_dynamics.runs.swim_request import SwimRequest
 from eel_dynamics.simulation.bending.joint_motion import JointMotion, Motion
 from eel_dynamics.simulation.energy import WORKS
@@ -119,11 +120,12 @@ def simulate_batch(
         run = found.run
         if found.out is not space:  # other profiles or fins than others have, or a finer run
             for name, array in found.out.arrays().items():
-                row = getattr(out, name)[index, : len(array)]
-                (row[:, : array.shape[1]] if name in FINS else row)[...] = array
-        works[index], start[index], errors[index] = found.works, found.energy_at_start, found.stopped
+                row = getattr(out, name)[index, : len(array[:: found.every])]
+                (row[:, : array.shape[1]] if name in FINS else row)[...] = array[:: found.every]
+        works[index] = found.works[:: found.every]
+        start[index], errors[index] = found.energy_at_start, found.stopped
         settings[index], estimates[index] = run.accuracy, run.error_estimate
-        joints[index] = found.joints
+        joints[index] = found.joints and found.joints.every(found.every)
         counts[:, index] = len(run.time), run.steps, run.evaluations, run.nodes
 
     _for_each(swim, count, threads, progress)
@@ -131,11 +133,10 @@ def simulate_batch(
         for array in (*out[index].arrays().values(), works[index]):
             array[samples[index] :] = 0.0
     swum = [Swimmer(law, *(getattr(setup, name) for name in Swimmer._fields[1:])) for law, setup in swimmers]
-    robots = None
-    if any(setup.robot for _, setup in swimmers):
-        robots = Motion.of_many(joints, samples, len(times))
-    found = settings, errors, estimates, counts, robots
-    return batch_of(swum, found, times, out, works, start, wrench, load, stations)
+    robots = any(setup.robot for _, setup in swimmers)
+    motion = Motion.of_many(joints, samples, len(times)) if robots else None
+    arrays = arrays_of(out, works, start[:, None], motion)
+    return batch_of(swum, (settings, errors, estimates, counts), times, arrays, start, stations is not None)
 
 
 def available_cores() -> int:

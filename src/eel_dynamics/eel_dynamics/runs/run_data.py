@@ -20,9 +20,9 @@ from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
-from eel_dynamics.simulation.bending.joint_motion import JointMotion, Motion
+from eel_dynamics.runs.storage.variables import fields_of_arrays
 from eel_dynamics.simulation.energy import EnergyLedger
-from eel_dynamics.simulation.observations import FINS, LOAD, OBSERVED, WRENCH, Observations, Snapshot
+from eel_dynamics.simulation.observations import OBSERVED, Snapshot
 
 WHOLE = "energies", "powers", "closure"  # of what is observed: a run has the ledger, and the closures one by one
 
@@ -76,56 +76,13 @@ class RunData:
     axes: str = REP103  #: of world and head: "rep103" (x forward, y left, z up), or "paper"
 
     @classmethod
-    def of(
-        cls,
-        setup: Any,
-        out: Observations,
-        *,
-        works: np.ndarray,
-        start: float,
-        time: np.ndarray,
-        wrench: bool,
-        load: bool,
-        joints: JointMotion | Motion | None = None,
-        **others: Any,
-    ) -> Self:
-        """The run of the samples in `out` that were reached.
+    def of(cls, setup: Any, time: np.ndarray, arrays: dict[str, np.ndarray], **others: Any) -> Self:
+        """The run with these `arrays` (`storage.variables.arrays_of`) at `time` (T,) [s].
 
-        Args:
-            setup: has the body, the scene, the flow and the stations x.
-            works: (T, 6) [J], of those samples.
-            start: [J], the energy at the start.
-            time: (T,) [s].
-            wrench: whether the internal wrench was observed.
-            load: whether the water's load was.
-            joints: the motion of a robot's joints at all samples.
-            others: the other fields of the run.
+        setup: has the body, the scene, the flow, the robot, the fins and the stations x. others: further fields.
         """
-        absent = {*(() if wrench else WRENCH), *(() if load else LOAD), *(() if setup.fins else FINS)}
-        observed: dict[str, Any] = {
-            name: None if name in absent else array[: len(time)] for name, array in out.arrays().items()
-        }
-        for name in FINS if setup.fins else ():  # of a batch there may be places for more
-            observed[name] = observed[name][:, : len(setup.fins)]
-        robot = None
-        if joints is not None:
-            observed |= {name: array[: len(time)] for name, array in joints.arrays.items()}
-            robot = joints.ledger[: len(time)]
-        energies, powers, closure = (observed.pop(name) for name in WHOLE)
-        return cls(
-            body=setup.body,
-            scene=setup.scene,
-            flow=setup.flow,
-            x=setup.x,
-            time=time,
-            robot=setup.robot,
-            fins=setup.fins,
-            energy=EnergyLedger.of(energies, powers, works, start, robot) if setup.scene.ledger else None,
-            closure_torque=None if closure is None else closure[:, 0],
-            closure_force=None if closure is None else closure[:, 1],
-            **observed,
-            **others,
-        )
+        own = {name: getattr(setup, name) for name in ("body", "scene", "flow", "robot", "fins")}
+        return cls(**own, **fields_of_arrays(arrays | {"time": time, "x": setup.x}, setup.robot), **others)
 
     @classmethod
     def of_snapshots(cls, snapshots: Sequence[Snapshot], swimmer: Any, law: Law, **others: Any) -> Self:

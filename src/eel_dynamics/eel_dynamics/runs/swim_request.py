@@ -16,6 +16,7 @@ from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.runs.companion import stable_step
 from eel_dynamics.runs.run_data import RunData
 from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
+from eel_dynamics.runs.storage.variables import arrays_of
 from eel_dynamics.simulation.bending.joint_motion import JointMotion
 from eel_dynamics.simulation.observations import Observations
 from eel_dynamics.simulation.simulation import Simulation
@@ -37,6 +38,7 @@ class SwimResult(NamedTuple, Generic[Kind]):
     stopped: SimulationStopped | None
     joints: JointMotion | None = None  # of a robot
     compared: Any = None  # the run at all instants of the request, for the estimate of its error
+    every: int = 1  # so many instants of `out`, `works` and `joints` for each sample of the run
 
 
 class SwimRequest(NamedTuple, Generic[Kind]):
@@ -103,37 +105,17 @@ class SwimRequest(NamedTuple, Generic[Kind]):
         out: Observations | None = None,
     ) -> SwimResult[Kind]:
         """Swim it with a `simulation` of its own, at its start. look, out: as in `Simulation.record`."""
-        instants = self.instants
+        instants, setup = self.instants, self.setup
         out, works, done, stopped = simulation.record(instants, self.wrench, self.load, look, out)
         start, (steps, _, evaluations) = simulation.energy_at_start, simulation.evaluations
-        joints = simulation.joints
-
-        def run_of(out: Observations, time: np.ndarray) -> Kind:
-            return self.kind.of(
-                self.setup,
-                out,
-                works=works[: len(time)],
-                start=start,
-                time=time,
-                wrench=self.wrench,
-                load=self.load,
-                law=self.law,
-                accuracy=simulation.accuracy,
-                steps=steps,
-                evaluations=evaluations,
-                nodes=len(simulation.grid.x),
-                joints=joints,
-            )
-
-        run = compared = run_of(out, instants[:done])
+        arrays = arrays_of(out, works, start, simulation.joints, done, bool(setup.scene.ledger))
+        others = {"law": self.law, "accuracy": simulation.accuracy, "nodes": len(simulation.grid.x)}
+        others |= {"steps": steps, "evaluations": evaluations}
+        run = compared = self.kind.of(setup, instants[:done], arrays, **others)
         if self.every > 1:
-            setup, all_of_it = self.setup, out.arrays()
-            out = Observations.empty(len(self.times), len(setup.x), self.wrench, self.load, fins=len(setup.fins))
-            for name, array in out.arrays().items():
-                array[...] = all_of_it[name][:: self.every]
-            works, joints = works[:: self.every], joints and joints.every(self.every)
-            run = run_of(out, compared.time[:: self.every])
-        return SwimResult(run, out, works, start, stopped, joints, compared)
+            sampled = {name: np.ascontiguousarray(each[:: self.every]) for name, each in arrays.items()}
+            run = self.kind.of(setup, compared.time[:: self.every], sampled, **others)
+        return SwimResult(run, out, works, start, stopped, simulation.joints, compared, self.every)
 
     def swim_to_end(self, look: Callable[[float], None] | None = None) -> SwimResult[Kind]:
         """Swim it. `SimulationStopped`, with the samples so far as its `run`, where it does not come to its end."""

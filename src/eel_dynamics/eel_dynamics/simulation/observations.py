@@ -117,10 +117,8 @@ class Observations:
 
 
 OBSERVED = {name: each.variable for name, each in vars(Observations).items() if isinstance(each, Observed)}
-WRENCH = ("torque", "force", "closure")  # quantities of the internal wrench
+WRENCH = ("torque", "force", "closure_torque", "closure_force")  # of the internal wrench, as a run has it
 LOAD = ("fluid_force", "resistive_force", "tail_force", "nose_force", "wake_momentum_rate")  # of the water's load
-
-
 FINS = ("fin_angle", "fin_force")
 
 

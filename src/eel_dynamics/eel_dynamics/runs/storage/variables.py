@@ -12,9 +12,9 @@ from typing import Any, NamedTuple, TypeVar, get_type_hints
 import numpy as np
 from eel_model.axes import REP103
 
-from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS
+from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS, OF_LEDGER
 from eel_dynamics.simulation.energy import EnergyLedger
-from eel_dynamics.simulation.observations import OBSERVED, Variable
+from eel_dynamics.simulation.observations import FINS, LOAD, OBSERVED, WRENCH, Observations, Variable
 
 Kind = TypeVar("Kind", bound=type)
 
@@ -24,14 +24,7 @@ LABELS = {  # of the dimensions that are neither time, station nor swimmer
     "quaternion": ("x", "y", "z", "w"),
     "component": ("omega_x", "omega_y", "omega_z", "v_x", "v_y", "v_z"),
 }
-SIZES = {
-    "time": "T",
-    "station": "M",
-    "swimmer": "B",
-    "fin": "F",
-    "joint": "J",
-    "mode": "N",
-}  # of other dimensions
+SIZES = {"time": "T", "station": "M", "swimmer": "B", "fin": "F", "joint": "J", "mode": "N"}  # of other dimensions
 CLOSURES = {
     "closure_torque": Variable(("time",), "N m", "magnitude of the internal torque left over at the nose"),
     "closure_force": Variable(("time",), "N", "magnitude of the internal force left over at the nose, less its load"),
@@ -67,6 +60,46 @@ def variable_of(kind: str, name: str) -> Variable:
     if kind == "run" or name == "time":
         return found
     return found._replace(dimensions=("swimmer", *found.dimensions))
+
+
+def arrays_of(
+    out: Observations, works: np.ndarray, start: Any, joints: Any = None, done: int | None = None, ledger: bool = True
+) -> dict[str, np.ndarray]:
+    """The arrays of a run by their names in `VARIABLES`, but time and x; or of a batch, with a first dimension.
+
+    out, works (T, 6) [J], start [J]: what was observed, the works since the start and the energy there. joints: the
+    motion of a robot's (`Motion`). done: the first so many of the instants. What was not asked for is left out.
+    """
+    arrays = {name: array[:done] for name, array in out.arrays().items()}
+    energies, powers, closure = (arrays.pop(name) for name in ("energies", "powers", "closure"))
+    arrays |= {"closure_torque": closure[..., 0], "closure_force": closure[..., 1]}
+    for first, *others in (WRENCH, LOAD, FINS):
+        if not all(out.places[first][1] or ()):
+            for name in (first, *others):
+                del arrays[name]
+    if joints is not None:
+        arrays |= {name: each[:done] for name, each in joints.arrays.items()}
+    if ledger:
+        energy = EnergyLedger.of(energies, powers, works[:done], start, joints and joints.ledger[:done])
+        arrays |= {ENERGY + name: energy[name] for name in LEDGER}
+    return arrays
+
+
+def fields_of_arrays(arrays: dict[str, np.ndarray], robot: Any) -> dict[str, Any]:
+    """The fields of a `Run` that `arrays` by their names in `VARIABLES` give; None for one that is not there.
+
+    robot: of the run; one of tails alone may have no arrays of joints. Files of still water or imposed bending need not
+    have those of the ledger.
+    """
+    energy: EnergyLedger | None = None
+    if ENERGY + "residual" in arrays:
+        none = np.zeros_like(arrays[ENERGY + "residual"])
+        later = "flow_power", "flow_work", "fins_power", "fins_work", *OF_LEDGER
+        absent = {name: none for name in later if ENERGY + name not in arrays}
+        energy = EnergyLedger(**absent | {name: arrays[ENERGY + name] for name in LEDGER if name not in absent})
+    if robot is not None:
+        arrays = dict.fromkeys(JOINT_ARRAYS, np.zeros((len(arrays["time"]), 0))) | arrays
+    return {name: arrays.get(name) for name in OWN} | {"energy": energy}
 
 
 def documented_arrays(kind: str) -> Callable[[Kind], Kind]:

@@ -10,8 +10,6 @@ from typing import NamedTuple
 
 import numpy as np
 from eel_model.robot.compiled import HINGE
-from eel_model.robot.joint import Joint
-from eel_model.robot.robot import Robot
 
 from eel_dynamics.simulation.bending.modes_on_grid import ModesOnGrid
 from eel_dynamics.simulation.observations import Variable
@@ -49,13 +47,6 @@ class Motion(NamedTuple):
                 if each:
                     space[:count, : each[name].shape[1]] = each[name][:count]
         return Motion(found, found.pop("ledger"))
-
-    def one(self, index: int, robot: Robot) -> "Motion":
-        """That of swimmer `index` of several."""
-        modes = sum(part.modes for part in robot.parts if not isinstance(part, Joint))
-        sizes = {"joint": len(robot.joints), "mode": modes}
-        cut = {name: sizes[about.dimensions[1]] for name, about in JOINT_ARRAYS.items()}
-        return Motion({name: self.arrays[name][index, :, :most] for name, most in cut.items()}, self.ledger[index])
 
 
 class JointMotion:
