@@ -3,7 +3,7 @@
 
 import time
 
-from eel_gaits.ros.messages import law_from_message
+from eel_gaits.laws.law_message import law_from_message
 from eel_ros.testing.service_call import answer_of
 from rcl_interfaces.srv import (
     DescribeParameters,

@@ -4,7 +4,8 @@
 import math
 
 import pytest
-from eel_gaits.ros.messages import law_from_message, law_to_message
+from eel_gaits.laws.law_message import law_from_message
+from eel_gaits.ros.messages import law_to_message
 from hypothesis import given
 from law_strategies import laws
 from rclpy.serialization import deserialize_message, serialize_message

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
-from eel_gaits.ros.messages import law_from_message
+from eel_gaits.laws.law_message import law_from_message
 from eel_ros.deliveries import Deliveries
 from eel_ros.loop.diagnostics import ERROR, Report
 from eel_ros.qos import latched

@@ -18,8 +18,7 @@ from eel_base.quantity import checked_instance, is_finite
 from eel_base.topics import ENERGY_FIELDS, LATER_ENERGY_FIELDS
 from eel_base.wording import one_line, shown
 from eel_gaits.laws.law import Law
-from eel_gaits.laws.ramp import Ramp
-from eel_gaits.laws.term import SECTION_COLUMN, Term
+from eel_gaits.laws.law_message import law_from_message
 from eel_model.body.body import Body, checked_body
 from eel_model.body.grid import Grid
 from eel_model.body.moments import with_moments
@@ -36,7 +35,6 @@ from eel_dynamics.simulation.energy import WORKS, EnergyLedger
 NEEDED = ("head_pose", "head_twist", "backbone", "curvature")
 FURTHER = ("internal_wrench", "hydrodynamic_load", "energy", "fin_states")
 FEWEST = 4  # samples, for splines through them
-AXIS_OF_NUMBER = {column + 1: name for name, column in SECTION_COLUMN.items()}  # as in CurvatureTerm
 
 
 def fields_of_bag(
@@ -174,21 +172,7 @@ def _law(once: dict[str, Any]) -> Law:
         warnings.warn(f"there are {len(laws)} laws: the run's law is the last one", stacklevel=4)
     message = laws[-1]
     origin = message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec
-    law = Law(*map(_term, message.terms), name=message.name, transition=message.transition)
-    return law.delayed(origin)
-
-
-def _term(term: Any) -> Term:
-    ramps = (Ramp(ramp.start, ramp.end, ramp.delta, getattr(ramp, "factor", 0)) for ramp in term.envelope)
-    return Term(
-        axis=AXIS_OF_NUMBER[term.axis],
-        amplitude=tuple(term.amplitude),
-        knots=tuple(term.knots),
-        wavelength=term.wavelength,
-        period=term.period,
-        phase=term.phase,
-        envelope=tuple(ramps),
-    )
+    return law_from_message(message).delayed(origin)
 
 
 def _body(once: dict[str, Any], scene: Scene) -> Body:
