@@ -33,7 +33,7 @@ def _term_from_message(term: Any, place: str) -> Term:
         known = " or ".join(f"{number} ({name})" for number, name in AXIS_NAMES.items())
         raise ValueError(f"{place}.axis must be {known}, got {term.axis}")
     ramps = [
-        _made(Ramp, f"{place}.envelope[{index}]", **{name: getattr(ramp, name, 0) for name in RAMP})  # no older factor
+        _made(Ramp, f"{place}.envelope[{index}]", **{name: getattr(ramp, name) for name in RAMP if hasattr(ramp, name)})
         for index, ramp in enumerate(term.envelope)
     ]
     return _made(
