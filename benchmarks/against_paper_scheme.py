@@ -7,7 +7,7 @@ from statistics import median
 from typing import Any
 
 import numpy as np
-from eel_studies.tradeoff.settings import REFERENCE
+from eel_studies.tradeoff.measuring import REFERENCE
 from measuring import REPEATS, Lines, environment, measured, times_in_turn
 
 from eel_dynamics import Body, Run, Scene, Simulation, simulate

@@ -11,7 +11,7 @@ from typing import Any
 
 import gymnasium
 import numpy as np
-from eel_studies.tradeoff.settings import REFERENCE
+from eel_studies.tradeoff.measuring import REFERENCE
 from measuring import MOTION, Lines, median_ratio, times_in_turn
 
 import eel_gym  # noqa: F401, it registers the environments

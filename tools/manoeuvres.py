@@ -15,8 +15,8 @@ import numpy as np
 from eel_base.attitude import heading
 from eel_base.files import markdown
 from eel_gaits.gaits.registry import GAITS
+from eel_studies.outputs import Table
 from eel_studies.pictures import BLUE, ORANGE, SETTINGS
-from eel_studies.table import Table
 from PIL import Image
 
 from eel_dynamics import simulate
@@ -107,7 +107,7 @@ class Swim:
             axes.plot(self.path[:, 0], self.path[:, 2], color=ORANGE, linewidth=1.2, label="from the side: z")
         axes.plot(*self.path[0, :2], "o", color="black", markersize=3)
         axes.set_aspect("equal", "datalim")
-        axes.legend(frameon=False)
+        axes.legend()
         axes.set(title="path", xlabel="x [m]", ylabel="m")
 
     def _torque(self, figure, axes):
@@ -117,6 +117,7 @@ class Swim:
         shown = slice(-steps, None) if self.name not in ONCE else slice(0, round(ONCE[self.name] / SAMPLE) + 1)
         torque = whole[shown, :, component]
         bound = np.max(np.abs(torque)) or 1.0
+        axes.grid(False)
         mesh = axes.pcolormesh(
             self.run.time[shown], self.run.x, torque.T, cmap="PuOr", vmin=-bound, vmax=bound, shading="gouraud"
         )

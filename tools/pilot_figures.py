@@ -16,11 +16,10 @@ import numpy as np
 from eel_base.files import markdown
 from eel_gaits.pilot.settings import PilotSettings
 from eel_model.fins.text import fins_from_text
+from eel_studies.outputs import Table
 from eel_studies.pictures import BLUE, ORANGE, write_picture
-from eel_studies.pilot.courses import figures_of, random_path, swim_path
-from eel_studies.pilot.moving_water import figures_in
+from eel_studies.pilot.courses import figures_in, figures_of, random_path, swim_path
 from eel_studies.roll_hold.study import PAIR
-from eel_studies.table import Table
 from matplotlib.patches import Circle
 
 ROOT = Path(__file__).resolve().parent.parent

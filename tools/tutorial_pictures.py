@@ -13,7 +13,7 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
-from eel_studies.pictures import BLUE, ORANGE, Figure, plain, write_picture
+from eel_studies.pictures import BLUE, ORANGE, Figure, write_picture
 
 from eel_dynamics import simulate
 from eel_gaits import straight
@@ -38,7 +38,6 @@ def draw_path(axes: Any, run: Any, **looks: Any) -> None:
     axes.plot(run.position[:, 0], run.position[:, 1], **looks)
     axes.set(xlabel="x [m]", ylabel="y [m]")
     axes.set_aspect("equal", "datalim")
-    axes.grid(alpha=0.3)
 
 
 def own_gait(figure: Figure, values: Values) -> None:
@@ -47,6 +46,7 @@ def own_gait(figure: Figure, values: Values) -> None:
     run = values["run"]
     rows = np.array([run.law.curvature(time, run.x)[0][:, 2] for time in run.time])
     bound = np.max(np.abs(rows))
+    law.grid(False)
     drawn = law.pcolormesh(run.time, run.x, rows.T, cmap="PuOr", vmin=-bound, vmax=bound, shading="gouraud")
     figure.colorbar(drawn, ax=law, label="$K_3$ [rad/m]")
     law.set(xlabel="time [s]", ylabel="X [m], nose to tail")
@@ -60,8 +60,8 @@ def own_controller(figure: Figure, values: Values) -> None:
     axes.plot(0.02 * np.arange(len(values["headings"])), values["headings"], color=BLUE, label="heading")
     axes.axhline(0.6, color=ORANGE, linestyle=(0, (4, 2)), label="goal")
     axes.set(xlabel="time [s]", ylabel="heading [rad]")
-    axes.legend(frameon=False)
-    plain(axes)
+    axes.legend()
+    axes.margins(x=0.0)
 
 
 def own_body(figure: Figure, values: Values) -> None:
@@ -72,7 +72,7 @@ def own_body(figure: Figure, values: Values) -> None:
         shape.fill_between(x, shift - half, shift + half, alpha=0.7, label=name)
     shape.set(xlabel="X [m], nose to tail", ylabel="[m]", ylim=(-0.12, 0.2))
     shape.set_aspect("equal")
-    shape.legend(frameon=False, loc="upper right", ncols=2)
+    shape.legend(loc="upper right", ncols=2)
     draw_path(path, values["run"], color=BLUE)
 
 
@@ -93,7 +93,7 @@ def motors(figure: Figure, values: Values) -> None:
     for axes, (label, row) in zip(figure.subplots(1, 2), labelled, strict=True):
         axes.semilogx([limit for limit, _ in found], row, marker="o", color=BLUE)
         axes.set(xlabel="torque limit [N m]", ylabel=label, ylim=(0.0, None))
-        plain(axes)
+        axes.margins(x=0.0)
 
 
 TUTORIALS: dict[str, Callable[..., None]] = {

@@ -1,6 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
 from setuptools import find_packages, setup
 
+COMMANDS = {  # of `eel`, in the order of its list: the folder of each
+    "sweep": "sweeps",
+    "optimise": "optimisation",
+    "identify": "identification",
+    "steering": "steering",
+    "roll-hold": "roll_hold",
+    "motors": "motors",
+    "drafting": "drafting",
+    "terms": "scene_terms",
+    "tradeoff": "tradeoff",
+    "stability": "stability",
+    "midlines": "midlines",
+    "life": "life",
+    "replay-joints": "replay",
+    "laws": "laws",
+    "figures": "figures",
+}
+OF_EEL_ALONE = "roll-hold", "drafting", "replay-joints"  # no executables of their own
+
 setup(
     name="eel_studies",
     version="0.1.0",
@@ -24,36 +43,11 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "midlines = eel_command:main_of.eel_studies.midlines.command",
-            "laws = eel_command:main_of.eel_studies.laws.command",
-            "life = eel_command:main_of.eel_studies.life.command",
-            "figures = eel_command:main_of.eel_studies.figures.command",
-            "motors = eel_command:main_of.eel_studies.motors.command",
-            "identify = eel_command:main_of.eel_studies.identification.command",
-            "optimise = eel_command:main_of.eel_studies.optimisation.command",
-            "sweep = eel_command:main_of.eel_studies.sweeps.command",
-            "stability = eel_command:main_of.eel_studies.stability.command",
-            "steering = eel_command:main_of.eel_studies.steering.command",
-            "terms = eel_command:main_of.eel_studies.scene_terms.command",
-            "tradeoff = eel_command:main_of.eel_studies.tradeoff.command",
+            f"{name} = eel_command:main_of.eel_studies.{folder}.command"
+            for name, folder in COMMANDS.items()
+            if name not in OF_EEL_ALONE
         ],
         "eel.commands.swim": ["compare = eel_studies.comparison.command"],
-        "eel.commands.study": [
-            "sweep = eel_studies.sweeps.command",
-            "optimise = eel_studies.optimisation.command",
-            "identify = eel_studies.identification.command",
-            "steering = eel_studies.steering.command",
-            "roll-hold = eel_studies.roll_hold.command",
-            "motors = eel_studies.motors.command",
-            "drafting = eel_studies.drafting.command",
-            "terms = eel_studies.scene_terms.command",
-            "tradeoff = eel_studies.tradeoff.command",
-            "stability = eel_studies.stability.command",
-            "midlines = eel_studies.midlines.command",
-            "life = eel_studies.life.command",
-            "replay-joints = eel_studies.replay.command",
-            "laws = eel_studies.laws.command",
-            "figures = eel_studies.figures.command",
-        ],
+        "eel.commands.study": [f"{name} = eel_studies.{folder}.command" for name, folder in COMMANDS.items()],
     },
 )

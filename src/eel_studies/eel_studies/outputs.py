@@ -2,32 +2,57 @@
 """What the command of a study leaves behind: pictures, tables, and the parts of a page that it writes anew."""
 
 import argparse
+import csv
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from eel_base.command.command_line import Parser
-from eel_base.files.markdown import with_part, write_page
-from eel_base.files.output_file import check_output, written_as
+from eel_base.files import markdown
+from eel_base.files.output_file import check_output, replacing, written_as
 from eel_dynamics.runs.storage.tables import needed
 
-from eel_studies.pictures import write_picture
-from eel_studies.table import Table
+from eel_studies.pictures import Draw, write_picture
 
 NEW = "<!-- {name}: written by `{command}` -->\n<!-- end of {name} -->\n\n"  # a part of a page that there is not yet
 
 
-def add_output_options(parser: Parser, folder: str = "out") -> None:
-    """Add the options of `Outputs` to the `parser` of a command. folder: where pictures go by default."""
-    parser.add_argument("-o", "--out", default=folder, metavar="FOLDER", help=f"where pictures go ({folder})")
+def add_output_options(parser: Parser) -> None:
+    """Add the options of `Outputs` to the `parser` of a command."""
+    parser.add_argument("-o", "--out", default="out", metavar="FOLDER", help="where pictures go (out)")
     parser.add_argument("--page", metavar="FILE.md", help="page whose parts are written anew, or a new one")
 
 
-def write_files(paths: list[Path], csv: Callable[[Path], object], draw: Callable[[Path], object]) -> None:
-    """Write each of the `paths` by csv(path) or draw(path), as its suffix says, and tell so."""
+class Table(NamedTuple):
+    """Rows of texts below a head. left: the columns that are aligned to the left, in `text`."""
+
+    head: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    left: Sequence[int] = (0,)
+
+    def text(self) -> str:
+        """The table as lines of aligned text."""
+        aligned = []
+        for place, column in enumerate(zip(self.head, *self.rows, strict=True)):
+            width = max(map(len, column))
+            aligned.append([cell.ljust(width) if place in self.left else cell.rjust(width) for cell in column])
+        return "\n".join("  ".join(line).rstrip() for line in zip(*aligned, strict=True))
+
+    def markdown(self) -> str:
+        """The table in Markdown."""
+        return markdown.table(self.head, self.rows)
+
+    def write_csv(self, path: Path) -> None:
+        """Write the table to `path`. `NotWritten` where it cannot be completed."""
+        with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
+            csv.writer(file).writerows((self.head, *self.rows))
+
+
+def write_files(paths: list[Path], table: Callable[[Path], object], draw: Draw, size: tuple[float, float]) -> None:
+    """Write each of the `paths`, and tell so: a .csv by table(path), a picture of `size` [inches] by draw(figure)."""
     for path in paths:
-        (csv if path.suffix == ".csv" else draw)(path)
+        table(path) if path.suffix == ".csv" else write_picture(draw, size, path)
         print(f"written to {written_as(path)}")
 
 
@@ -47,14 +72,14 @@ class Outputs:
             if self.page.exists():
                 text = self.page.read_text(encoding="utf-8")
                 for name in self._parts:
-                    with_part(text, name, "")
+                    markdown.with_part(text, name, "")
         self.folder.mkdir(exist_ok=True)
 
     def draw(
         self,
         name: str,
         title: str,
-        draw: Callable[[Any], object],
+        draw: Draw,
         size: tuple[float, float],
         suffixes: tuple[str, ...] = ("png", "svg"),
         settings: dict[str, Any] | None = None,
@@ -90,6 +115,6 @@ class Outputs:
         else:
             text, values = "".join(NEW.format(name=name, command=self._command) for name in names), None
         for name, value in (parts | (values or {})).items():
-            text = with_part(text, name, value)
-        write_page(page, text)
+            text = markdown.with_part(text, name, value)
+        markdown.write_page(page, text)
         print(f"written to {written_as(page)}")

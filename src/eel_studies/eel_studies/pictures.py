@@ -13,6 +13,7 @@ from eel_base.files.output_file import replacing
 
 Figure: TypeAlias = Any  # of matplotlib, which takes longer to import than all the rest
 Axes: TypeAlias = Any
+Draw: TypeAlias = Callable[[Figure], object]  # into an empty figure
 BLACK, BLUE, ORANGE, GREEN, PURPLE = "#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7"
 PALE_BLUE, GREY = "#d9e6f0", "#888888"
 LOOKS = (  # of several curves in one panel: colour, dash, mark
@@ -28,7 +29,10 @@ SETTINGS: dict[str, Any] = {
     "font.size": 9.0,
     "axes.spines.top": False,
     "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.alpha": 0.3,
     "legend.fontsize": "small",
+    "legend.frameon": False,
     "mathtext.fontset": "dejavusans",
     "svg.hashsalt": "eel",  # identical files from identical data
     "figure.dpi": 100,
@@ -55,12 +59,6 @@ def legend_above(figure: Figure, columns: int = 2) -> None:
     figure.legend(named.values(), named.keys(), loc="outside upper center", ncols=columns, frameon=False)
 
 
-def plain(axes: Axes) -> None:
-    """Add a grid to `axes` and remove the left and right margins."""
-    axes.grid(alpha=0.3)
-    axes.margins(x=0.0)
-
-
 def letter_panels(figure: Figure) -> None:
     """Put (a), (b), ... above the panels of a figure, where it has more than one; colour bars have none."""
     panels = [axes for axes in figure.axes if axes.get_label() != COLOUR_BAR]
@@ -68,9 +66,7 @@ def letter_panels(figure: Figure) -> None:
         axes.set_title(f"({chr(ord('a') + number)})", loc="left", fontsize="medium", fontweight="bold")
 
 
-def write_picture(
-    draw: Callable[[Figure], object], size: tuple[float, float], *paths: Path, settings: dict[str, Any] | None = None
-) -> None:
+def write_picture(draw: Draw, size: tuple[float, float], *paths: Path, settings: dict[str, Any] | None = None) -> None:
     """Draw with `draw(figure)` into an empty matplotlib figure, and write it to each of the `paths`.
 
     size: width and height [inches]. The suffix of a path gives the format. settings: of matplotlib, in place of those

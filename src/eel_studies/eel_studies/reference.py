@@ -8,7 +8,6 @@ import statistics
 import time
 import warnings
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -97,19 +96,6 @@ def reference_of(
     if best is None:
         raise stop or ValueError("no reference")
     return best
-
-
-def bare(swim: Swim, **scene: Any) -> Swim:
-    """The `swim` with torque and without the ledger, whose errors and times are compared. scene: further fields."""
-    return swim._replace(scene=replace(swim.scene, ledger=False, internal_wrench=True, **scene))
-
-
-def settled(swim: Swim, sample_period: float) -> Swim:
-    """The `swim` with a duration in s and so long a `sample_period` [s], unless it has one of its own."""
-    swim = swim._replace(sample_period=swim.sample_period or sample_period)
-    if isinstance(swim.duration, str):
-        swim = swim._replace(duration=float(swim.run(estimate=False).time[-1]))
-    return swim
 
 
 def front(rows: list[Any], error: Any, cost: Any) -> list[Any]:

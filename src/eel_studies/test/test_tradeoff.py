@@ -16,7 +16,7 @@ from eel_studies.tradeoff import measuring, report
 from eel_studies.tradeoff.command import main
 from eel_studies.tradeoff.delivered import Trial, delivered_table
 from eel_studies.tradeoff.drawing import _grouped
-from eel_studies.tradeoff.settings import ASKED_FOR, REFERENCE, settings
+from eel_studies.tradeoff.measuring import ASKED_FOR, REFERENCE, settings
 
 from eel_dynamics import Accuracy, Body, Robot, Scene, SimulationStopped, simulate
 from eel_gaits import falling, straight

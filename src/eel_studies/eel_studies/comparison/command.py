@@ -25,8 +25,8 @@ from eel_gaits.gaits.registry import gait
 from eel_model.body.body import Body, body_of
 from eel_model.scene import Scene
 
-from eel_studies.pictures import BLUE, ORANGE, Figure, legend_above, plain, write_picture
-from eel_studies.table import Table
+from eel_studies.outputs import Table
+from eel_studies.pictures import BLUE, ORANGE, Figure, legend_above, write_picture
 
 NAME = "eel compare"
 PICTURES = (".png", ".svg", ".pdf")
@@ -112,9 +112,8 @@ def draw(figure: Figure, runs: tuple[Run, Run], names: list[str]) -> None:
             torque.plot(run.time, np.linalg.norm(run.torque, axis=2).max(axis=1), **style)
     path.set(xlabel="x of the head [m]", ylabel="y [m]")
     path.set_aspect("equal", adjustable="datalim")
-    path.grid(alpha=0.3)
     speed.set(ylabel="head's speed [m/s]")
     torque.set(xlabel="time [s]", ylabel="most torque [N m]")
-    plain(speed)
-    plain(torque)
+    speed.margins(x=0.0)
+    torque.margins(x=0.0)
     legend_above(figure)

@@ -10,9 +10,10 @@ A steered law keeps the swimmer on the middle line by a bend of the body; withou
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from itertools import product
+from typing import Any, NamedTuple
 
 import numpy as np
 from eel_base.attitude import heading
@@ -40,8 +41,6 @@ class Swum(NamedTuple):
     speed: float  # m/s, along the street, against the water far away
     power: float  # W, of the actuators, net
     paid: float  # W, without what they get back: of the instants with positive power
-    aside: float  # m, greatest distance of the middle from the middle line
-    relative: float  # m/s, against the water on the middle line (mean)
 
 
 @dataclass(frozen=True)
@@ -87,8 +86,8 @@ class Wake:
         )
 
 
-def swim(flow: Flow | None, mean: float = 0.0) -> Swum:
-    """A swim of the straight gait along x in `flow`, steered to the line y = 0. mean [m/s]: of the water there."""
+def swim(flow: Flow | None) -> Swum:
+    """A swim of the straight gait along x in `flow`, steered to the line y = 0."""
     law = SteeredLaw(straight())
     simulation = Simulation(scene=SCENE, accuracy=1e-3, stations=3, flow=flow)
     body, period = simulation.body, law.period
@@ -97,8 +96,7 @@ def swim(flow: Flow | None, mean: float = 0.0) -> Swum:
     total = (SETTLE + MEASURED) * steps
     rows = np.zeros((total + 1, 5))  # x and y of the middle, heading, work, power
     for k in range(total + 1):
-        head = simulation.head
-        turned = heading(head.orientation.tolist())
+        turned = heading(simulation.head.orientation.tolist())
         snapshot = simulation.observe(wrench=False, load=False)
         rows[k] = (*snapshot.backbone[1, :2], turned, simulation.works[0], snapshot.powers[0])
         if k == total:
@@ -111,49 +109,42 @@ def swim(flow: Flow | None, mean: float = 0.0) -> Swum:
         simulation.advance((k + 1) * STEP)
     measured = rows[-1 - MEASURED * steps :]
     speed, power = ((measured[-1] - measured[0])[[0, 3]] / (MEASURED * period)).tolist()
-    paid = float(np.maximum(measured[1:, 4], 0.0).mean())
-    return Swum(speed, power, paid, float(np.abs(measured[:, 1]).max()), speed - mean)
+    return Swum(speed, power, float(np.maximum(measured[1:, 4], 0.0).mean()))
 
 
 @dataclass(frozen=True)
 class Study:
-    """Swims over spacings [m] and phases.
+    """Swims over S spacings [m] and P phases.
 
     Attributes:
         still: without a street.
-        drafting: for each spacing in uniform water of the street's mean velocity alone.
-        swum: for each spacing and phase.
+        drafting: in uniform water of a street's mean velocity alone.
+        swum: (S, P) of each field of `Swum`, by name.
     """
 
     spacings: np.ndarray
-    phases: np.ndarray
     still: Swum
     drafting: Swum
-    swum: list[list[Swum]]
-
-    @staticmethod
-    def of(spacings: np.ndarray, phases: np.ndarray, progress: Callable[[int, int], object]) -> "Study":
-        """Swim all of them. progress(done, all) is called after each."""
-        still = swim(None)
-        wakes = [Wake(still.speed, float(spacing)) for spacing in spacings]
-        drafting = swim(Uniform((wakes[0].mean, 0.0, 0.0)), wakes[0].mean)
-        swum: list[list[Swum]] = []
-        for wake in wakes:
-            swum.append([])
-            for phase in phases.tolist():
-                swum[-1].append(swim(wake.flow(phase), wake.mean))
-                progress(sum(map(len, swum)), len(spacings) * len(phases))
-        return Study(spacings, phases, still, drafting, swum)
+    swum: dict[str, np.ndarray]
 
     @property
-    def period(self) -> float:
-        """Of the gait [s]."""
-        return float(straight().terms[0].period)
+    def wakes(self) -> list[Wake]:
+        """The streets."""
+        return [Wake(self.still.speed, float(spacing)) for spacing in self.spacings]
 
-    def locked_speed(self, wake: Wake) -> float:
-        """Of a swimmer [m/s] that passes one spacing of the street in each beat."""
-        return FOLLOWING * wake.speed + wake.spacing / self.period
 
-    def table(self, name: str) -> np.ndarray:
-        """(spacings, phases): a field of `Swum`."""
-        return np.array([[getattr(each, name) for each in row] for row in self.swum])
+def study_of(spacings: Sequence[float], phases: np.ndarray, progress: Callable[[int, int], object]) -> Study:
+    """Swim at all of the `spacings` [m] and `phases`. progress(done, all) is called after each."""
+    still, swum = swim(None), []
+    wakes = [Wake(still.speed, spacing) for spacing in spacings]
+    drafting = swim(Uniform((wakes[0].mean, 0.0, 0.0)))
+    for wake, phase in product(wakes, phases.tolist()):
+        swum.append(swim(wake.flow(phase)))
+        progress(len(swum), len(wakes) * len(phases))
+    table = np.array(swum).reshape(len(wakes), len(phases), -1)
+    return Study(np.array(spacings), still, drafting, dict(zip(Swum._fields, np.moveaxis(table, -1, 0), strict=True)))
+
+
+def locked_speed(still: Swum, spacing: Any) -> Any:
+    """Of a swimmer [m/s] that passes one `spacing` [m] of its street in each beat."""
+    return FOLLOWING * still.speed + spacing / straight().terms[0].period

@@ -18,7 +18,6 @@ from eel_studies.pictures import (
     Figure,
     legend_above,
     mark_pitch,
-    plain,
 )
 
 FRAME_PERIOD = 0.5  # s, of Fig. 6: 2 frames a second
@@ -50,7 +49,6 @@ def draw_body(figure: Figure, run: Run, *_: object) -> None:
         axes.set_ylim(-0.07, 0.07)
         axes.set_xlim(-0.03 * body.length, 1.03 * body.length)
         axes.set_yticks([-0.05, 0.0, 0.05])
-        axes.grid(alpha=0.3)
 
 
 def draw_configurations(figure: Figure, run: Run, *_: object) -> None:
@@ -83,7 +81,6 @@ def draw_configurations(figure: Figure, run: Run, *_: object) -> None:
     for axes, name in ((above, "y [m]\nfrom above"), (side, "z [m]\nfrom the side")):
         axes.set(ylabel=name, xlim=(-4.3, 1.2))
         axes.set_aspect("equal", adjustable="box")
-        axes.grid(alpha=0.3)
     above.tick_params(labelbottom=False)
     side.set_xlabel("x [m]; a dot marks the head")
     side.set_yticks([-2.0, -1.0, 0.0], ["-2", "-1", "0"])
@@ -143,7 +140,7 @@ def draw_head_velocity(figure: Figure, run: Run, printed: Run, *_: object) -> No
 def _finish(axes: Axes, label: str) -> None:
     axes.set_ylabel(label)
     axes.axhline(0.0, color=BLACK, linewidth=0.5)
-    plain(axes)
+    axes.margins(x=0.0)
 
 
 def draw_torque(figure: Figure, run: Run, *_: object) -> None:
@@ -153,6 +150,7 @@ def draw_torque(figure: Figure, run: Run, *_: object) -> None:
         values = wrench_of(run)[1][..., column].T  # (M, T)
         size = np.max(np.abs(values))
         levels = np.linspace(-size, size, 20)  # an even number: no line at 0, where the water is still
+        axes.grid(False)
         drawn = axes.contourf(run.time, run.x, values, levels=levels, cmap="PuOr")
         drawn.set_rasterized(True)
         axes.set_ylabel("$X_1$ [m], nose to tail")
@@ -184,6 +182,6 @@ def draw_ledger(figure: Figure, run: Run, *_: object) -> None:
     residual.set_xlabel("time t [s]; grey: pitch bends")
     legend_above(figure, columns=3)
     for axes in (power, work, residual):
-        plain(axes)
+        axes.margins(x=0.0)
     figure.align_ylabels()
     mark_pitch((power, work))

@@ -17,8 +17,8 @@ from eel_model.body.body import Body
 from eel_model.scene import Scene
 
 from eel_gaits import falling, kern_efficient, kern_fast
+from eel_studies.outputs import Table
 from eel_studies.points import AccuracyLike
-from eel_studies.table import Table
 
 READINGS: dict[str, dict[str, Any]] = {  # label: what differs from the library's own reading
     "the library's own: perimeter and added mass corrected, friction as printed": {},

@@ -10,6 +10,7 @@ eel identify run.nc --first body.lateral_drag=1.5 --out fit.png --out fit.csv
 import argparse
 import time
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from eel_base.command.command import checked_out, command
@@ -23,9 +24,10 @@ from eel_model.body.body import body_of
 from eel_model.robot.robot import robot_of
 from eel_model.scene import Scene
 
-from eel_studies.identification.drawing import FORMATS, draw_identified
+from eel_studies.identification.drawing import FORMATS, SIZE, draw_identified
 from eel_studies.identification.identify import identify
 from eel_studies.identification.measured_file import MeasuredFile, read_measured
+from eel_studies.identification.measurements import count_of
 from eel_studies.outputs import write_files
 from eel_studies.points import ROBOT, Gait
 
@@ -93,10 +95,10 @@ def main(options: argparse.Namespace) -> None:
         progress=lambda done, _: progress(done, None),
     )
     print(found.table())
-    print(f"wall time  {time.perf_counter() - start:.1f} s, {sum(each.count for each in measured)} measured numbers")
+    print(f"wall time  {time.perf_counter() - start:.1f} s, {count_of(measured)} measured numbers")
     columns = {"name": found.names, "value": found.value, "standard_error": found.error}
     columns |= {"low": found.low, "high": found.high}
-    write_files(outs, lambda path: write_columns(columns, path), lambda path: draw_identified(found, measured, path))
+    write_files(outs, partial(write_columns, columns), partial(draw_identified, found=found, measured=measured), SIZE)
 
 
 def _gait(options: argparse.Namespace, files: list[MeasuredFile]) -> Gait:

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The least-squares problem of `identify`: unknowns, residuals, and how they are brought to their least."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
 from eel_dynamics.runs.run import Run
 
-from eel_studies.identification.measurements import MeasuredAngles, MeasuredPath, Measurement
+from eel_studies.identification.measurements import MeasuredPath, MeasuredSpeed, Measurement, count_of
 from eel_studies.identification.prediction import Predicted, Swims, placed, placement_of
 from eel_studies.identification.statistics import Block, correlation_of, undetermined, whitened
 
@@ -37,11 +37,7 @@ class Fit:
         self._measured = [_informative(*pair, self._start) for pair in zip(measured, self._predicted(), strict=True)]
         self._known.clear()
         pairs = zip(self._measured, self._predicted(), strict=True)
-        placements = [
-            placement_of(each, found.value.reshape(each.position.shape))
-            for each, found in pairs
-            if isinstance(each, MeasuredPath)
-        ]
+        placements = [placement_of(each, found.value) for each, found in pairs if isinstance(each, MeasuredPath)]
         self._unknown = np.concatenate((self._start, *placements))
 
     @property
@@ -52,7 +48,7 @@ class Fit:
     @property
     def count(self) -> int:
         """Measured numbers that tell something."""
-        return sum(each.count for each in self._measured)
+        return count_of(self._measured)
 
     @property
     def unknowns(self) -> int:
@@ -62,10 +58,8 @@ class Fit:
     @property
     def at_bound(self) -> list[str]:
         """Parameters that the measurements put at 0 or below."""
-        least = 2.0 * LEAST * np.abs(self._start)
-        return [
-            name for name, value, low in zip(self.names, self.values, least, strict=True) if _stays(name, value, low)
-        ]
+        low = 2.0 * LEAST * np.abs(self._start)
+        return [self.names[k] for k in np.flatnonzero(self.values <= low) if self.names[k].startswith(POSITIVE)]
 
     @property
     def runs(self) -> tuple[Run, ...]:
@@ -75,12 +69,14 @@ class Fit:
     @property
     def residuals(self) -> tuple[np.ndarray, ...]:
         """Measured less predicted: (T, D) of a path, (T, J) of angles, (1,) of a speed."""
-        return tuple(_residual(each, blocks) for each, blocks in zip(self._measured, self._grouped(), strict=True))
+        found = zip(self._measured, self._compared(), strict=True)
+        return tuple(table[0] if isinstance(each, MeasuredSpeed) else table for each, (table, _) in found)
 
     @property
     def blocks(self) -> list[Block]:
         """Residuals and derivatives at the values reached."""
-        return [block for blocks in self._grouped() for block in blocks]
+        found = zip(self._measured, self._compared(), strict=True)
+        return [block for each, compared in found for block in _blocks(each.time, *compared)]
 
     def check_count(self, noise: float | None) -> None:
         """`ValueError` where the measurements are too few for the unknowns."""
@@ -147,64 +143,34 @@ class Fit:
             self._progress(len(self._known), len(self._known) + 1)
         return self._known[key]
 
-    def _grouped(self) -> list[list[Block]]:
-        """The blocks of each measurement."""
-        grouped, place = [], len(self.names)
+    def _compared(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Of each measurement: measured less predicted (T, D), and derivatives (T, D, U) of what is predicted."""
+        place = len(self.names)
         for each, found in zip(self._measured, self._predicted(), strict=True):
-            if isinstance(each, MeasuredAngles):
-                grouped.append(_of_angles(each, found, self.unknowns))
-                continue
-            if not isinstance(each, MeasuredPath):
-                derivative = np.zeros((1, self.unknowns))
-                derivative[:, : len(self.names)] = found.derivative
-                grouped.append([Block(np.zeros(0), np.array([each.speed]) - found.value, derivative)])
-                continue
-            count, axes = each.position.shape
-            own = slice(place, place + axes + 1)
-            value, by_parameters, by_placement = placed(each, found, self._unknown[own])
-            derivative = np.zeros((count, axes, self.unknowns))
-            derivative[..., : len(self.names)], derivative[..., own] = by_parameters, by_placement
-            step = np.diff(each.time) / np.median(np.diff(each.time))
-            residual = each.position - value
-            grouped.append([Block(step, residual[:, axis], derivative[:, axis]) for axis in range(axes)])
-            place += axes + 1
-        return grouped
+            value, by_parameters = found.value, found.derivative
+            derivative = np.zeros((*value.shape, self.unknowns))
+            if isinstance(each, MeasuredPath):
+                own = slice(place, place + value.shape[1] + 1)
+                value, by_parameters, derivative[..., own] = placed(found, self._unknown[own])
+                place = own.stop
+            derivative[..., : len(self.names)] = by_parameters
+            yield each.values - value, derivative
 
 
-def _of_angles(measured: MeasuredAngles, found: Predicted, unknowns: int) -> list[Block]:
-    """A block for each joint, of the instants at which its angle is known."""
-    count, joints = measured.angles.shape
-    value, blocks = found.value.reshape(count, joints), []
-    for joint in range(joints):
-        known = np.isfinite(measured.angles[:, joint])
-        time = measured.time[known]
-        derivative = np.zeros((len(time), unknowns))
-        own = found.derivative.reshape(count, joints, -1)[known, joint]
-        derivative[:, : own.shape[1]] = own
-        step = np.diff(time) / np.median(np.diff(time)) if len(time) > 1 else np.zeros(0)
-        blocks.append(Block(step, (measured.angles - value)[known, joint], derivative))
-    return [block for block in blocks if len(block.residual)]
-
-
-def _residual(measured: Measurement, blocks: list[Block]) -> np.ndarray:
-    if isinstance(measured, MeasuredPath):
-        return np.stack([block.residual for block in blocks], axis=-1)
-    if isinstance(measured, MeasuredAngles):
-        residual = np.full(measured.angles.shape, np.nan)
-        residual.T[np.isfinite(measured.angles.T)] = np.concatenate([block.residual for block in blocks])
-        return residual
-    return blocks[0].residual
-
-
-def _stays(name: str, value: float, low: float) -> bool:
-    return name.startswith(POSITIVE) and value <= low
+def _blocks(time: np.ndarray, residual: np.ndarray, derivative: np.ndarray) -> Iterator[Block]:
+    """A block for each column, of the instants at which it is known."""
+    for column, known in enumerate(np.isfinite(residual).T):
+        step = np.diff(time[known])
+        if known.any():
+            step = step / np.median(step) if len(step) else step
+            yield Block(step, residual[known, column], derivative[known, column])
 
 
 def _informative(measured: Measurement, found: Predicted, values: np.ndarray) -> Measurement:
     """A path without its height, where no parameter moves the point up or down: its errors tell nothing then."""
     if not isinstance(measured, MeasuredPath) or measured.position.shape[1] == 2:
         return measured
-    derivative = np.abs(found.derivative * np.where(values, values, 1.0)).reshape(*measured.position.shape, -1)
+    derivative = np.abs(found.derivative * np.where(values, values, 1.0))
     if derivative[:, 2].max() > INSENSITIVE * derivative.max():
         return measured
     return replace(measured, position=measured.position[:, :2])

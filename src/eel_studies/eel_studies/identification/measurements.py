@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What was measured of a swim: the path of a point of the body, a robot's joint angles, or a steady speed."""
+"""What was measured of a swim: the path of a point of the body, a robot's joint angles, or a steady speed.
 
+Each has `values` (T, D) at the times (T,); NaN where unknown.
+"""
+
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -50,9 +54,9 @@ class MeasuredPath:
         checked_instance("path numbers", self.numbers, dict)
 
     @property
-    def count(self) -> int:
-        """Measured numbers."""
-        return self.position.size
+    def values(self) -> np.ndarray:
+        """The positions."""
+        return self.position
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,9 +89,9 @@ class MeasuredAngles:
         checked_instance("angles numbers", self.numbers, dict)
 
     @property
-    def count(self) -> int:
-        """Measured numbers."""
-        return int(np.count_nonzero(np.isfinite(self.angles)))
+    def values(self) -> np.ndarray:
+        """The angles."""
+        return self.angles
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,13 +106,23 @@ class MeasuredSpeed:
         checked_instance("measured speed numbers", self.numbers, dict)
 
     @property
-    def count(self) -> int:
-        """Measured numbers."""
-        return 1
+    def time(self) -> np.ndarray:
+        """(1,): it has no instants."""
+        return np.zeros(1)
+
+    @property
+    def values(self) -> np.ndarray:
+        """The speed, (1, 1)."""
+        return np.array([[self.speed]])
 
 
 Measurement = MeasuredPath | MeasuredAngles | MeasuredSpeed
 Measurements = list[MeasuredPath] | list[MeasuredAngles] | list[MeasuredSpeed] | list[Measurement]
+
+
+def count_of(measured: Sequence[Measurement]) -> int:
+    """How many numbers were measured."""
+    return sum(int(np.isfinite(each.values).sum()) for each in measured)
 
 
 def _check_time(what: str, time: np.ndarray) -> None:

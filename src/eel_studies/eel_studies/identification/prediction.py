@@ -27,7 +27,7 @@ SPEED = "mean_speed"
 
 
 class Predicted(NamedTuple):
-    """Of one measurement: what the model says (N,), its derivatives (N, P) by the parameters, and the run."""
+    """Of one measurement: what the model says (T, D), its derivatives (T, D, P) by the parameters, and the run."""
 
     value: np.ndarray
     derivative: np.ndarray
@@ -44,17 +44,14 @@ class Swims(NamedTuple):
 
     def predicted(self, measured: Any, at: dict[str, float]) -> Predicted:
         """What the model says of `measured` where the parameters are `at`: positions in its axes, angles, a speed."""
-        numbers, measure = {**self.numbers, **measured.numbers}, None
-        if isinstance(measured, MeasuredSpeed):
-            numbers = at_speed(numbers, measured.speed)
-        else:
-            measure = positions_at(measured) if isinstance(measured, MeasuredPath) else angles_at(measured)
+        numbers, steady = {**self.numbers, **measured.numbers}, isinstance(measured, MeasuredSpeed)
+        numbers = at_speed(numbers, measured.speed) if steady else numbers
         law = point_at(at, self.gait, numbers, self.base).law
-        times = swim_times(law, self.base.body.length, PERIODS) if measure is None else path_times(measured, law)
+        times = swim_times(law, self.base.body.length, PERIODS) if steady else path_times(measured, law)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # the jump of the printed friction: it is in the derivatives' error
             found = gradient(
-                measure or SPEED,
+                SPEED if steady else values_at(measured),
                 at,
                 gait=self.gait,
                 numbers=numbers,
@@ -67,7 +64,8 @@ class Swims(NamedTuple):
                 threads=self.threads,
                 **times,
             )
-        return Predicted(found.value, found.derivative, found.run)
+        shape = measured.values.shape
+        return Predicted(found.value.reshape(shape), found.derivative.reshape(*shape, -1), found.run)
 
 
 def path_times(path: MeasuredPath | MeasuredAngles, law: Law) -> dict[str, Any]:
@@ -78,26 +76,16 @@ def path_times(path: MeasuredPath | MeasuredAngles, law: Law) -> dict[str, Any]:
     return {"duration": duration, "sample_period": duration / max(4.0, count)}
 
 
-def positions_at(path: MeasuredPath) -> Callable[[Run], dict[str, float]]:
-    """A measure: the coordinates (T, D) of the tracked point at the times of `path`, flattened."""
+def values_at(measured: MeasuredPath | MeasuredAngles) -> Callable[[Run], dict[str, float]]:
+    """A measure: positions of the tracked point, or joint angles, (T, D) at the times of `measured`, flattened."""
     from scipy.interpolate import CubicSpline
 
-    def positions(run: Run) -> dict[str, float]:
-        found = CubicSpline(run.time, run.backbone[:, 0])(path.time)[:, : path.position.shape[1]]
+    def values(run: Run) -> dict[str, float]:
+        rows = run.joint_angle if isinstance(measured, MeasuredAngles) else run.backbone[:, 0]
+        found = CubicSpline(run.time, rows)(measured.time)[:, : measured.values.shape[1]]
         return {str(index): value for index, value in enumerate(found.ravel().tolist())}
 
-    return positions
-
-
-def angles_at(measured: MeasuredAngles) -> Callable[[Run], dict[str, float]]:
-    """A measure: the joint angles (T, J) at the times of `measured`, flattened."""
-    from scipy.interpolate import CubicSpline
-
-    def angles(run: Run) -> dict[str, float]:
-        found = CubicSpline(run.time, run.joint_angle)(measured.time)
-        return {str(index): value for index, value in enumerate(found.ravel().tolist())}
-
-    return angles
+    return values
 
 
 def placement_of(path: MeasuredPath, positions: np.ndarray) -> np.ndarray:
@@ -106,24 +94,22 @@ def placement_of(path: MeasuredPath, positions: np.ndarray) -> np.ndarray:
     cosine = np.sum(ours[:, :2] * theirs[:, :2])
     sine = np.sum(ours[:, 0] * theirs[:, 1] - ours[:, 1] * theirs[:, 0])
     turn = float(np.arctan2(sine, cosine))
-    return np.append(path.position.mean(axis=0) - turned_about_vertical(positions.mean(axis=0)[None], turn)[0], turn)
+    return np.append(path.position.mean(axis=0) - _rotation(turn, ours.shape[1]) @ positions.mean(axis=0), turn)
 
 
-def turned_about_vertical(vectors: np.ndarray, turn: float) -> np.ndarray:
-    """`vectors` (..., D) turned about the vertical by `turn` [rad]."""
-    found = vectors.copy()
-    found[..., 0] = np.cos(turn) * vectors[..., 0] - np.sin(turn) * vectors[..., 1]
-    found[..., 1] = np.sin(turn) * vectors[..., 0] + np.cos(turn) * vectors[..., 1]
-    return found
-
-
-def placed(path: MeasuredPath, found: Predicted, placement: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def placed(found: Predicted, placement: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The prediction in the axes of the measurement: (T, D), and its derivatives (T, D, P), (T, D, D + 1)."""
-    count, axes = path.position.shape
-    own = found.value.reshape(count, axes)
-    derivative = np.moveaxis(found.derivative.reshape(count, axes, -1), 1, -1)
-    value = turned_about_vertical(own, placement[-1])
+    count, axes = found.value.shape
+    turn = _rotation(placement[-1], axes)
+    value = found.value @ turn.T
     across = np.zeros_like(value)
     across[:, 0], across[:, 1] = -value[:, 1], value[:, 0]
     by_placement = np.concatenate((np.broadcast_to(np.eye(axes), (count, axes, axes)), across[:, :, None]), axis=2)
-    return value + placement[:-1], np.moveaxis(turned_about_vertical(derivative, placement[-1]), -1, 1), by_placement
+    return value + placement[:-1], turn @ found.derivative, by_placement
+
+
+def _rotation(turn: float, axes: int) -> np.ndarray:
+    """Matrix (D, D) of a `turn` [rad] about the vertical."""
+    matrix = np.eye(axes)
+    matrix[:2, :2] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]
+    return matrix

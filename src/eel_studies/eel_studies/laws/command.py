@@ -15,7 +15,7 @@ from eel_model.scene import FRICTION
 
 from eel_studies.laws.laws import LAWS, Result
 from eel_studies.outputs import write_files
-from eel_studies.pictures import BLACK, LOOKS, Figure, legend_above, write_picture
+from eel_studies.pictures import BLACK, LOOKS, Figure, legend_above
 
 NAME = "eel laws"
 SUFFIXES = (".csv", ".png", ".svg", ".pdf")
@@ -35,8 +35,7 @@ def main(options: argparse.Namespace) -> None:
         raise ValueError("--friction belongs to gazzola")
     found = LAWS[options.law](options.friction) if options.friction else LAWS[options.law]()
     print(found.table.text())
-    pictured = partial(write_picture, lambda figure: draw(figure, found), SIZE)
-    write_files(outs, found.table.write_csv, pictured)
+    write_files(outs, found.table.write_csv, partial(draw, found=found), SIZE)
 
 
 def draw(figure: Figure, found: Result) -> None:
@@ -50,5 +49,4 @@ def draw(figure: Figure, found: Result) -> None:
         axes.set(xscale="log", yscale="log")
         axes.tick_params(which="minor", labelbottom=False)
     axes.set(xlabel=found.x, ylabel=found.y)
-    axes.grid(alpha=0.3)
     legend_above(figure, 2)

@@ -30,7 +30,7 @@ from eel_model.body.body import Body
 from eel_model.scene import Scene
 
 from eel_studies.optimisation.optimise import optimise
-from eel_studies.table import Table
+from eel_studies.outputs import Table
 
 EEL, ROBOT = Body.kern2006(1.0), Body.boyer2010()
 VISCOSITIES = np.logspace(-2.5, -8.0, 12)  # m^2/s, of gazzola

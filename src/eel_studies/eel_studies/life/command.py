@@ -6,8 +6,6 @@ eel life robot docs/data/tendon_fish_?.??Hz.csv --body docs/data/tendon_fish_bod
 """
 
 import argparse
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import TypeAlias
 
@@ -24,12 +22,11 @@ from eel_studies.life.drawing import draw_lamprey, draw_robot
 from eel_studies.life.lamprey import HEIGHTS, MEASURED, LampreySwim, in_thick_water, lamprey, swims
 from eel_studies.life.lamprey import PLANAR as WATER_OF_FILM
 from eel_studies.life.leave_out import PLANAR, Choice, choices, computed, swum
-from eel_studies.outputs import write_files
-from eel_studies.pictures import Figure, write_picture
-from eel_studies.table import Table
+from eel_studies.outputs import Table, write_files
+from eel_studies.pictures import Draw
 
 NAME = "eel life"
-Drawn: TypeAlias = tuple[Table, Callable[[Figure], None], tuple[float, float]]  # with the picture and its size, inches
+Drawn: TypeAlias = tuple[Table, Draw, tuple[float, float]]  # with the picture and its size, inches
 SUFFIXES = (".csv", ".png", ".svg", ".pdf")
 FIRST = {"nose_drag": 1.0}  # one number: with two, films that are left out are predicted worse
 
@@ -59,7 +56,7 @@ def main(options: argparse.Namespace) -> None:
     beats = [beat_from(file, options) for file in options.files]
     table, draw, size = (_lamprey if options.swimmer == "lamprey" else _robot)(beats, options)
     print(table.text())
-    write_files(outs, table.write_csv, partial(write_picture, draw, size))
+    write_files(outs, table.write_csv, draw, size)
 
 
 def _lamprey(beats: list[Beat], options: argparse.Namespace) -> Drawn:
@@ -125,7 +122,7 @@ def _robot(beats: list[Beat], options: argparse.Namespace) -> Drawn:
     table = table_of_robot(beats, guessed, found)
     last = max(range(len(beats)), key=lambda film: 1.0 / beats[film].period)
     left_out = next((each for each in found if last not in each.fitted), found[0])
-    swim = beats[last], swum(beats[last], body.changed(**left_out.values), scene)
+    swim = beats[last], swum(beats[last], body.changed(**left_out.values), scene)[0]
     return table, lambda figure: draw_robot(figure, beats, guessed, found, swim), (6.8, 6.2)
 
 

@@ -7,7 +7,7 @@ from eel_gaits.film.beat import Beat
 
 from eel_studies.life.lamprey import MEASURED, LampreySwim
 from eel_studies.life.leave_out import Choice
-from eel_studies.pictures import BLACK, BLUE, GREY, LOOKS, PALE_BLUE, Axes, Figure, legend_above, plain
+from eel_studies.pictures import BLACK, BLUE, GREY, LOOKS, PALE_BLUE, Axes, Figure, legend_above
 
 SHOWN = 6  # midlines of a beat
 
@@ -30,8 +30,8 @@ def draw_lamprey(figure: Figure, beat: Beat, found: list[LampreySwim], thick: li
     water.fill_between(times, low, high, color=PALE_BLUE)
     water.plot(times, 0.5 * (low + high), color=BLUE, marker="o")
     water.set(xlabel="viscosity, times water's", ylabel="speed [mm/s]", ylim=(0.0, None))
-    plain(speed)
-    plain(water)
+    speed.margins(x=0.0)
+    water.margins(x=0.0)
     legend_above(figure, 3)
 
 
@@ -52,15 +52,10 @@ def _draw_midlines(axes: Axes, beat: Beat, run: Run) -> None:
         for part in range(SHOWN):
             frame = int(np.argmin(np.abs(time - time[0] - part * beat.period / SHOWN)))
             line = (points[frame] - start.mean(axis=0)) @ turn / length
-            axes.plot(
-                line[:, 0], line[:, 1] - 0.45 * row, color=colour, linewidth=1.0, alpha=0.35 + 0.65 * part / SHOWN
-            )
-    axes.set_aspect("equal")
-    axes.set(
-        xlabel="along the way [L]",
-        yticks=[],
-        title=f"one beat of {beat.period:.3f} s: measured (black), computed (blue)",
-    )
+            alpha = 0.35 + 0.65 * part / SHOWN
+            axes.plot(line[:, 0], line[:, 1] - 0.45 * row, color=colour, linewidth=1.0, alpha=alpha)
+    title = f"one beat of {beat.period:.3f} s: measured (black), computed (blue)"
+    axes.set(aspect="equal", xlabel="along the way [L]", yticks=[], title=title)
 
 
 def draw_robot(
@@ -80,5 +75,4 @@ def draw_robot(
         label = "left out, predicted" if index == 0 else None
         axes.plot(frequency[rest], each.speeds[rest], mark, color=colour, alpha=0.8, label=label)
     axes.set(xlabel="beats per second", ylabel="speed [m/s]", ylim=(0.0, None))
-    axes.grid(alpha=0.3)
     legend_above(figure, 3)

@@ -10,7 +10,7 @@ them: it is kept as in the film.
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from eel_dynamics.commands.filmed import speeds_of
@@ -87,9 +87,8 @@ def swims(beat: Beat, widths: Path, scene: Scene = PLANAR, **numbers: float) -> 
         run = simulate(beat.law(body.length), "settled", body=body, scene=scene, accuracy=1e-2)
         last = run.time > run.time[-1] - BEATS * beat.period
         figures = kinematics(run.time[last], run.backbone[last, :, :2], beat.period)
-        found.append(
-            LampreySwim(height, run, run.mean_speed, float(jackknife(speeds_of(beat.others, body, scene))), figures)
-        )
+        band = float(jackknife(speeds_of(beat.others, body, scene)))
+        found.append(LampreySwim(height, run, run.mean_speed, band, figures))
     return found
 
 
@@ -110,10 +109,6 @@ def wave_of(beat: Beat, length: float, period: float, waves: float) -> Law:
     wave = np.abs(wave) * np.exp(1j * (phase[0] + waves * (phase - phase[0])))
     knots = np.linspace(0.0, length, 33)
     parts = [np.interp(knots, np.linspace(0.0, length, len(wave)), part) for part in (wave.real, -wave.imag)]
-    return Law(
-        [
-            Term(amplitude=tuple(part), knots=tuple(knots), period=period, phase=phase)
-            for part, phase in zip(parts, (0.5 * math.pi, math.pi), strict=True)
-        ],
-        name="wave",
-    )
+    common: dict[str, Any] = {"knots": tuple(knots), "period": period}
+    pairs = zip(parts, (0.5 * math.pi, math.pi), strict=True)
+    return Law([Term(amplitude=tuple(part), phase=phase, **common) for part, phase in pairs], name="wave")

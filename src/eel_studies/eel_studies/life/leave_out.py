@@ -12,9 +12,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from eel_dynamics.batches.batch import Batch
 from eel_dynamics.batches.simulate_batch import simulate_batch
-from eel_dynamics.runs.run import Run
-from eel_dynamics.runs.simulate import simulate
 from eel_gaits.film.beat import Beat
 from eel_model.body.body import Body
 from eel_model.scene import Scene
@@ -41,23 +40,15 @@ class Choice:
 
 def computed(beats: Sequence[Beat], body: Body, scene: Scene = PLANAR, **numbers: float) -> np.ndarray:
     """Mean speed [m/s] of each of the `beats` on the `body` with these `numbers`; NaN where a swim stops."""
-    bodies, found = body.changed(**numbers), []
-    for beat in beats:
-        start = (0.0, 0.0, 0.0, beat.measured.speed, 0.0, 0.0)
-        batch = simulate_batch(
-            [beat.law(body.length)], BEATS * beat.period, bodies=bodies, scenes=scene, accuracy=1e-2,
-            twists=start, estimate=False, sample_period=beat.period / 20.0,
-        )  # fmt: skip
-        found.append(np.nan if batch.stopped[0] else batch[0].mean_speed)
-    return np.array(found)
+    batches = [swum(beat, body.changed(**numbers), scene) for beat in beats]
+    return np.array([np.nan if each.stopped[0] else each[0].mean_speed for each in batches])
 
 
-def swum(beat: Beat, body: Body, scene: Scene = PLANAR) -> Run:
+def swum(beat: Beat, body: Body, scene: Scene = PLANAR) -> Batch:
     """The swim of a `beat`, from the measured speed on, with its midlines."""
-    start = (0.0, 0.0, 0.0, beat.measured.speed, 0.0, 0.0)
-    return simulate(
-        beat.law(body.length), BEATS * beat.period, body=body, scene=scene, accuracy=1e-2, twist=start,
-        estimate=False, sample_period=beat.period / 20.0,
+    return simulate_batch(
+        [beat.law(body.length)], BEATS * beat.period, bodies=body, scenes=scene, accuracy=1e-2, estimate=False,
+        twists=(0.0, 0.0, 0.0, beat.measured.speed, 0.0, 0.0), sample_period=beat.period / 20.0, stations=51,
     )  # fmt: skip
 
 

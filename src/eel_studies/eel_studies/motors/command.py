@@ -9,11 +9,14 @@ eel motors sixteen_servos swim.nc --vary torque_limit=0.3,0.4,0.5        # asked
 """
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from eel_base.command.command import checked_out, command
 from eel_base.command.command_line import Parser
 from eel_base.wording import shown
@@ -24,16 +27,24 @@ from eel_gaits.laws.law import Law
 from eel_model.robot.actuators import Servo
 from eel_model.robot.robot import Robot
 
-from eel_studies.motors.drawing import FORMATS, draw_comparisons
-from eel_studies.motors.motor_figures import Comparison, comparison, motor_swim, with_number
-from eel_studies.outputs import write_files
+from eel_studies.motors.motor_figures import Comparison, MotorFigures, comparison, motor_swim, with_number, word_of
+from eel_studies.outputs import Table, write_files
+from eel_studies.pictures import LOOKS, Figure, legend_above
 from eel_studies.scene_options import add_scene_options, chosen
-from eel_studies.table import Table
 
 NAME = "eel motors"
 RECORDED = ".nc", ".mcap", ".db3"
 DEMAND = 8  # joints an axis, of what an imposed swim takes
 MOST_VARIED = 2
+FORMATS = ".png", ".svg"
+WIDE = 5.0  # ratio of the greatest to the least value, from which the axis is logarithmic
+MOST_TICKS = 7
+PANELS: dict[str, Callable[[MotorFigures], float]] = {
+    "speed [m/s]": lambda figures: figures.speed,
+    "tracking error [%]": lambda figures: 100.0 * figures.tracking_error,
+    "energy [J/m]": lambda figures: figures.energy_per_metre,
+}
+Panels = dict[str, list[list[float]]]  # by their names, of each comparison the figures at its values
 Varied = tuple[str, Sequence[float | None]]
 
 
@@ -67,6 +78,7 @@ def main(options: argparse.Namespace) -> None:
     robot, swim = _robot(options), _swim(options)
     for note in robot.notes:
         print(f"{options.swimmer}: {note}")
+    found: list[Comparison] = []
     if options.vary:
         pairs = [(name, _values(name, text)) for name, text in named_texts("--vary", options.vary)]
         found = _compared(robot, swim, *pairs)
@@ -79,7 +91,8 @@ def main(options: argparse.Namespace) -> None:
         figures = motor_swim(robot, swim)
         table = figures.table()
         print(table.text(), figures.about(), sep="\n\n")
-    write_files(outs, table.write_csv, lambda path: draw_comparisons(found, path))
+    panels = panels_of(found)
+    write_files(outs, table.write_csv, partial(draw, comparisons=found, panels=panels), (3.2 * len(panels), 3.0))
 
 
 def _compared(robot: Robot, swim: Swim, first: Varied, second: Varied | None = None) -> list[Comparison]:
@@ -88,11 +101,7 @@ def _compared(robot: Robot, swim: Swim, first: Varied, second: Varied | None = N
         return [comparison(robot, swim, *first)]
     name, values = second
     pairs = [(value, with_number(robot, swim, name, value)) for value in values]
-    return [replace(comparison(*each, *first), named=f"{name}={_word(value)}") for value, each in pairs]
-
-
-def _word(value: float | None) -> str:
-    return "none" if value is None else f"{value:g}"
+    return [replace(comparison(*each, *first), named=f"{name}={word_of(value)}") for value, each in pairs]
 
 
 def _swim(options: argparse.Namespace) -> Swim:
@@ -128,3 +137,28 @@ def _values(field: str, text: str) -> list[float | None]:
         return [None if word.strip() == "none" else float(word) for word in text.split(",")]
     except ValueError:
         raise ValueError(f"--vary must be FIELD=NUMBER,NUMBER,..., got {shown(f'{field}={text}')}") from None
+
+
+def panels_of(comparisons: Sequence[Comparison]) -> Panels:
+    """The `PANELS` whose figures are known."""
+    found = {label: [[of(figures) for _, figures in each] for each in comparisons] for label, of in PANELS.items()}
+    return {label: rows for label, rows in found.items() if np.isfinite([*chain(*rows)]).any()}
+
+
+def draw(figure: Figure, comparisons: Sequence[Comparison], panels: Panels) -> None:
+    """Draw a curve for each of the `comparisons` in each of the `panels`; a value of none is left out."""
+    for axes, (label, rows) in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels.items(), strict=True):
+        for index, (each, row) in enumerate(zip(comparisons, rows, strict=True)):
+            colour, dash, mark = LOOKS[index % len(LOOKS)]
+            x, y = zip(*((x, y) for x, y in zip(each.values, row, strict=True) if x is not None), strict=True)
+            style = {"color": colour, "linestyle": dash, "marker": mark, "markersize": 3.5, "linewidth": 1.2}
+            axes.plot(x, y, label=each.named or None, **style)
+        axes.set(xlabel=comparisons[0].field, ylabel=label)
+        known = sorted({value for each in comparisons for value in each.values if value is not None})
+        if known[0] > 0.0 and known[-1] > WIDE * known[0]:
+            axes.set_xscale("log")
+            axes.minorticks_off()
+            ticks = known[:: -(-len(known) // MOST_TICKS)]
+            axes.set_xticks(ticks, [f"{each:g}" for each in ticks])
+    if comparisons[0].named:
+        legend_above(figure, len(comparisons))

@@ -18,8 +18,8 @@ from eel_model.robot.actuators import at_limit
 from eel_model.robot.compiled import HINGE, mode_table
 from eel_model.robot.robot import Robot
 
+from eel_studies.outputs import Table
 from eel_studies.points import ROBOT
-from eel_studies.table import Table
 from eel_studies.varied import varied
 from eel_studies.workers import in_threads
 
@@ -71,18 +71,12 @@ class MotorFigures:
     def table(self) -> Table:
         """A row for each joint."""
         head = ("joint", "X [m]", "asked [rad]", "angle [rad]", "error rms", "rate [rad/s]", "torque [N m]", "rms")
-        rows = [
-            (
-                each.name,
-                f"{each.position:.3f}",
-                *(f"{value:.3g}" for value in (each.reference, each.angle, each.error_rms, each.rate)),
-                f"{each.torque:.3g}" + (f" of {each.torque_limit:.3g}" if np.isfinite(each.torque_limit) else ""),
-                f"{each.torque_rms:.3g}",
-                f"{100.0 * each.at_limit:.0f} %",
-                f"{each.power:.3g}",
-            )
-            for each in self.joints
-        ]
+        rows = []
+        for each in self.joints:
+            figures = (f"{value:.3g}" for value in (each.reference, each.angle, each.error_rms, each.rate))
+            limit = f" of {each.torque_limit:.3g}" if np.isfinite(each.torque_limit) else ""
+            torque = f"{each.torque:.3g}{limit}", f"{each.torque_rms:.3g}", f"{100.0 * each.at_limit:.0f} %"
+            rows.append((each.name, f"{each.position:.3f}", *figures, *torque, f"{each.power:.3g}"))
         return Table((*head, "at limit", "mean power [W]"), rows)
 
     def about(self) -> str:
@@ -101,41 +95,34 @@ def motor_figures(run: Run) -> MotorFigures:
     if robot is None:
         raise ValueError("motor figures need a run of a robot")
     steady = steady_part(run.law, run.time)
-    joints, time = robot.joints, run.time[steady]
-    servos = robot.servos
+    joints, servos, time = robot.joints, robot.servos, run.time[steady]
     names = "motor_torque", "motor_power", "joint_angle", "joint_rate"
     torque, power, angle, rate = (getattr(run, name)[steady] for name in names)
-    saturated = at_limit(servos, torque, power)
     asked = references(run, time)
     followed = np.array([servo is not None for servo in servos])
-    error = angle - asked
-    figures = tuple(
-        JointFigures(
-            joint.name,
-            joint.position,
-            float(np.max(np.abs(asked[:, k]))),
-            float(np.max(np.abs(angle[:, k]))),
-            _rms(error[:, k]) if followed[k] else np.nan,
-            float(np.max(np.abs(rate[:, k]))),
-            float(np.max(np.abs(torque[:, k]))),
-            _rms(torque[:, k]),
-            getattr(servos[k], "torque_limit", None) or np.inf,
-            float(np.mean(saturated[:, k])),
-            float(np.mean(power[:, k])),
-        )
-        for k, joint in enumerate(joints)
+    error = np.where(followed, angle - asked, np.nan)
+    columns = (
+        (joint.name for joint in joints),
+        (joint.position for joint in joints),
+        *(np.abs(each).max(axis=0).tolist() for each in (asked, angle)),
+        _rms(error, axis=0).tolist(),
+        *(np.abs(each).max(axis=0).tolist() for each in (rate, torque)),
+        _rms(torque, axis=0).tolist(),
+        (getattr(servo, "torque_limit", None) or np.inf for servo in servos),
+        at_limit(servos, torque, power).mean(axis=0).tolist(),
+        power.mean(axis=0).tolist(),
     )
-    scale = np.sqrt(np.mean(asked[:, followed] ** 2)) if followed.any() else 0.0
+    scale = _rms(asked[:, followed]) if followed.any() else 0.0
     centre = run.center_of_mass[steady]
+    drawn = float(np.maximum(power, 0.0).sum(axis=1).mean())
+    actuators = power.sum(axis=1) if run.energy is None else run.energy.actuator_power[steady]
     return MotorFigures(
         run,
-        figures,
-        float(np.linalg.norm(centre[-1] - centre[0]) / (time[-1] - time[0])),
-        float(np.mean(run.energy.actuator_power[steady]))
-        if run.energy is not None
-        else float(power.sum(axis=1).mean()),
-        float(np.mean(np.maximum(power, 0.0).sum(axis=1))) if any(joint.actuator for joint in joints) else np.nan,
-        float(np.sqrt(np.mean(error[:, followed] ** 2)) / scale) if scale > 0.0 else np.nan,
+        tuple(JointFigures(*row) for row in zip(*columns, strict=True)),
+        speed=float(np.linalg.norm(centre[-1] - centre[0]) / (time[-1] - time[0])),
+        power=float(actuators.mean()),
+        drawn_power=drawn if any(each.actuator for each in joints) else np.nan,
+        tracking_error=float(_rms(error[:, followed]) / scale) if scale > 0.0 else np.nan,
     )
 
 
@@ -149,8 +136,8 @@ def references(run: Run, time: np.ndarray) -> np.ndarray:
     return np.asarray(asked * table.sign[hinges])
 
 
-def _rms(values: np.ndarray) -> float:
-    return float(np.sqrt(np.mean(values**2)))
+def _rms(values: np.ndarray, axis: int | None = None) -> Any:
+    return np.sqrt(np.mean(values**2, axis=axis))
 
 
 def steady_part(law: Any, time: np.ndarray) -> slice:
@@ -203,24 +190,14 @@ class Comparison:
 
     def table(self) -> Table:
         """A row for each value."""
-        head = (
-            *((self.named.partition("=")[0],) if self.named else ()),
-            self.field,
-            "speed [m/s]",
-            "tracking error",
-            "at limit",
-            "torque [N m]",
-            "power [W]",
-            "drawn [W]",
-            "J/m",
-        )
-        return Table(head, [self._row(value, figures) for value, figures in self], left=())
+        name, _, beside = self.named.partition("=")
+        head = self.field, "speed [m/s]", "tracking error", "at limit", "torque [N m]", "power [W]", "drawn [W]", "J/m"
+        rows = [(word_of(value), *self._cells(figures)) for value, figures in self]
+        return Table((name, *head), [(beside, *row) for row in rows], ()) if name else Table(head, rows, ())
 
-    def _row(self, value: float | None, figures: MotorFigures) -> tuple[str, ...]:
+    def _cells(self, figures: MotorFigures) -> tuple[str, ...]:
         joints = figures.joints
         return (
-            *((self.named.partition("=")[2],) if self.named else ()),
-            "none" if value is None else f"{value:g}",
             f"{figures.speed:.4g}",
             "" if np.isnan(figures.tracking_error) else f"{100.0 * figures.tracking_error:.3g} %",
             f"{100.0 * max((each.at_limit for each in joints), default=0.0):.0f} %",
@@ -229,3 +206,8 @@ class Comparison:
             "" if np.isnan(figures.drawn_power) else f"{figures.drawn_power:.3g}",
             f"{figures.energy_per_metre:.3g}",
         )
+
+
+def word_of(value: float | None) -> str:
+    """The value of a field in a table."""
+    return "none" if value is None else f"{value:g}"

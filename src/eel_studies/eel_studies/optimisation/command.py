@@ -20,7 +20,7 @@ from eel_dynamics.commands.scene_options import add_changes, swim_from
 from eel_dynamics.runs.scene_file import SUFFIXES as SCENES
 from eel_dynamics.runs.storage.tables import write_columns
 
-from eel_studies.optimisation.front import FORMATS
+from eel_studies.optimisation.front import FORMATS, SIZE, draw_front
 from eel_studies.optimisation.optimise import optimise
 from eel_studies.optimisation.searches import METHODS
 from eel_studies.outputs import write_files
@@ -74,7 +74,7 @@ def main(options: argparse.Namespace) -> None:
     if front.at_bound.any() or front.dominated.any():
         print("* a parameter at its bound, or a gait that is slower and costs more than another")
     print(f"wall time  {time.perf_counter() - start:.1f} s, {len(front.tried)} gaits tried")
-    write_files(outs, partial(write_columns, front.columns), front.draw)
+    write_files(outs, partial(write_columns, front.columns), partial(draw_front, front=front), SIZE)
 
 
 def _bounds(name: str, text: str) -> tuple[float, float]:

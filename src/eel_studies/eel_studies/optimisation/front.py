@@ -10,8 +10,8 @@ from eel_dynamics.analysis.measures import described
 from eel_dynamics.runs.run import Run
 from eel_model.equality import EqualByFields
 
+from eel_studies.outputs import Table
 from eel_studies.pictures import BLUE, GREY, LOOKS, Axes, Figure, write_picture
-from eel_studies.table import Table
 
 BOUND = 1e-3  # of the bounds' distance: nearer to one of them is at it
 FORMATS = (".png", ".svg")
@@ -125,8 +125,7 @@ def _draw_cost(axes: Axes, front: Front) -> None:
         )
     axes.set(xlabel="speed [m/s]", ylabel=f"{front.cost_name.replace('_', ' ')} [{unit}]", ylim=(0.0, None))
     axes.set_xlim(0.0, None)
-    axes.legend(frameon=False)
-    axes.grid(alpha=0.3)
+    axes.legend()
 
 
 def _draw_parameters(axes: Axes, front: Front) -> None:
@@ -137,8 +136,7 @@ def _draw_parameters(axes: Axes, front: Front) -> None:
         axes.plot(front.speed, place[:, index], color=colour, linestyle=dash, marker=mark, markersize=4, label=label)
     axes.set(xlabel="speed [m/s]", ylabel="parameter, between its bounds", ylim=(-0.03, 1.03))
     axes.set_yticks([0.0, 0.5, 1.0], ["low", "", "high"])
-    axes.legend(frameon=False)
-    axes.grid(alpha=0.3)
+    axes.legend()
 
 
 def _draw_gait(axes: Axes, run: Run, speed: float) -> None:

@@ -14,6 +14,7 @@ from eel_model.scene import Scene
 from eel_studies.points import AccuracyLike
 
 STEP = 0.02  # s, from one sample of the head's motion to the next
+LAST_PART = 30.0  # s
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,26 @@ class Voyage:
     wanted_height: np.ndarray  # (T,) m
     misses: tuple[float, ...]  # m, least distance of the head to each way point that was passed
     news: tuple[str, ...]  # what the pilot reported
+
+    @property
+    def heading_error(self) -> np.ndarray:
+        """(T,) rad, size."""
+        off = self.heading - self.wanted_heading
+        return np.asarray(np.abs(np.remainder(off + np.pi, 2.0 * np.pi) - np.pi))
+
+    @property
+    def last(self) -> np.ndarray:
+        """(T,) bool: the last part, which counts where something is held."""
+        return np.asarray(self.time >= self.time[-1] - LAST_PART)
+
+    @property
+    def depth_error(self) -> float:
+        """The greatest of the last part [m]."""
+        return float(np.abs(self.position[:, 2] - self.wanted_height)[self.last].max())
+
+    def distance_from(self, spot: np.ndarray) -> float:
+        """The greatest of the last part [m]."""
+        return float(np.linalg.norm(self.position - spot, axis=1)[self.last].max())
 
 
 def swim_with(
@@ -48,25 +69,19 @@ def swim_with(
     """
     scene = scene or Scene(internal_wrench=False, ledger=False)
     simulation = Simulation(**{"scene": scene, "accuracy": accuracy, "stations": 2, **start})
-    x, found = pilot.law.x, []
+    x, rows = pilot.law.x, []
     simulation.add_samples(0.0, x, *pilot.begin())
     for step in range(round(duration / STEP)):
         each(simulation)
         head = head_motion_of(simulation.head)
-        rows = pilot.step(step * STEP, head, STEP)
-        estimate, demand = pilot.estimate, pilot.demand
-        assert estimate is not None and demand is not None
-        found.append(
-            (
-                *(step * STEP, *head.position, *estimate.position, estimate.heading, estimate.roll),
-                *(demand.heading, demand.height),
-            )
-        )
+        samples = pilot.step(step * STEP, head, STEP)
+        found, wanted = pilot.estimate, pilot.demand
+        assert found is not None and wanted is not None
+        positions = np.array(head.position), np.array(found.position)
+        rows.append((step * STEP, *positions, found.heading, found.roll, wanted.heading, wanted.height))
         if until(pilot):
             break
-        simulation.add_samples((step + 1) * STEP, x, *rows)
+        simulation.add_samples((step + 1) * STEP, x, *samples)
         simulation.advance((step + 1) * STEP)
-    table = np.array(found)
-    parts = np.split(table, [1, 4, 7, 8, 9, 10], axis=1)
-    flat: list[Any] = [part[:, 0] if part.shape[1] == 1 else part for part in parts]
-    return Voyage(*(*flat, tuple(pilot.misses), tuple(news.text for news in pilot.news)))
+    columns: list[Any] = [np.array(column) for column in zip(*rows, strict=True)]
+    return Voyage(*(*columns, tuple(pilot.misses), tuple(news.text for news in pilot.news)))

@@ -22,11 +22,9 @@ from eel_gaits.sources.joint_log import JointLog, joint_log, law_of_links, read_
 from eel_model.body.body import Body, body_of
 from eel_model.scene import Scene
 
-from eel_studies.outputs import write_files
-from eel_studies.pictures import write_picture
+from eel_studies.outputs import Table, write_files
 from eel_studies.replay.band import UNCERTAIN, Replayed, replay, robot_body, with_factors
 from eel_studies.replay.drawing import Seen, draw
-from eel_studies.table import Table
 
 NAME = "eel replay-joints"
 SUFFIXES = (".csv", ".png", ".svg", ".pdf")
@@ -83,8 +81,8 @@ def main(options: argparse.Namespace) -> None:
     if alone:
         print(effects_of(first, alone).text())
     columns = columns_of(first, drawn)
-    pictured = partial(write_picture, lambda figure: draw(figure, first, drawn, columns, seen), (6.8, 7.0))
-    write_files(outs, partial(write_columns, columns), pictured)
+    picture = partial(draw, first=first, drawn=drawn, columns=columns, seen=seen)
+    write_files(outs, partial(write_columns, columns), picture, (6.8, 7.0))
 
 
 def _log(options: argparse.Namespace) -> JointLog:

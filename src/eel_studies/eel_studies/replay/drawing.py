@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from eel_gaits.sources.tables import read_table
 
-from eel_studies.pictures import BLACK, BLUE, PALE_BLUE, Axes, Figure, legend_above, plain
+from eel_studies.pictures import BLACK, BLUE, PALE_BLUE, Axes, Figure, legend_above
 from eel_studies.replay.band import Replayed
 
 SHOWN = 6  # instants of the points that are drawn
@@ -66,7 +66,7 @@ def draw(
         axes.fill_between(columns["time"], low, high, color=PALE_BLUE, label="band")
         axes.plot(columns["time"], columns[name], color=BLUE, label="computed")
         axes.set(xlabel="time [s]", ylabel=label)
-        plain(axes)
+        axes.margins(x=0.0)
     if seen is not None:
         panels[1].axhline(seen.speed, color=BLACK, linestyle=(0, (4, 2)), label="measured")
     legend_above(figure, 3)

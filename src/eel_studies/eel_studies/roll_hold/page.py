@@ -12,11 +12,10 @@ from eel_model.fins.fins import Fin
 from eel_model.fins.text import fins_from_text
 
 from eel_gaits import falling, straight, turning
-from eel_studies.outputs import Outputs
+from eel_studies.outputs import Outputs, Table
 from eel_studies.points import base_point
 from eel_studies.roll_hold.study import PAIR, RollWindow, holding, linearised, roll_window, swum
-from eel_studies.stability.drawing import draw_map
-from eel_studies.table import Table
+from eel_studies.stability.report import draw_map
 
 PARTS = "gaits", "window"
 SIZE = 9.0, 4.0  # inches

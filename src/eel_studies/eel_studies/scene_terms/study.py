@@ -20,9 +20,9 @@ from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.scene_file import words_of
 from eel_dynamics.runs.swim import Swim
 
+from eel_studies.outputs import Table
 from eel_studies.reference import attempts, cpu_seconds
 from eel_studies.scene_terms.terms import TERMS, WITHIN, terms_of, without
-from eel_studies.table import Table
 
 MEASURES = {"mean_speed": "speed", "greatest_torque": "torque", "cost_of_transport": "cost of transport"}
 EFFECTS = ("path", *MEASURES.values())

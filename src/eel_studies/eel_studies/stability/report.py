@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The studies by name. Each returns its part of the page, and draws its pictures."""
+"""The studies by name. Each returns its part of the page, and draws its pictures.
+
+Colour is the error relative to the target; marks tell the other outcomes, and warnings.
+"""
 
 from collections.abc import Callable
 from functools import partial
@@ -8,11 +11,12 @@ from typing import Any
 import numpy as np
 from eel_base.files.markdown import table
 
-from eel_studies.outputs import Outputs
+from eel_studies.outputs import Outputs, Table
+from eel_studies.pictures import BLACK, ORANGE
 from eel_studies.stability import inertia, long_runs
-from eel_studies.stability.drawing import draw, draw_map
 from eel_studies.stability.extremes import maps_of
 from eel_studies.stability.maps import (
+    INACCURATE,
     OUTCOMES,
     REFUSED,
     SENSITIVE,
@@ -20,12 +24,21 @@ from eel_studies.stability.maps import (
     STOPPED,
     TARGET,
     UNCHECKED,
+    Map,
     Measured,
     measure,
 )
-from eel_studies.table import Table
 
 SIZE = 5.6, 4.2  # inches
+DECADES = 3.0  # range of the colours, above and below the target
+MARKS = {  # outcome: mark, size, what it is called
+    STOPPED: ("x", 5, "stopped with a message"),
+    REFUSED: ("_", 5, "refused"),
+    SENSITIVE: ("^", 4, "sensitive, said"),
+    INACCURATE: ("+", 5, "inaccurate, said"),
+    UNCHECKED: ("1", 5, "no finer run to check by"),
+    SILENT: ("*", 9, "WRONG IN SILENCE"),
+}
 
 
 def report(found: list[Measured], outputs: Outputs) -> str:
@@ -69,3 +82,40 @@ STUDIES: dict[str, Callable[[int, Outputs], str]] = {  # of so many points along
 
 def _picture(outputs: Outputs, item: Any, fill: Callable[[Any], object]) -> str:
     return outputs.draw(f"stability_{item.name}", item.title, fill, SIZE, ("svg",))
+
+
+def draw(figure: Any, measured: Measured) -> None:
+    """Draw one map into an empty matplotlib figure."""
+    item, cells = measured.map, measured.cells
+    colours = {"cmap": "PuOr_r", "vmin": -DECADES, "vmax": DECADES}
+    axes = draw_map(figure, item, cells["size"], "error / target, log10: accurate below 0", "both", **colours)
+    marked = [(cells["outcome"] == outcome, *mark) for outcome, mark in MARKS.items()]
+    for where, mark, size, label in (*marked, (cells["limits"], ".", 2.5, "warned: a limit of the model")):
+        row, column = np.nonzero(where)
+        if len(row):
+            colour = ORANGE if mark == "*" else BLACK
+            axes.plot(item.x[column], item.y[row], mark, color=colour, markersize=size, label=label)
+    if axes.lines:
+        figure.legend(loc="outside lower center", ncols=3)
+    if item.up.choices:
+        names = [" ".join(map(str, each)) if isinstance(each, tuple) else each for each in item.up.choices]
+        axes.set_yticks(item.y, names)
+        axes.set_yticks([], minor=True)
+
+
+def draw_map(figure: Any, item: Map, values: np.ndarray, label: str, extend: str = "neither", **colours: Any) -> Any:
+    """Draw the decadic logarithms of `values` (len(y), len(x)), and a bar of their colours; returns the axes."""
+    axes = figure.subplots()
+    axes.grid(False)
+    size = np.log10(np.maximum(values, 1e-300))
+    mesh = axes.pcolormesh(_edges(item.x), _edges(item.y), size, edgecolors="none", **colours)
+    axes.set(xscale="log", yscale="log", xlabel=item.across.label, ylabel=item.up.label)
+    axes.set_title(item.title, fontsize="medium")
+    figure.colorbar(mesh, ax=axes, extend=extend).set_label(label)
+    return axes
+
+
+def _edges(values: np.ndarray) -> np.ndarray:
+    """Borders (n + 1,) of the cells around `values` (n,), which form a geometric sequence."""
+    factor = np.sqrt(values[1] / values[0])
+    return np.append(values / factor, values[-1] * factor)

@@ -1,13 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """What docs/explanation/steering.md tells: what grows in a swim, what bends can do about it, what ballast does."""
 
+from functools import partial
+
 import numpy as np
 from eel_base.files.markdown import table
 from eel_gaits.laws.law import Law
 
-from eel_studies.outputs import Outputs
-from eel_studies.steering.drawing import SIZE, draw_multipliers
-from eel_studies.steering.linearisation import INPUTS, PeriodicLinearisation, periodic_linearisation
+from eel_studies.outputs import Outputs, Table
+from eel_studies.pictures import BLUE, GREY, LOOKS, Axes, Figure
+from eel_studies.steering.linearisation import (
+    INPUTS,
+    OUT_OF_PLANE,
+    STATES,
+    PeriodicLinearisation,
+    periodic_linearisation,
+)
 from eel_studies.steering.study import (
     CONTROLLED,
     HIGHEST,
@@ -18,8 +26,8 @@ from eel_studies.steering.study import (
     sideways_acceleration,
     sway,
 )
-from eel_studies.table import Table
 
+SIZE = 9.0, 4.0  # inches
 PARTS = "kicks", "recovered", "gaits", "picture"
 HEIGHTS = (0.0, 0.01)  # m, of the table of modes, of the first gait
 MODES = "metacentric height", "multiplier", "magnitude", "motion", "held by yaw", "by pitch", "by both"
@@ -33,20 +41,17 @@ SAME = 1e-6  # multipliers that differ by less are one
 
 def write_outputs(outputs: Outputs, scans: list[Scan]) -> None:
     """Draw the `scans` of `GAITS`, and write the page where one is asked for."""
-    picture = outputs.draw(
-        "steering", "Multipliers over the metacentric height", lambda figure: draw_multipliers(figure, scans), SIZE
-    )
+    title = "Multipliers over the metacentric height"
+    picture = outputs.draw("steering", title, partial(draw_multipliers, scans=scans), SIZE)
     if not outputs.page:
         return
     law = scans[0].law
-    free, ballast = (linearised(law, height, estimate=True) for height in HEIGHTS)
+    found = {height: linearised(law, height, estimate=True) for height in HEIGHTS}
+    free, ballast = found.values()
     gyration, (whole, tail) = radius_of_gyration(free.body), sideways_acceleration(law)
-    recovered = _recovered(dict(zip(HEIGHTS, (free, ballast), strict=True)))
-    modes = [
-        (f"{1e3 * h:g} mm", *row) for h, swim in zip(HEIGHTS, (free, ballast), strict=True) for row in _modes(swim)
-    ]
+    modes = [(f"{1e3 * height:g} mm", *row) for height, swim in found.items() for row in _modes(swim)]
     outputs.write_table("steering", Table(MODES, modes))
-    tables = _kicks(law), recovered, _gaits(scans), picture
+    tables = _kicks(law), _recovered(found), _gaits(scans), picture
     values = {
         "growth": f"{free.growth:.2f}",
         "exponent": f"{np.log(free.growth):.3f}",
@@ -111,3 +116,34 @@ def _gaits(scans: list[Scan]) -> str:
         steady = f"none up to {1e3 * HIGHEST:g} mm" if scan.steady_from is None else f"{1e3 * scan.steady_from:.1f} mm"
         rows.append((scan.name, f"{speed:.2f} m/s", steady, growth, swaying))
     return table(head, rows)
+
+
+def draw_multipliers(figure: Figure, scans: list[Scan]) -> None:
+    """On the left the magnitudes of all multipliers of the first of the `scans`, on the right the greatest of each."""
+    left, right = figure.subplots(1, 2)
+    _draw_all(left, scans[0])
+    for scan, (colour, dash, _) in zip(scans, LOOKS, strict=True):
+        right.plot(1e3 * scan.heights, scan.growth, color=colour, linestyle=dash, label=scan.name)
+    right.set(ylabel="greatest growth in a period", yscale="log")
+    right.set_yticks([1.0, 1.5, 2.0, 3.0, 4.0], ["1", "1.5", "2", "3", "4"])
+    right.set_yticks([], minor=True)
+    right.legend()
+    for axes in (left, right):
+        axes.axhline(1.0, color=GREY, linewidth=0.8)
+        axes.set_xlabel("metacentric height [mm]")
+        axes.margins(x=0.02)
+
+
+def _draw_all(axes: Axes, scan: Scan) -> None:
+    rows = [STATES.index(name) for name in OUT_OF_PLANE]
+    sizes = np.array([np.abs(each.multipliers) for each in scan.found])
+    heights = np.broadcast_to(1e3 * scan.heights[:, None], sizes.shape)
+    in_plane = np.array([each.participation[rows].sum(axis=0) for each in scan.found]) < 0.5
+    for where, colour, mark, label in (
+        (~in_plane, BLUE, "o", "roll, pitch, vertical"),
+        (in_plane, GREY, "s", "in the plane"),
+    ):
+        axes.plot(heights[where], sizes[where], mark, color=colour, markersize=2.5, label=label)
+    axes.set(ylabel="magnitude of the multipliers", ylim=(0.0, None))
+    axes.set_title(scan.name, fontsize="medium")
+    axes.legend()

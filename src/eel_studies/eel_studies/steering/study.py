@@ -82,18 +82,12 @@ def linearised(law: Law, height: float, *, estimate: bool = False) -> PeriodicLi
 def sway(found: PeriodicLinearisation) -> float:
     """The greatest angle [rad] between the head's axis 3 and up in the last periods of a long swim, which begins with
     the settled motion and a little roll."""
+    scene = replace(found.scene, internal_wrench=False, ledger=False)
+    turned = turned_by(found.start.orientation, np.array([[PUSH, 0.0, 0.0]]))[0]
     run = simulate(
-        found.law,
-        SWIM * found.period,
-        body=found.body,
-        scene=replace(found.scene, internal_wrench=False, ledger=False),
-        accuracy=1e-4,
-        sample_period=found.period / 16,
-        stations=2,
-        orientation=turned_by(found.start.orientation, np.array([[PUSH, 0.0, 0.0]]))[0],
-        twist=found.start.twist,
-        estimate=False,
-    )
+        found.law, SWIM * found.period, body=found.body, scene=scene, orientation=turned, twist=found.start.twist,
+        accuracy=1e-4, sample_period=found.period / 16, stations=2, estimate=False,
+    )  # fmt: skip
     last = run.orientation[-16 * SEEN :]
     return float(np.arccos(np.clip(rotation(last).apply([0.0, 0.0, 1.0])[:, 2], -1.0, 1.0)).max())
 

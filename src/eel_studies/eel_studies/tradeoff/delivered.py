@@ -23,8 +23,8 @@ from eel_gaits.laws.term import Term
 from eel_model.body.body import Body
 from eel_model.scene import Scene
 
+from eel_studies.outputs import Table
 from eel_studies.reference import reference_of
-from eel_studies.table import Table
 from eel_studies.workers import in_threads
 
 TARGETS = 1e-2, 1e-3, 1e-4, 1e-5, 1e-6

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from eel_studies.pictures import BLACK, BLUE, GREEN, GREY, ORANGE, Axes, Figure
-from eel_studies.tradeoff.measuring import Measured, Trade
-from eel_studies.tradeoff.settings import METHODS
+from eel_studies.tradeoff.measuring import METHODS, Measured, Trade
 
 LOOKS = {"adams": (BLUE, "o"), "dormand_prince": (GREEN, "s"), "classical": (ORANGE, "^")}
 SIZE = 11.0, 5.4  # inches
@@ -29,7 +28,7 @@ def draw_trade(figure: Figure, trade: Trade) -> None:
     panels[0].set_ylabel("error of the head's position, by its path")
     panels[1].set_ylabel("error of the torque along the body, by its greatest")
     handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), frameon=False)
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
 
 
 def _draw_panel(axes: Axes, trade: Trade, quantity: str, floor: float) -> None:
@@ -63,7 +62,6 @@ def _draw_panel(axes: Axes, trade: Trade, quantity: str, floor: float) -> None:
     axes.axhspan(low, floor, color=GREY, alpha=0.25, linewidth=0)
     across = {"transform": axes.get_yaxis_transform(), "va": "center"}
     axes.text(0.98, 0.33 * floor, "as exact as the converged run itself", ha="right", **across)
-    axes.grid(alpha=0.3)
     for value in terms.values():
         axes.axhline(value, zorder=0, color=GREY, linewidth=0.8, linestyle=(0, (5, 3)))
     for value, names in _grouped(terms, CLOSE * np.log10(high / low)):

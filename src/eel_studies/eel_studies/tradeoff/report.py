@@ -11,7 +11,7 @@ from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.accuracy.budget import Budget
 
 import eel_core
-from eel_studies.table import Table
+from eel_studies.outputs import Table
 from eel_studies.tradeoff.measuring import REACHED, SECONDS, Measured, Trade
 
 COLUMNS: dict[str, Callable[[Measured], str]] = {  # head: text of a row
