@@ -31,24 +31,23 @@ bench: build   ## speed and accuracy figures (ARGS=NAME for one of them)
 	@$(RUN) python benchmarks/run.py $(ARGS)
 
 docs: build   ## the site of docs/ in out/docs, links checked
-	@$(RUN) tools/docs.sh
+	@$(RUN) tools/pages/docs.sh
 
 notebook: build   ## run docs/tutorials/swim.ipynb anew, with its outputs in out/notebook
-	@$(RUN) tools/docs.sh notebook
+	@$(RUN) tools/pages/docs.sh notebook
 
 pictures: build   ## draw the pictures of the tutorials and of the visualiser in docs/images
-	@$(RUN) python tools/tutorial_pictures.py
-	@$(RUN) python tools/pictures.py
-	@$(RUN) python tools/part_films.py
+	@$(RUN) python tools/pages/tutorial_pictures.py
+	@$(RUN) python tools/pages/pictures.py
 
 manoeuvres: build   ## swim every gait, and write docs/reference/manoeuvres.md with its pictures
-	@$(RUN) python tools/manoeuvres.py
+	@$(RUN) python tools/pages/manoeuvres.py
 
 pilot: build   ## swim random courses with the pilot, and write the figures of docs/howto/pilot.md (ARGS="--courses 10")
-	@$(RUN) python tools/pilot_figures.py $(ARGS)
+	@$(RUN) python tools/pages/pilot_figures.py $(ARGS)
 
 robustness: build   ## list every fault, and the test that shows what happens, in out/robustness.md
-	@$(RUN) python tools/fault_table.py
+	@$(RUN) python tools/pages/fault_table.py
 
 quotes: build   ## write the figures that README.md and docs quote, from the newest reports
 	@$(RUN) python tools/quoted_figures.py

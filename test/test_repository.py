@@ -22,7 +22,7 @@ def tracked() -> list[Path]:
 
 def test_no_index_address(tracked):
     pattern = re.compile(r"(index-url|find-links|trusted-host|pypi\.org|pythonhosted|--registry)", re.IGNORECASE)
-    names = ("tools/lock.sh", "tools/uv_with_pip_settings.py", "test/test_uv_with_pip_settings.py")
+    names = ("tools/lock.sh", "tools/install/uv_with_pip_settings.py", "test/test_uv_with_pip_settings.py")
     allowed = {*(ROOT / name for name in names), Path(__file__)}  # the settings' names alone, and this list
     assert [
         str(path)

@@ -32,7 +32,7 @@ def run_uv(tmp_path):
             "PIP_CONFIG_FILE": os.fspath(tmp_path / "pip.conf"),
             **variables,
         }
-        command = [tmp_path / "venv/bin/python", ROOT / "tools/uv_with_pip_settings.py", "pip", "install"]
+        command = [tmp_path / "venv/bin/python", ROOT / "tools/install/uv_with_pip_settings.py", "pip", "install"]
         done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120)
         assert done.returncode == 0, done.stderr
         arguments, *lines = done.stdout.splitlines()

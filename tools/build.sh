@@ -7,8 +7,8 @@
 set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)"
 cd "$root"
-source tools/environment.sh
-source tools/requirements_of_machine.sh
+source tools/install/environment.sh
+source tools/install/requirements_of_machine.sh
 
 say() { printf '[build] %s\n' "$*"; }
 key_of() { { printf '%s\n' "$@"; cat; } | sha256sum | cut -c1-40; }
@@ -20,7 +20,7 @@ flock -n 9 || { say "another build runs in this folder, waiting for it"; flock 9
 
 make_environment() {
     local key setuptools_pin log=.venv/install.log
-    key="$(cat requirements*.txt tools/relocate_wheels.py | key_of "$root")"
+    key="$(cat requirements*.txt tools/install/relocate_wheels.py | key_of "$root")"
     if stamped .venv/stamp "$key" && .venv/bin/python -V > /dev/null 2>&1 && wanted_python .venv/bin/python; then
         return
     fi
@@ -30,7 +30,7 @@ make_environment() {
     "$python" -m venv .venv
     touch .venv/COLCON_IGNORE
     install_requirements
-    .venv/bin/python tools/relocate_wheels.py | sed 's/^/[build]   /'
+    .venv/bin/python tools/install/relocate_wheels.py | sed 's/^/[build]   /'
     printf '%s' "$key" > .venv/stamp
 }
 
@@ -43,7 +43,7 @@ install_requirements() {
     export PIP_USER=0 PIP_DISABLE_PIP_VERSION_CHECK=1
     .venv/bin/python -m pip install --quiet --require-hashes --only-binary :all: -r requirements-uv.txt ||
         { say "pip failed, what it said stands above"; exit 1; }
-    .venv/bin/python tools/uv_with_pip_settings.py pip "${what[@]}" --python .venv/bin/python --system-certs \
+    .venv/bin/python tools/install/uv_with_pip_settings.py pip "${what[@]}" --python .venv/bin/python --system-certs \
         --index-strategy unsafe-best-match 2>&1 | tee "$log" | say_progress && return
     say "uv failed, its output is in $log.uv; pip takes over, which lasts a minute longer"
     mv "$log" "$log.uv"

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A picture of a recording where Rerun's viewer cannot draw: the body at four instants, its torque, and the speed."""
+"""A picture of a recording where Rerun's viewer cannot draw: the body at four instants, its torque, and the speed.
+
+Of a swimmer that is all body, as that of the demo: fins and joints are not drawn.
+"""
 
 import os
 from pathlib import Path
@@ -52,18 +55,11 @@ def draw_body(axes: Any, recording: str | os.PathLike[str]) -> list[float]:
     rows = [int(np.argmin(np.abs(at - at[0] - share * (at[-1] - at[0])))) for share in INSTANTS]
     corners, shades = [], []
     for row in rows:
-        packed = skin.values["vertex_colors"][
-            np.searchsorted(skin.stamps_of["vertex_colors"], at[row], side="right") - 1
-        ]
-        packed = np.array(packed, dtype=np.uint32)
+        coloured = np.searchsorted(skin.stamps_of["vertex_colors"], at[row], side="right") - 1
+        packed = np.array(skin.values["vertex_colors"][coloured], dtype=np.uint32)
         rgb = np.stack([(packed >> shift) & 255 for shift in (24, 16, 8)], axis=1) / 255.0
         corners.append(np.array(skin.values["vertex_positions"][row])[triangles])
         shades.append(rgb[triangles].mean(axis=1))
-        plates = fins_at(recording, at[row])
-        corners.append(plates)
-        shades.append(np.tile(np.array(colours.FIN) / 255.0, (len(plates), 1)))
-        for ring, shade in rings_at(recording, at[row]):
-            axes.plot(*ring.T, color=shade, linewidth=1.2, zorder=4, clip_on=False)
     faces = np.concatenate(corners)
     light: dict[str, Any] = {"shade": True, "lightsource": LightSource(azdeg=300.0, altdeg=60.0), "clip_on": False}
     axes.add_collection3d(Poly3DCollection(faces, facecolors=np.concatenate(shades), **light))
@@ -79,29 +75,6 @@ def draw_body(axes: Any, recording: str | os.PathLike[str]) -> list[float]:
         axis.set_pane_color(tuple(np.array(colours.WATER_SHALLOW) / 255.0))
         axis.set_label_text(f"{name} [m]", color=LABEL)
     return [float(at[row] / 1e9) for row in rows]
-
-
-def fins_at(recording: str | os.PathLike[str], stamp: int) -> np.ndarray:
-    """The triangles of the fins at `stamp` [ns], (n, 3, 3) [m]; none of a body without."""
-    try:
-        fins = read(recording, entities.FINS)
-    except ValueError:
-        return np.empty((0, 3, 3))
-    triangles = read(recording, entities.FINS, static=True)["triangle_indices"][0].astype(int)
-    at = fins.stamps_of["vertex_positions"]
-    return np.array(fins.values["vertex_positions"][int(np.argmin(np.abs(at - stamp)))])[triangles]
-
-
-def rings_at(recording: str | os.PathLike[str], stamp: int) -> list[tuple[np.ndarray, np.ndarray]]:
-    """The rings of joints at `stamp` [ns], each (n, 3) [m] with its colour; none of a body without."""
-    try:
-        joints = read(recording, entities.JOINTS)
-    except ValueError:
-        return []
-    row = int(np.argmin(np.abs(joints.stamps - stamp)))
-    packed = np.array(joints.values["colors"][row], dtype=np.uint32)
-    shades = np.stack([(packed >> shift) & 255 for shift in (24, 16, 8)], axis=1) / 255.0
-    return [(np.array(ring), shade) for ring, shade in zip(joints.values["strips"][row], shades, strict=True)]
 
 
 def draw_torque(figure: Figure, axes: Any, recording: str | os.PathLike[str]) -> None:

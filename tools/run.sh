@@ -4,7 +4,7 @@
 set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)"
 cd "$root"
-source tools/environment.sh
+source tools/install/environment.sh
 source setup.bash
 export ROS_LOG_DIR="$root/out/log"   # not ~/.ros/log
 exec "$@"

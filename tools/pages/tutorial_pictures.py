@@ -18,7 +18,7 @@ from eel_studies.pictures import BLUE, ORANGE, Figure, write_picture
 from eel_dynamics import simulate
 from eel_gaits import straight
 
-DOCS = Path(__file__).resolve().parent.parent / "docs"
+DOCS = Path(__file__).resolve().parents[2] / "docs"
 SIZE = (7.0, 2.6)  # inches
 Values = dict[str, Any]  # the name space that a page leaves
 

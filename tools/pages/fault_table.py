@@ -11,12 +11,12 @@ The picture that `make soak` has left, the memory of the nodes over an hour, goe
 import ast
 import shutil
 import sys
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from eel_base.files import markdown
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "appendix" / "robustness.md"
 LIST = ROOT / "out" / "robustness.md"
 SOAK = ROOT / "out" / "soak.png"  # memory of the nodes over an hour
@@ -34,8 +34,7 @@ GROUPS = {  # key in the decorator: heading, as the page begins its line, in its
 }
 
 
-@dataclass(frozen=True)
-class Fault:
+class Fault(NamedTuple):
     """One row: what goes wrong, what happens then, and the test that shows it."""
 
     group: str
@@ -47,20 +46,16 @@ class Fault:
 def faults_of(path: Path) -> list[Fault]:
     """The rows that one test file declares, in its order. ValueError for a decorator that is not three texts."""
     found, text = [], path.read_text()
-    if "mark.fault(" not in text:
-        return []
-    for function in ast.walk(ast.parse(text)):
-        if not isinstance(function, ast.FunctionDef):
-            continue
+    functions = ast.walk(ast.parse(text)) if "mark.fault(" in text else ()
+    for function in (each for each in functions if isinstance(each, ast.FunctionDef)):
         for decorator in function.decorator_list:
-            if not (isinstance(decorator, ast.Call) and ast.unparse(decorator.func) == "pytest.mark.fault"):
-                continue
-            place = f"{path.relative_to(ROOT)}::{function.name}"
-            texts = [ast.literal_eval(argument) for argument in decorator.args]
-            if len(texts) != 3 or texts[0] not in GROUPS:
-                raise ValueError(f"{place}: fault must have a group of {', '.join(GROUPS)}, a fault and an outcome")
-            group, fault, outcome = texts
-            found.append(Fault(group, fault, outcome, place))
+            if isinstance(decorator, ast.Call) and ast.unparse(decorator.func) == "pytest.mark.fault":
+                place = f"{path.relative_to(ROOT)}::{function.name}"
+                texts = [ast.literal_eval(argument) for argument in decorator.args]
+                if len(texts) != 3 or texts[0] not in GROUPS:
+                    raise ValueError(f"{place}: fault must have a group of {', '.join(GROUPS)}, a fault and an outcome")
+                group, fault, outcome = texts
+                found.append(Fault(group, fault, outcome, place))
     return found
 
 
@@ -71,23 +66,17 @@ def faults() -> list[Fault]:
     return sorted(rows, key=lambda row: list(GROUPS).index(row.group))
 
 
-def table() -> str:
-    """The rows as Markdown, a table for each group."""
-    lines = []
-    for group, heading in GROUPS.items():
-        rows = [row for row in faults() if row.group == group]
-        if rows:
-            cells = [(row.fault, row.outcome, f"`{row.test}`") for row in rows]
-            lines += [f"## {heading}", markdown.table(("fault", "what happens", "test"), cells), ""]
-    return "\n".join(lines).rstrip()
-
-
 def main() -> int:
+    """Write the list, a table for each group."""
+    rows, lines = faults(), ["# Faults, and what happens", ""]
+    for group, heading in GROUPS.items():
+        cells = [(row.fault, row.outcome, f"`{row.test}`") for row in rows if row.group == group]
+        lines += [f"## {heading}", markdown.table(("fault", "what happens", "test"), cells), ""] if cells else []
     LIST.parent.mkdir(exist_ok=True)
-    LIST.write_text(f"# Faults, and what happens\n\n{table()}\n", encoding="utf-8")
+    LIST.write_text("\n".join(lines), encoding="utf-8")
     if SOAK.exists():
         shutil.copy(SOAK, ROOT / "docs" / "images" / "soak.png")
-    print(f"{LIST.relative_to(ROOT)}: {len(faults())} faults")
+    print(f"{LIST.relative_to(ROOT)}: {len(rows)} faults")
     return 0
 
 

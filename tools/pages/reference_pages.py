@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from eel_base.command.suite import commands as known_commands
+from eel_base.files.markdown import table
 from eel_base.quantity import limits
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_gaits.gaits.registry import GAITS, Transition
@@ -24,7 +25,7 @@ from eel_gaits.ros.pilot_parameters import GROUPS
 from eel_model.scene import Scene
 from eel_viz.settings import MarkerSettings, Settings
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "docs" / "reference"
 
 
@@ -39,9 +40,8 @@ class Gait:
     file: str = field(default="", metadata={"unit": "", "description": FILE})
 
 
-NODES: dict[
-    str, list[tuple[str, str, type[Any]]]
-] = {  # name of the node: heading, prefix and dataclass of its parameters
+HEAD = "parameter", "default", "unit", "must be", "meaning"
+NODES: dict[str, list[tuple[str, str, type[Any]]]] = {  # node: heading, prefix and dataclass of its parameters
     "gait_generator": [
         ("", "", Gait),
         ("", "", Transition),
@@ -64,8 +64,8 @@ def parameter_names(node: str) -> set[str]:
 def messages() -> str:
     """Every message and service, as its file tells it."""
     parts = ["# Messages and services", "", "All units are SI, angles radians. `eel_msgs` holds:"]
-    for folder, suffix in (("msg", "msg"), ("srv", "srv")):
-        for path in sorted((ROOT / "src" / "eel_msgs" / folder).glob(f"*.{suffix}")):
+    for kind in ("msg", "srv"):
+        for path in sorted((ROOT / "src" / "eel_msgs" / kind).glob(f"*.{kind}")):
             parts += ["", f"## {path.stem}", "", "```text", path.read_text(encoding="utf-8").rstrip(), "```"]
     return "\n".join(parts) + "\n"
 
@@ -78,17 +78,16 @@ def parameters() -> str:
         for heading, prefix, kind in tables:
             if fields(kind):
                 parts += ["", f"### {heading}"] if heading else []
-                parts += ["", "| parameter | default | unit | must be | meaning |", "|---|---|---|---|---|"]
-                parts += [_row(prefix, item) for item in fields(kind)]
+                parts += ["", table(HEAD, (_row(prefix, item) for item in fields(kind)))]
     return "\n".join(parts) + "\n"
 
 
-def _row(prefix: str, item) -> str:
+def _row(prefix: str, item) -> list[str]:
     about = item.metadata
     must = f"one of {', '.join(about['choices'])}" if "choices" in about else limits(about)
     default = "" if item.default is None else f"`{item.default!r}`"
     cells = f"`{prefix}{item.name}`", default, about["unit"], must, about["description"]
-    return f"| {' | '.join(cell.replace('|', '&#124;') for cell in cells)} |"
+    return [cell.replace("|", "&#124;") for cell in cells]
 
 
 def commands() -> str:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs uv with pip's settings of indexes, certificates and proxies, which uv does not read itself.
 
-python tools/uv_with_pip_settings.py pip install ...
+python tools/install/uv_with_pip_settings.py pip install ...
 
 The settings are those that `pip config list` shows: of pip's files and of the PIP_... variables. A variable of uv's own
 goes before them.

@@ -22,7 +22,7 @@ from eel_studies.pilot.courses import figures_in, figures_of, random_path, swim_
 from eel_studies.roll_hold.study import PAIR
 from matplotlib.patches import Circle
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 PAGE, PICTURE = ROOT / "docs/howto/pilot.md", ROOT / "docs/images/pilot.png"
 KEELS = {  # column of the table: what `figures_of` takes
     "no keel": {},

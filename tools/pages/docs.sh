@@ -10,7 +10,7 @@ if ! cmp -s docs/requirements.txt "$env/stamp"; then
     rm -rf "$env"
     .venv/bin/python -m venv "$env"
     touch "$env/COLCON_IGNORE"
-    .venv/bin/python tools/uv_with_pip_settings.py pip install --quiet --require-hashes --only-binary :all: \
+    .venv/bin/python tools/install/uv_with_pip_settings.py pip install --quiet --require-hashes --only-binary :all: \
         -r docs/requirements.txt --python "$env/bin/python" --system-certs
     printf '%s\n' .venv/lib/python3.*/site-packages | sed "s#^#$PWD/#" > "$(echo "$env"/lib/python3.*/site-packages)/eel.pth"
     cp docs/requirements.txt "$env/stamp"
@@ -23,6 +23,6 @@ if [ "${1-}" = notebook ]; then
     echo "[docs] out/notebook/swim.ipynb; a copy of it in docs/tutorials renews the page"
     exit
 fi
-.venv/bin/python tools/reference_pages.py
+.venv/bin/python tools/pages/reference_pages.py
 "$env/bin/python" -m sphinx --builder html --fail-on-warning --keep-going --quiet docs out/docs
 echo "[docs] out/docs/index.html"

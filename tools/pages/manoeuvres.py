@@ -18,11 +18,12 @@ from eel_gaits.gaits.registry import GAITS
 from eel_studies.outputs import Table
 from eel_studies.pictures import BLUE, ORANGE, SETTINGS
 from PIL import Image
+from scipy.integrate import cumulative_trapezoid
 
 from eel_dynamics import simulate
 from eel_gaits import straight
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 PAGE, PICTURES = ROOT / "docs/reference/manoeuvres.md", ROOT / "docs/images/manoeuvres"
 DURATION, SAMPLE = 20.0, 0.05  # s
 COLOURS = 64
@@ -39,15 +40,13 @@ class Swim:
         self.speed = np.linalg.norm(np.gradient(self.path, self.run.time, axis=0), axis=1)
         self.heading = np.unwrap([heading(orientation) for orientation in self.run.orientation])
         rate = self.run.twist[:, 0]
-        self.roll = np.concatenate(([0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * SAMPLE)))
-        self.period, self.cost = 1.0, None
+        self.roll = cumulative_trapezoid(rate, dx=SAMPLE, initial=0.0)
+        self.period = 1.0
         try:
-            analysis = self.run.analysis()
-            self.period = analysis.window.period
-            self.cost = analysis.cost_of_transport
-            moves = analysis.mean_speed > 0.05
-            self.figures = analysis.mean_speed, analysis.strouhal, self.cost
-            self.figures = self.figures if moves else (analysis.mean_speed, None, None)
+            found = self.run.analysis()
+            self.period = found.window.period
+            further = (found.strouhal, found.cost_of_transport) if found.mean_speed > 0.05 else (None, None)
+            self.figures = found.mean_speed, *further
         except ValueError:  # no period
             self.figures = float(np.mean(self.speed[len(self.speed) // 2 :])), None, None
 
@@ -118,16 +117,12 @@ class Swim:
         torque = whole[shown, :, component]
         bound = np.max(np.abs(torque)) or 1.0
         axes.grid(False)
-        mesh = axes.pcolormesh(
-            self.run.time[shown], self.run.x, torque.T, cmap="PuOr", vmin=-bound, vmax=bound, shading="gouraud"
-        )
-        figure.colorbar(mesh, ax=axes)
+        how = {"cmap": "PuOr", "vmin": -bound, "vmax": bound, "shading": "gouraud"}
+        figure.colorbar(axes.pcolormesh(self.run.time[shown], self.run.x, torque.T, **how), ax=axes)
         axes.set(title=f"torque C{component + 1} [N m]", xlabel="t [s]", ylabel="X [m]")
 
 
 ONCE = {"c_start": 2.0, "roll_over": 8.0, "falling": 9.0, "rising": 9.0, "diving": 6.0}  # s: what happens at the start
-
-
 SHAPES = {"c_start": 1.0, "roll_over": 4.0, "burst_and_coast": 2.0, "falling": 3.0, "rising": 3.0, "diving": 4.0}  # s
 
 
