@@ -4,8 +4,8 @@
 import re
 
 import numpy as np
+from eel_studies.midlines.command import laid_on
 from eel_studies.midlines.command import main as midlines
-from eel_studies.midlines.comparison import laid_on
 from midline_files import kern_midline, write_midlines
 
 

@@ -11,7 +11,9 @@ import subprocess
 import sys
 import tempfile
 import time
+import timeit
 from collections import Counter
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -156,12 +158,8 @@ def count_recorded(path: Path) -> int:
 
 def library_speed() -> float:
     """Simulated seconds per second of the library without ROS, on one core: the median of five runs."""
-    speeds = []
-    for _ in range(6):
-        start = time.perf_counter()
-        simulate(falling(), duration=DURATION)
-        speeds.append(DURATION / (time.perf_counter() - start))
-    return statistics.median(speeds[1:])
+    times = timeit.repeat(partial(simulate, falling(), DURATION), number=1, repeat=6)
+    return DURATION / statistics.median(times[1:])
 
 
 def draw(run: Run) -> None:

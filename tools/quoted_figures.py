@@ -56,7 +56,7 @@ class Report:
         """The number behind a label."""
         return float(self.rest(label).split()[0])
 
-    def ratios(self, case: str) -> list[float]:
+    def ratios(self, case: str) -> str:
         """How many times cheaper we are in the cases whose heading matches, and in the sizes listed under it."""
         found, inside = [], False
         for line in self.lines:
@@ -67,7 +67,7 @@ class Report:
                 found.append(float(ratio[1]))
         if not found:
             raise ValueError(f"{self.path.name} has no case {case!r} under {self.figure}: {self.command}")
-        return found
+        return f"{min(found):,.0f} to {max(found):,.0f} times"
 
 
 def link(report: Report, folder: str = "") -> str:
@@ -75,14 +75,8 @@ def link(report: Report, folder: str = "") -> str:
     return f"[{report.path.stem}]({folder}benchmarks/reports/{report.path.name})"
 
 
-TARGETS = {
-    "0.01": "1e-2 (`draft`)",
-    "0.001": "1e-3",
-    "0.0001": "1e-4 (`standard`)",
-    "1e-06": "1e-6 (`fine`)",
-}
+TARGETS = {"0.01": "1e-2 (`draft`)", "0.001": "1e-3", "0.0001": "1e-4 (`standard`)", "1e-06": "1e-6 (`fine`)"}
 AGAIN = ", on a busy machine, to be measured again"  # where a report says so
-PRESCRIBED = "[0-9]+ links, joints prescribed"
 MOTION, ALL = "motion alone", "ledger, wrench, 201 samples"
 
 
@@ -98,37 +92,27 @@ def speed() -> str:
             cells.append(f"{float(f'{float(pace):.2g}'):,.0f} ({error})")
         rows.append(cells)
 
-    def span(ratios: list[float]) -> str:
-        return f"{min(ratios):,.0f} to {max(ratios):,.0f} times"
-
     cases = [f"with the error estimate, {case}, target {target}" for case in (MOTION, ALL) for target in TARGETS]
     longer = [falling.value(case) for case in cases]
-    prescribed, servos = peers.ratios(PRESCRIBED), peers.ratios("10 links, step")
-    head = "target", MOTION, ALL
+    prescribed, servos = peers.ratios("[0-9]+ links, joints prescribed"), peers.ratios("10 links, step")
     again = AGAIN if "to be measured again" in peers.path.read_text(encoding="utf-8") else ""
-    lines = [
-        table(head, rows),
-        "",
-        "Times real time (error of the head's position, by its path). A run that measures its own error, as",
-        f"`simulate` does, takes {min(longer):.1f} to {max(longer):.1f} times as long. Others take longer at equal",
-        f"error, with less physics of the water ({link(falling)}, {link(peers)}{again}):",
-        f"- the paper's own scheme: {span(scheme.ratios('motion alone'))}",
-        f"- MuJoCo: {span(prescribed)} with joints prescribed, {span(servos)} with servos",
-        f"- PyElastica: {span(peers.ratios('[0-9]+ elements'))}",
-    ]
-    return "\n".join(lines)
+    return f"""{table(("target", MOTION, ALL), rows)}
+
+Times real time (error of the head's position, by its path). A run that measures its own error, as
+`simulate` does, takes {min(longer):.1f} to {max(longer):.1f} times as long. Others take longer at equal
+error, with less physics of the water ({link(falling)}, {link(peers)}{again}):
+- the paper's own scheme: {scheme.ratios("motion alone")}
+- MuJoCo: {prescribed} with joints prescribed, {servos} with servos
+- PyElastica: {peers.ratios("[0-9]+ elements")}"""
 
 
-ACTUATORS = " of the actuators' work"
+ACTUATORS, OF_PATH = " of the actuators' work", " of the path"
 CHECKS = {  # what the page says: the lines of validation.csv whose worst it is, and what it is relative to
     "accelerations, wrench, loads against a second code; no drag": (
         r"(head's acceleration|internal torque and force|shape in space).* without drag",
         "",
     ),
-    "head's path over 10 s against that code, laminar friction": (
-        ".*laminar friction, accuracy reference.*",
-        " of the path",
-    ),
+    "head's path over 10 s against that code, laminar friction": (".*laminar friction, accuracy reference.*", OF_PATH),
     "closure of the internal wrench at the nose": ("(torque|force) left over at the nose, any swimmer", ""),
     "energy ledger, falling gait, accuracy standard": ("residual that the live node publishes.*", ACTUATORS),
     "energy ledger, the worst of eight scenes": ("residual, .* accuracy standard.*", ACTUATORS),
@@ -161,9 +145,8 @@ QUOTED_OF_LIFE = (  # three of the rows that agree best, and the one that agrees
 
 def life() -> str:
     """README: measured swimmers, the three best rows of docs/explanation/life.md and the worst."""
-    cells = [
-        [cell.strip() for cell in line.strip("|").split("|")] for line in LIFE.read_text(encoding="utf-8").splitlines()
-    ]
+    lines = LIFE.read_text(encoding="utf-8").splitlines()
+    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
     rows = []
     for quoted in QUOTED_OF_LIFE:
         found = [row for row in cells if tuple(row[:2]) == quoted]

@@ -32,37 +32,30 @@ FINS = {"fins in place of the keel": {"fins": fins_from_text(PAIR)}}
 SHOWN = 4  # seed of the course in the picture
 
 
-QUANTITIES = (  # of a task: values; what is counted as good, with its limit; what median and greatest are told of
-    (
-        lambda each: each.misses,
-        ("way points reached within a quarter of the length", 0.25),
-        "distance from a way point, {} [lengths]",
-    ),
+QUANTITIES: tuple[tuple[Callable, tuple[str, float] | None, str], ...] = (
+    # of a task: values; what is counted as good, with its limit; what median and greatest are told of
+    (lambda each: each.misses, ("way points reached within a quarter of the length", 0.25),
+     "distance from a way point, {} [lengths]"),
     (lambda each: [100.0 * each.depth], ("depth held within 2 cm", 2.0), "error of the depth, {} [cm]"),
-    (
-        lambda each: [math.degrees(each.heading)],
-        ("heading held within 3 degrees", 3.0),
-        "error of the heading, {} [degrees]",
-    ),
-    (
-        lambda each: [each.station],
-        ("station held within half a length", 0.5),
-        "distance from the station, {} [lengths]",
-    ),
+    (lambda each: [math.degrees(each.heading)], ("heading held within 3 degrees", 3.0),
+     "error of the heading, {} [degrees]"),
+    (lambda each: [each.station], ("station held within half a length", 0.5),
+     "distance from the station, {} [lengths]"),
     (lambda each: [math.degrees(each.course_roll)], None, "greatest roll on a course, {} [degrees]"),
     (lambda each: [math.degrees(each.straight_roll)], None, "roll while a course is held, {} [degrees]"),
-)
+)  # fmt: skip
 
 
-def swim(swimmers: dict, courses: int, processes: int) -> list:
-    """The figures of so many `courses`, held courses and stations of each of the `swimmers`."""
+def swum(task: Callable, count: int, processes: int) -> list:
+    """What `task(seed)` gives of so many seeds."""
     with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
-        return [list(pool.map(partial(figures_of, **each), range(courses))) for each in swimmers.values()]
+        return list(pool.map(task, range(count)))
 
 
 def figures(swimmers: dict, courses: int, processes: int, path: Path) -> tuple[list[list[str]], list[list[str]]]:
-    """Rows of what is met, and of its greatest errors, by the first and second column; all of them in `path`."""
-    found, met, errors = swim(swimmers, courses, processes), [], []
+    """Rows of what is met in so many courses, held courses and stations of each of the `swimmers`, and of its greatest
+    errors; all of them in `path`."""
+    found, met, errors = [swum(partial(figures_of, **each), courses, processes) for each in swimmers.values()], [], []
     for values_of, counted, told in QUANTITIES:
         values = [np.array([value for each in tasks for value in values_of(each)]) for tasks in found]
         if counted:
@@ -98,9 +91,7 @@ WATER = (  # figures of WaterFigures: name, factor of the unit
 
 def water_table(tasks: int, processes: int) -> str:
     """The figures of so many `tasks` of each kind in water that moves, as Markdown."""
-    with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
-        found = list(pool.map(figures_in, range(tasks)))
-    rows = []
+    found, rows = swum(figures_in, tasks, processes), []
     for told, name, factor in WATER:
         values = factor * np.array([getattr(each, name) for each in found])
         rows.append((told, f"{np.median(values):.2g}", f"{np.max(values):.2g}"))

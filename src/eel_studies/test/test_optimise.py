@@ -149,7 +149,7 @@ def test_the_command_prints_the_front_and_writes_what_was_asked_for(tmp_path, ca
         rows[0]["period"]
     ) > 0.6
     for bad, told in [
-        (["--bound", "period=1"], "--bound must be NAME=low:high, got 'period=1'"),
+        (["--bound", "period=1"], "--bound must be NAME=LOW:HIGH, got 'period=1'"),
         (["--speeds", "fast"], "--speeds must be start:end:count, count >= 1, or a,b,c in m/s, got 'fast'"),
         (["--out", "front.pdf"], "--out must end in .png, .svg or .csv, got 'front.pdf'"),
         (["--set", "amplitude_2=x"], "--set must be NAME=NUMBER"),

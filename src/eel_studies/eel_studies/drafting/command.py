@@ -13,6 +13,7 @@ from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
 
 from eel_studies.drafting.study import Study, Wake, locked_speed, study_of
+from eel_studies.options import check_least
 from eel_studies.outputs import Outputs, Table, add_output_options
 from eel_studies.pictures import BLUE, GREEN, GREY, ORANGE, Axes, Figure
 
@@ -36,8 +37,7 @@ def _add_options(parser: Parser) -> None:
     add_options=_add_options,
 )
 def main(options: argparse.Namespace) -> None:
-    if options.phases < 1:
-        raise ValueError(f"--phases must be 1 or more, got {options.phases}")
+    check_least(options, phases=1)
     outputs, progress = Outputs(NAME, options, PARTS), Progress(NAME, "swims")
     study = study_of(SPACINGS, np.arange(options.phases) / options.phases, progress)
     rows = [_row(study, wake, *figures) for wake, *figures in zip(study.wakes, *study.swum.values(), strict=True)]

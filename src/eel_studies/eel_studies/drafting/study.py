@@ -43,35 +43,21 @@ class Swum(NamedTuple):
     paid: float  # W, without what they get back: of the instants with positive power
 
 
-@dataclass(frozen=True)
 class Wake:
-    """A street behind a cylinder that moves at `speed` [m/s], with this `spacing` [m] of its vortices."""
+    """A street behind a cylinder that moves at `speed` [m/s], with this `spacing` [m] of its vortices.
 
-    speed: float
-    spacing: float
+    Attributes:
+        diameter: of the cylinder [m]. core: radius of the vortices' cores [m]. circulation: of each vortex [m^2/s].
+        mean: velocity of the water on the middle line [m/s], towards the cylinder: circulation / spacing, but for what
+            part of the vorticity of Gaussian cores lies across the line.
+    """
 
-    @property
-    def diameter(self) -> float:
-        """Of the cylinder [m]."""
-        return STROUHAL * self.spacing / (1.0 - FOLLOWING)
-
-    @property
-    def core(self) -> float:
-        """Radius of the vortices' cores [m]."""
-        return CORE * self.diameter
-
-    @property
-    def circulation(self) -> float:
-        """Of each vortex [m^2/s]."""
-        return 2.0 * math.sqrt(2.0) * self.spacing * FOLLOWING * self.speed
-
-    @property
-    def mean(self) -> float:
-        """Mean velocity of the water on the middle line [m/s], towards the cylinder.
-
-        circulation / spacing, but for what part of the vorticity of Gaussian cores lies across the line.
-        """
-        return self.circulation / self.spacing * math.erf(0.5 * WIDTH * self.spacing / self.core)
+    def __init__(self, speed: float, spacing: float):
+        self.speed, self.spacing = speed, spacing
+        self.diameter = STROUHAL * spacing / (1.0 - FOLLOWING)
+        self.core = CORE * self.diameter
+        self.circulation = 2.0 * math.sqrt(2.0) * spacing * FOLLOWING * speed
+        self.mean = self.circulation / spacing * math.erf(0.5 * WIDTH * spacing / self.core)
 
     def flow(self, phase: float) -> VortexStreet:
         """The street; `phase` (0 to 1): part of a spacing by which it lies further ahead at the start."""

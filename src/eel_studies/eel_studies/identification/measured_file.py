@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from eel_base.attitude import heading
+from eel_base.files.input_file import reading
 from eel_base.wording import shown
 from eel_dynamics.runs.run import Run
 from eel_gaits.laws.law import Law
@@ -74,30 +75,28 @@ def read_measured(
     twist = dict(zip(VELOCITIES, run.twist[0].tolist(), strict=True)) if run.time[0] == 0.0 else {}
     numbers = {f"initial.{name}": value for name, value in twist.items() if value}
     scene = replace(run.scene, internal_wrench=False, ledger=False) if Path(path).suffix == ".nc" else None
-    if angles:
-        if run.joint_angle is None:
-            raise ValueError(f"{shown(path)}: it holds no joints: --robot must be given with a bag, or --path")
-        measured = _named(path, MeasuredAngles, run.time, run.joint_angle, numbers)
-    else:
-        measured = _named(path, MeasuredPath, run.time, _tracked(path, run, station), station, numbers)
+    measured: MeasuredAngles | MeasuredPath
+    with reading(shown(path)):
+        if not angles:
+            measured = MeasuredPath(run.time, _tracked(run, station), station, numbers)
+        elif run.joint_angle is None:
+            raise ValueError("it holds no joints: --robot must be given with a bag, or --path")
+        else:
+            measured = MeasuredAngles(run.time, run.joint_angle, numbers)
     return MeasuredFile([measured], run.law, run.body, scene, run.robot)
 
 
-def _names_of(robot: Robot | None) -> list[str]:
+def _angles_of_table(table: Table, robot: Robot | None) -> MeasuredAngles:
     if robot is None:
         raise ValueError("--robot must be given: its joints name the columns of angles")
-    return [joint.name for joint in robot.joints]
-
-
-def _angles_of_table(table: Table, robot: Robot | None) -> MeasuredAngles:
-    names = _names_of(robot)
+    names = [joint.name for joint in robot.joints]
     missing = [name for name in ("time", *names) if name not in table.columns]
     if missing:
         raise table.error(f"its columns must be time and the robot's joints, got none of {', '.join(missing)}")
     table.check_finite(("time",))
     angles = np.stack([table.columns[name] for name in names], axis=1)
-    made: MeasuredAngles = _named(str(table.path), MeasuredAngles, table.columns["time"], angles)
-    return made
+    with reading(shown(str(table.path))):
+        return MeasuredAngles(table.columns["time"], angles)
 
 
 def _of_table(table: Table, station: float) -> list[Any]:
@@ -109,7 +108,8 @@ def _of_table(table: Table, station: float) -> list[Any]:
         if len(back):
             raise table.error("time must rise: a path has one row for each instant", back[0] + 1)
         position = np.stack([columns[name] for name in names], axis=1)
-        return [_named(str(table.path), MeasuredPath, columns["time"], position, station)]
+        with reading(shown(str(table.path))):
+            return [MeasuredPath(columns["time"], position, station)]
     if "speed" not in columns:
         raise table.error(f"its columns must be time, x, y (a path), or speed, got {shown(sorted(columns))}")
     table.check_finite(tuple(columns))
@@ -123,24 +123,14 @@ def _of_table(table: Table, station: float) -> list[Any]:
     ]
 
 
-def _tracked(path: str, run: Run, station: float) -> np.ndarray:
+def _tracked(run: Run, station: float) -> np.ndarray:
     """The path (T, 3) [m] of the run's point at the `station` [m]."""
     if run.backbone is None:
         if station != 0.0:
-            raise ValueError(f"{shown(path)}: it holds no backbone, --station must be 0, got {station:g}")
+            raise ValueError(f"it holds no backbone, --station must be 0, got {station:g}")
         return run.position
     place = int(np.argmin(np.abs(run.x - station)))
     if abs(run.x[place] - station) > NEAR * run.body.length:
         nearest = f"the nearest are {', '.join(f'{x:g}' for x in run.x[max(place - 1, 0) : place + 2])} m"
-        raise ValueError(
-            f"{shown(path)}: --station must be one of its {len(run.x)} stations, {nearest}, got {station:g}"
-        )
+        raise ValueError(f"--station must be one of its {len(run.x)} stations, {nearest}, got {station:g}")
     return run.backbone[:, place]
-
-
-def _named(path: str, kind: type, *arguments: Any) -> Any:
-    """`kind(*arguments)`; its `ValueError` names the file."""
-    try:
-        return kind(*arguments)
-    except ValueError as error:
-        raise ValueError(f"{shown(path)}: {error}") from None

@@ -6,6 +6,7 @@ eel midlines fish.csv --out midlines.png    # and a picture
 """
 
 import argparse
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -14,16 +15,42 @@ from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
 from eel_base.files.output_file import written_as
 from eel_dynamics.commands.options import add_options
+from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.simulate import simulate
+from eel_gaits.sources.midlines import Midlines
 from eel_gaits.sources.motion_file import read_midlines
 from eel_model.body.body import body_of
 
-from eel_studies.midlines.comparison import MidlineComparison, compared
 from eel_studies.pictures import Figure, write_picture
 
 NAME = "eel midlines"
 SUFFIXES = (".png", ".svg", ".pdf")
 SHOWN = 8  # instants in the picture
+
+
+@dataclass(frozen=True)
+class MidlineComparison:
+    """Midlines at T instants and n points, in the plane or in space. The run's are laid on the measured ones."""
+
+    time: np.ndarray  # (T,) s
+    measured: np.ndarray  # (T, n, 2 or 3) m
+    found: np.ndarray  # (T, n, 2 or 3) m
+    length: float  # m, of the body
+
+    @property
+    def distance(self) -> np.ndarray:
+        """(T, n) relative to the body's length."""
+        return np.asarray(np.linalg.norm(self.found - self.measured, axis=2) / self.length)
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the distances, relative to the body's length."""
+        return float(np.sqrt(np.mean(self.distance**2)))
+
+    def __str__(self) -> str:
+        worst = np.unravel_index(np.argmax(self.distance), self.distance.shape)
+        most = f"{self.distance[worst]:.3%} at most, at point {worst[1] + 1} at t = {self.time[worst[0]]:.3g} s"
+        return f"{self.rms:.3%} of the body's length apart (RMS), {most}; rigid motion removed"
 
 
 def _add_options(parser: Parser) -> None:
@@ -87,3 +114,25 @@ def _upright(points: np.ndarray, reference: np.ndarray) -> np.ndarray:
     axes = np.linalg.svd(centred, full_matrices=False)[2][:2]
     axes[0] *= np.sign(axes[0] @ (reference[-1] - reference[0]))
     return np.asarray((points - reference[0]) @ axes.T)
+
+
+def compared(run: Run, midlines: Midlines) -> MidlineComparison:
+    """Compare a `run`, whose stations are the measured points, with the `midlines` at its instants."""
+    from scipy.interpolate import CubicSpline
+
+    measured = CubicSpline(midlines.time, midlines.position)(run.time)
+    assert run.backbone is not None  # it has stations
+    found = run.backbone[..., : measured.shape[2]]
+    return MidlineComparison(run.time, measured, laid_on(found, measured), run.body.length)
+
+
+def laid_on(points: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """The `points` (T, n, d) after the rotation and shift of each instant that brings them closest to the `others`.
+
+    Kabsch, Acta Cryst. A32 (1976), doi:10.1107/S0567739476001873.
+    """
+    centre, other = points.mean(axis=1, keepdims=True), others.mean(axis=1, keepdims=True)
+    left, _, right = np.linalg.svd((points - centre).swapaxes(1, 2) @ (others - other))
+    sign = np.sign(np.linalg.det(left @ right))
+    left[..., -1] *= sign[:, None]
+    return np.asarray((points - centre) @ (left @ right) + other)

@@ -28,9 +28,9 @@ from eel_model.robot.actuators import Servo
 from eel_model.robot.robot import Robot
 
 from eel_studies.motors.motor_figures import Comparison, MotorFigures, comparison, motor_swim, with_number, word_of
+from eel_studies.options import add_scene_options, chosen
 from eel_studies.outputs import Table, write_files
 from eel_studies.pictures import LOOKS, Figure, legend_above
-from eel_studies.scene_options import add_scene_options, chosen
 
 NAME = "eel motors"
 RECORDED = ".nc", ".mcap", ".db3"

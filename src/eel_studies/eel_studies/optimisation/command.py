@@ -15,7 +15,7 @@ from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
 from eel_base.wording import shown
 from eel_dynamics.analysis.measures import MEASURES
-from eel_dynamics.commands.options import add_options, add_repeated, named_texts, set_numbers, varied_values
+from eel_dynamics.commands.options import add_options, add_repeated, set_numbers, varied_values
 from eel_dynamics.commands.scene_options import add_changes, swim_from
 from eel_dynamics.runs.scene_file import SUFFIXES as SCENES
 from eel_dynamics.runs.storage.tables import write_columns
@@ -23,6 +23,7 @@ from eel_dynamics.runs.storage.tables import write_columns
 from eel_studies.optimisation.front import FORMATS, SIZE, draw_front
 from eel_studies.optimisation.optimise import optimise
 from eel_studies.optimisation.searches import METHODS
+from eel_studies.options import ranges_of
 from eel_studies.outputs import write_files
 
 NAME = "eel optimise"
@@ -54,11 +55,10 @@ def _add_options(parser: Parser) -> None:
 def main(options: argparse.Namespace) -> None:
     start = time.perf_counter()
     outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
-    bounds = {name: _bounds(name, text) for name, text in named_texts("--bound", options.bound)}
     smooth = {} if options.gait.endswith(SCENES) else {"scene": {"friction": "blended"}}
     swim = swim_from(options.gait, options, **smooth)
     front = optimise(
-        bounds,
+        ranges_of("--bound", options.bound),
         _speeds(options.speeds),
         gait=swim,
         numbers=set_numbers(options.set),
@@ -75,16 +75,6 @@ def main(options: argparse.Namespace) -> None:
         print("* a parameter at its bound, or a gait that is slower and costs more than another")
     print(f"wall time  {time.perf_counter() - start:.1f} s, {len(front.tried)} gaits tried")
     write_files(outs, partial(write_columns, front.columns), partial(draw_front, front=front), SIZE)
-
-
-def _bounds(name: str, text: str) -> tuple[float, float]:
-    low, found, high = text.partition(":")
-    try:
-        if not found:
-            raise ValueError
-        return float(low), float(high)
-    except ValueError:
-        raise ValueError(f"--bound must be NAME=low:high, got {shown(f'{name}={text}')}") from None
 
 
 def _speeds(text: str) -> list[float]:

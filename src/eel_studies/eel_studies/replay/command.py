@@ -15,13 +15,14 @@ from eel_base.command.command import checked_out, command
 from eel_base.command.command_line import Parser
 from eel_base.quantity import positive
 from eel_base.wording import shown
-from eel_dynamics.commands.options import add_options, add_repeated, named_texts, scene_of
+from eel_dynamics.commands.options import add_options, add_repeated, scene_of, set_numbers
 from eel_dynamics.runs.exchange.eel_viz_functions import joints_of_bag
 from eel_dynamics.runs.storage.tables import write_columns
 from eel_gaits.sources.joint_log import JointLog, joint_log, law_of_links, read_joint_log
 from eel_model.body.body import Body, body_of
 from eel_model.scene import Scene
 
+from eel_studies.options import ranges_of
 from eel_studies.outputs import Table, write_files
 from eel_studies.replay.band import UNCERTAIN, Replayed, replay, robot_body, with_factors
 from eel_studies.replay.drawing import Seen, draw
@@ -72,11 +73,11 @@ def main(options: argparse.Namespace) -> None:
     law = law_of_links(log, joints, body.length)
     scene = scene_of(options.scene, Scene(planar=True, friction="blended"))
     first, alone, drawn = replay(
-        law, body, joints, scene, uncertain=_uncertain(options.vary), samples=options.samples,
+        law, body, joints, scene, uncertain=ranges_of("--vary", options.vary) or None, samples=options.samples,
         duration=options.duration, accuracy=options.accuracy,
     )  # fmt: skip
-    for note in (law.about, *log.notes, _about(body, links)):
-        print(note)
+    print(law.about, *log.notes, sep="\n")
+    print(f"{len(links)} links, {body.length:.4g} m, {body.mass:.4g} kg, {body.volume * 1e3:.4g} l")
     print(table_of(first, drawn, seen.speed if seen else options.speed).text())
     if alone:
         print(effects_of(first, alone).text())
@@ -127,27 +128,8 @@ def _body(options: argparse.Namespace, length: float) -> Body:
         if abs(body.length - length) > FITTING * length:
             raise ValueError(f"--links must add up to the body's length, {body.length:g} m, got {length:g} m")
     body = with_factors(body, {})
-    for name, text in named_texts("--set", options.set):
-        try:
-            body = body.changed(**{name: float(text)})
-        except ValueError as error:
-            raise ValueError(f"--set {name}={text}: {error}") from None
+    body = body.changed(**set_numbers(options.set))
     return body if options.mass is None else body.changed(density=positive("mass", options.mass, "kg") / body.volume)
-
-
-def _uncertain(texts: list[str]) -> dict[str, tuple[float, float]] | None:
-    found = {}
-    for name, text in named_texts("--vary", texts):
-        try:
-            low, high = map(float, text.split(":"))
-        except ValueError:
-            raise ValueError(f"--vary must be NAME=LOW:HIGH, factors, got {shown(f'{name}={text}')}") from None
-        found[name] = (low, high)
-    return found or None
-
-
-def _about(body: Body, links: np.ndarray) -> str:
-    return f"{len(links)} links, {body.length:.4g} m, {body.mass:.4g} kg, {body.volume * 1e3:.4g} l"
 
 
 def table_of(first: Replayed, drawn: list[Replayed], measured: float | None) -> Table:

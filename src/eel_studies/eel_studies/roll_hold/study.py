@@ -54,7 +54,9 @@ def linearised(swim: Swim, **how: Any) -> PeriodicLinearisation:
     return periodic_linearisation(law, body=swim.body, scene=swim.scene, fins=swim.fins, **how)
 
 
-def roll_window(swim: Swim, over: Mapping[str, tuple[float, float]], points: int = 9) -> RollWindow:
+def roll_window(
+    swim: Swim, over: Mapping[str, tuple[float, float]], points: int = 9, title: str | None = None
+) -> RollWindow:
     """The window of a `swim` over two of its numbers, each from a least to a greatest value, in geometric sequence.
 
     over: names of `varied`, such as "fins.area", "fins.k_p", "fins.k_d", "fins.time_constant". `ValueError` for a
@@ -65,7 +67,7 @@ def roll_window(swim: Swim, over: Mapping[str, tuple[float, float]], points: int
     if len(over) != 2:
         raise ValueError(f"over must be two numbers of the swim, got {len(over)}")
     across, up = (Axis(name, name, *bounds) for name, bounds in over.items())
-    item = Map("roll_hold", f"{swim.law.name}: growth in a period", across, up, points, swim)
+    item = Map("roll_hold", title or f"{swim.law.name}: growth in a period", across, up, points, swim)
     return RollWindow(item, item.values(_growth))
 
 

@@ -12,7 +12,7 @@ from eel_base.command.command_line import Parser
 from eel_base.files.output_file import written_as
 from eel_dynamics.runs.scene_file import SUFFIXES, save_scene
 
-from eel_studies.scene_options import add_scene_options, chosen
+from eel_studies.options import add_scene_options, chosen
 from eel_studies.scene_terms.study import terms
 
 NAME = "eel terms"

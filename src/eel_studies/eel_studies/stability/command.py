@@ -14,10 +14,10 @@ from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
 from eel_base.wording import shown
-from eel_dynamics.commands.options import add_repeated, named_texts
+from eel_dynamics.commands.options import add_repeated
 
+from eel_studies.options import add_scene_options, check_least, chosen, ranges_of
 from eel_studies.outputs import Outputs, add_output_options
-from eel_studies.scene_options import add_scene_options, chosen
 from eel_studies.stability.maps import OUTCOMES, Axis, Map, measure
 from eel_studies.stability.report import STUDIES, counts, report
 from eel_studies.varied import NAMES, varied
@@ -42,8 +42,7 @@ def _add_options(parser: Parser) -> None:
     add_options=_add_options,
 )
 def main(options: argparse.Namespace) -> None:
-    if options.points < 2:
-        raise ValueError(f"--points must be 2 or more, got {options.points}")
+    check_least(options, points=2)
     if options.swim is not None or options.over:
         _map(options)
         return
@@ -57,7 +56,7 @@ def main(options: argparse.Namespace) -> None:
 
 
 def _map(options: argparse.Namespace) -> None:
-    axes = [axis_from(name, text) for name, text in named_texts("--over", options.over)]
+    axes = axes_from(options.over)
     if len(axes) != 2:
         raise ValueError(f"--over must be given for two numbers of the scene, got {len(axes)}")
     if options.study:
@@ -77,12 +76,10 @@ def _map(options: argparse.Namespace) -> None:
     outputs.write({scene: report([found], outputs)})
 
 
-def axis_from(name: str, text: str) -> Axis:
-    """The axis that NAME=LOW:HIGH gives, which are above 0: the map is logarithmic."""
-    try:
-        low, high = map(float, text.split(":"))
-    except ValueError:
-        low = high = 0.0
-    if not 0.0 < low < high < float("inf"):
-        raise ValueError(f"--over must be NAME=LOW:HIGH, 0 < LOW < HIGH, got {shown(f'{name}={text}')}")
-    return Axis(name, name, low, high)
+def axes_from(texts: list[str]) -> list[Axis]:
+    """The axes that --over gives, of numbers above 0: the map is logarithmic."""
+    found = ranges_of("--over", texts)
+    for name, (low, high) in found.items():
+        if not 0.0 < low < high < float("inf"):
+            raise ValueError(f"--over must be NAME=LOW:HIGH, 0 < LOW < HIGH, got {shown(f'{name}={low:g}:{high:g}')}")
+    return [Axis(name, name, *ends) for name, ends in found.items()]

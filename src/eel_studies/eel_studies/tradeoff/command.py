@@ -18,8 +18,8 @@ from eel_base.command.progress import Progress
 from eel_base.files.output_file import written_as
 from eel_dynamics.accuracy.budget import Budget
 
+from eel_studies.options import add_scene_options, check_least, chosen
 from eel_studies.outputs import Outputs, add_output_options
-from eel_studies.scene_options import add_scene_options, chosen
 from eel_studies.tradeoff.delivered import COUNT, SEED, deliver, delivered_table, draw_delivered
 from eel_studies.tradeoff.drawing import SIZE, draw_trade
 from eel_studies.tradeoff.measuring import SAMPLE_PERIOD, affordable, bare, measure
@@ -68,7 +68,7 @@ def _trade(options: argparse.Namespace) -> None:
     for swim in swims.values():
         if isinstance(swim.duration, float) and not swim.duration >= (least := swim.sample_period or SAMPLE_PERIOD):
             raise ValueError(f"--duration must be >= {least} s, got {swim.duration}")
-    _check_least(options, repeats=1)
+    check_least(options, repeats=1)
     outputs, found, pictures = Outputs(NAME, options, PARTS), [], []
     for name, swim in swims.items():
         progress.say(f"scene {name}")
@@ -95,7 +95,7 @@ def _trade(options: argparse.Namespace) -> None:
 )
 def _deliver(options: argparse.Namespace) -> None:
     """Measure what the targets deliver; print it, and draw it."""
-    _check_least(options, count=1, seed=0)
+    check_least(options, count=1, seed=0)
     outputs, progress = Outputs(NAME, options, DELIVERED_PARTS), Progress(NAME, "swims")
     trials = deliver(options.count, options.seed, progress.say)
     table = delivered_table(trials)
@@ -104,13 +104,6 @@ def _deliver(options: argparse.Namespace) -> None:
     picture = outputs.draw("delivered", "Estimated and true errors", draw, DELIVERED_SIZE, ("svg", "png"))
     values = {"count": str(options.count), "seed": str(options.seed), "swims": str(len(trials))}
     outputs.write(dict(zip(DELIVERED_PARTS, (table.markdown(), picture), strict=True)), values)
-
-
-def _check_least(options: argparse.Namespace, **least: int) -> None:
-    """`ValueError` for an option below the `least` value that it may have."""
-    for name, low in least.items():
-        if getattr(options, name) < low:
-            raise ValueError(f"--{name} must be {low} or more, got {getattr(options, name)}")
 
 
 def main(arguments: list[str] | None = None) -> int:

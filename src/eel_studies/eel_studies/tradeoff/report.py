@@ -3,6 +3,7 @@
 
 import math
 import platform
+import re
 from collections.abc import Callable
 from datetime import date
 from pathlib import Path
@@ -98,11 +99,8 @@ def digit_line(trade: Trade) -> str:
 def machine() -> str:
     """Processor, date and instruction set of the measurement, in words."""
     processor = platform.processor() or platform.machine()
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-        processor = next(line.split(":")[1].strip() for line in lines if line.startswith("model name"))
-    except (OSError, StopIteration):
-        pass
+    if (about := Path("/proc/cpuinfo")).exists() and (named := re.search(r"model name\s*: (.*)", about.read_text())):
+        processor = named[1].strip()
     return f"one core ({processor}), {date.today()}, the mechanics compiled for {eel_core.build_info()['level']}"
 
 

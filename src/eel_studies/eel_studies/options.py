@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The scene that a study is about: the options of its command."""
+"""The options that the commands of studies share: the scene that a study is about, ranges, and counts."""
 
 import argparse
 
 from eel_base.command.command_line import Parser
-from eel_dynamics.commands.options import add_options, set_numbers
+from eel_base.wording import shown
+from eel_dynamics.commands.options import add_options, named_texts, set_numbers
 from eel_dynamics.commands.scene_options import add_changes, swim_from
 from eel_dynamics.runs.swim import Swim
 
@@ -24,3 +25,22 @@ def chosen(name: str | None, options: argparse.Namespace) -> Swim:
     """The swim of the file called `name`, or of the gait, with what the `options` change."""
     swim, numbers = swim_from(name or "falling", options), set_numbers(options.set)
     return point_at(numbers, swim, {}, swim) if numbers else swim
+
+
+def ranges_of(option: str, texts: list[str]) -> dict[str, tuple[float, float]]:
+    """The two numbers by name that an `option` NAME=LOW:HIGH gives."""
+    found = {}
+    for name, text in named_texts(option, texts):
+        try:
+            low, high = map(float, text.split(":"))
+        except ValueError:
+            raise ValueError(f"{option} must be NAME=LOW:HIGH, got {shown(f'{name}={text}')}") from None
+        found[name] = (low, high)
+    return found
+
+
+def check_least(options: argparse.Namespace, **least: int) -> None:
+    """`ValueError` for an option below the `least` value that it may have."""
+    for name, low in least.items():
+        if getattr(options, name) < low:
+            raise ValueError(f"--{name} must be {low} or more, got {getattr(options, name)}")
