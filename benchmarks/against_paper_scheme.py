@@ -30,10 +30,8 @@ def paper_scheme() -> Lines:
         yield "skipped, numba could not be installed", None, ""
         return
     for internal in (False, True):
-        scene, period = (
-            Scene(friction="laminar", ledger=False, internal_wrench=internal),
-            STEP if internal else DURATION,
-        )
+        scene = Scene(friction="laminar", ledger=False, internal_wrench=internal)
+        period = STEP if internal else DURATION
         ours = partial(simulate, LAW, DURATION, body=BODY, scene=scene, estimate=False)
         finest = ours(accuracy=REFERENCE, sample_period=STEP, stations=COMMON + 1).in_axes("paper")
         errors = {}

@@ -9,16 +9,7 @@ import numpy as np
 from measuring import Action, Lines, median_ratio, swimming, times_in_turn
 
 import eel_core
-from eel_dynamics import (
-    Flow,
-    GriddedFlow,
-    Scene,
-    Shear,
-    Simulation,
-    VortexStreet,
-    Wave,
-    simulate_batch,
-)
+from eel_dynamics import Flow, GriddedFlow, Scene, Shear, Simulation, VortexStreet, Wave, simulate_batch
 from eel_gaits import falling
 
 COUNT = 2000  # evaluations that are timed together
@@ -48,7 +39,7 @@ def evaluation() -> Lines:
     spent = {nodes: _microseconds(values) for nodes, values in times.items()}
     for nodes, microseconds in spent.items():
         yield f"{nodes:4d} nodes", microseconds, "us per evaluation (CPU)"
-    yield "exponent of growth", _exponent(spent), "(1: linear)"
+    yield "exponent of growth", np.polyfit(np.log(list(spent)), np.log(list(spent.values())), 1)[0], "(1: linear)"
 
 
 def flows() -> Lines:
@@ -79,10 +70,6 @@ def flows() -> Lines:
         wall, spent = (times_in_turn(threads, clock=clock) for clock in (time.perf_counter, time.process_time))
         yield f"{case}, two threads", median_ratio(wall[1], wall[2]), "times as fast (wall)"
         yield f"{case}, two threads", median_ratio(spent[2], spent[1]), "times the CPU time"
-
-
-def _exponent(costs: dict) -> float:
-    return float(np.polyfit(np.log(list(costs)), np.log(list(costs.values())), 1)[0])
 
 
 def wrench() -> Lines:

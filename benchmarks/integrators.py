@@ -41,19 +41,12 @@ def integrators() -> Lines:
         for accuracy in settings:
             with contextlib.suppress(SimulationStopped):  # at a step that is too long
                 run = swim(accuracy=accuracy, sample_period=DURATION)
-                points.append((_apart(run, exact), run.evaluations))
+                apart = float(np.linalg.norm(run.position[-1] - exact.position[-1]))
+                points.append((apart / exact.path_length, run.evaluations))
         return f"{name:42s}" + "".join(" " + _fewest(points, target) for target in TARGETS), None, ""
 
     study: dict[str, Any] = {"name": "study", "resolution": RESOLUTION}
     yield row("Runge-Kutta 4, classical", (Accuracy(step=1.0 / each, **study) for each in STEPS))
     for method, order in (*(("adams", order) for order in (3, 4, 5, 6)), ("dormand_prince", 5)):
-        tolerances = np.logspace(-3, -10, 22)
-        yield row(
-            f"adaptive: {method} {order}",
-            (Accuracy(tolerance=each, method=method, order=order, **study) for each in tolerances),
-        )
-
-
-def _apart(run: Any, exact: Any) -> float:
-    """Distance of the heads at the end, divided by the length of the path."""
-    return float(np.linalg.norm(run.position[-1] - exact.position[-1])) / exact.path_length
+        how = study | {"method": method, "order": order}
+        yield row(f"adaptive: {method} {order}", (Accuracy(tolerance=each, **how) for each in np.logspace(-3, -10, 22)))

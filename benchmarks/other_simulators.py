@@ -98,14 +98,9 @@ def _mujoco(python: Path) -> Lines:
 
         def task(step: float, links: int = links) -> dict[str, Any]:
             angles = _joint_angles(links, step)
-            return (
-                _chain(links)
-                | {
-                    "integrator": "implicitfast",  # Euler and Runge-Kutta 4 are unstable with servos this stiff
-                    "targets": angles[:-1] + LAG * (angles[1:] - angles[:-1]) / step,
-                    "angles": angles[1:],
-                }
-            )
+            targets = angles[:-1] + LAG * (angles[1:] - angles[:-1]) / step
+            # Euler and Runge-Kutta 4 are unstable with servos this stiff
+            return _chain(links) | {"integrator": "implicitfast", "targets": targets, "angles": angles[1:]}
 
         results = _swims(python, "mujoco_chain.py", LINK_STEPS, task)
         first, *_, last = results.values()

@@ -37,10 +37,8 @@ def robots() -> Lines:
             swim = partial(simulate, straight(), DURATION, robot=robot, scene=scene, sample_period=DURATION, stations=2)
             bare = {target: partial(swim, accuracy=target, estimate=False) for target in TARGETS}
             finest, runs = swim(accuracy=FINEST, estimate=False), {target: run() for target, run in bare.items()}
-            errors = {
-                target: float(np.linalg.norm(run.position[-1] - finest.position[-1]) / finest.path_length)
-                for target, run in runs.items()
-            }
+            ends = {target: run.position[-1] - finest.position[-1] for target, run in runs.items()}
+            errors = {target: float(np.linalg.norm(apart)) / finest.path_length for target, apart in ends.items()}
             loosest = next((target for target in TARGETS if errors[target] <= DELIVERED), TARGETS[-1])
             found = times_in_turn({target: bare[target] for target in (loosest, TARGETS[-1])}, clock=time.thread_time)
             for target, times in found.items():

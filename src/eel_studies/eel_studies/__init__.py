@@ -6,7 +6,7 @@ import eel_command  # noqa: F401  first: Ctrl-C ends a command during the other 
 from eel_dynamics import STUDIES
 from eel_studies.gradients.gradient import Gradient as Gradient
 from eel_studies.gradients.gradient import gradient as gradient
-from eel_studies.identification.identify import Identified as Identified
+from eel_studies.identification.fit import Identified as Identified
 from eel_studies.identification.identify import identify as identify
 from eel_studies.identification.measurements import MeasuredAngles as MeasuredAngles
 from eel_studies.identification.measurements import MeasuredPath as MeasuredPath

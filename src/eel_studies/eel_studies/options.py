@@ -27,14 +27,14 @@ def chosen(name: str | None, options: argparse.Namespace) -> Swim:
     return point_at(numbers, swim, {}, swim) if numbers else swim
 
 
-def ranges_of(option: str, texts: list[str]) -> dict[str, tuple[float, float]]:
-    """The two numbers by name that an `option` NAME=LOW:HIGH gives."""
+def ranges_of(option: str, texts: list[str], bounds: str = "") -> dict[str, tuple[float, float]]:
+    """The two numbers by name that an `option` NAME=LOW:HIGH gives. bounds: of them, in the words of an error."""
     found = {}
     for name, text in named_texts(option, texts):
         try:
             low, high = map(float, text.split(":"))
         except ValueError:
-            raise ValueError(f"{option} must be NAME=LOW:HIGH, got {shown(f'{name}={text}')}") from None
+            raise ValueError(f"{option} must be NAME=LOW:HIGH{bounds}, got {shown(f'{name}={text}')}") from None
         found[name] = (low, high)
     return found
 

@@ -44,11 +44,9 @@ def draw_body(figure: Figure, run: Run, *_: object) -> None:
         ellipses.fill(place + width * np.cos(angle), height * np.sin(angle), facecolor=PALE_BLUE, edgecolor=BLUE)
     ellipses.set_ylabel("sections\n$X_3$ [m]")
     ellipses.set_xlabel("$X_1$ [m], nose to tail")
+    ends = -0.03 * body.length, 1.03 * body.length
     for axes in (side, above, ellipses):
-        axes.set_aspect("equal")
-        axes.set_ylim(-0.07, 0.07)
-        axes.set_xlim(-0.03 * body.length, 1.03 * body.length)
-        axes.set_yticks([-0.05, 0.0, 0.05])
+        axes.set(aspect="equal", ylim=(-0.07, 0.07), xlim=ends, yticks=[-0.05, 0.0, 0.05])
 
 
 def draw_configurations(figure: Figure, run: Run, *_: object) -> None:
@@ -110,11 +108,7 @@ def wrench_of(run: Run) -> tuple[np.ndarray, np.ndarray]:
 
 def _draw_wrench(figure: Figure, abscissa: np.ndarray, profiles: list[list[np.ndarray]], name: str) -> None:
     """Draw N1, C2 and C3 in a column. profiles: force and torque (n, 3) against `abscissa`, ours and as printed."""
-    rows = (
-        (0, 0, "$N_1$ [N]\n(> 0: tension)"),
-        (1, 1, "$C_2$ [N m]\n(pitch)"),
-        (1, 2, "$C_3$ [N m]\n(yaw)"),
-    )
+    rows = (0, 0, "$N_1$ [N]\n(> 0: tension)"), (1, 1, "$C_2$ [N m]\n(pitch)"), (1, 2, "$C_3$ [N m]\n(yaw)")
     for axes, (field, column, label) in zip(figure.subplots(3, 1, sharex=True), rows, strict=True):
         for profile, style in zip(profiles, (OWN, AS_PRINTED), strict=True):
             axes.plot(abscissa, profile[field][:, column], **style)
@@ -176,12 +170,11 @@ def draw_ledger(figure: Figure, run: Run, *_: object) -> None:
     work.plot(run.time, energy.kinetic_body + energy.kinetic_fluid, color=BLACK, linewidth=1.0, label="kinetic energy")
     left = np.where(energy.residual == 0.0, np.nan, np.abs(energy.residual))  # 0 at the start has no logarithm
     residual.semilogy(run.time, left, color=BLACK, linewidth=1.0)
-    power.set_ylabel("power into body\nand water [W]")
-    work.set_ylabel("its integral [J]")
-    residual.set_ylabel("|residual| [J]")
+    names = "power into body\nand water [W]", "its integral [J]", "|residual| [J]"
+    for axes, name in zip((power, work, residual), names, strict=True):
+        axes.set_ylabel(name)
+        axes.margins(x=0.0)
     residual.set_xlabel("time t [s]; grey: pitch bends")
     legend_above(figure, columns=3)
-    for axes in (power, work, residual):
-        axes.margins(x=0.0)
     figure.align_ylabels()
     mark_pitch((power, work))

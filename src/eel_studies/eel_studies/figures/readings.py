@@ -26,11 +26,7 @@ READINGS: dict[str, dict[str, Any]] = {  # label: what differs from the library'
     "friction blended over its transition, where the printed one jumps": {"friction": "blended"},
     "friction laminar all along": {"friction": "laminar"},
     "added mass as printed in (37), half-axes exchanged": {"added_mass": "printed"},
-    "perimeter, friction and added mass as printed": {
-        "perimeter": "printed",
-        "friction": "printed",
-        "added_mass": "printed",
-    },
+    "perimeter, friction and added mass as printed": dict.fromkeys(("perimeter", "friction", "added_mass"), "printed"),
 }
 COLUMNS = (
     *("reading of the formulae", "head at the end, x, y, z [m]", "apart [m]", "mean speed U [m/s]"),

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from eel_studies.identification.identify import Identified
+from eel_studies.identification.fit import Identified
 from eel_studies.identification.measurements import MeasuredAngles, MeasuredPath, MeasuredSpeed, Measurements
 from eel_studies.pictures import BLUE, GREY, ORANGE, Axes, Figure
 

@@ -1,23 +1,68 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The least-squares problem of `identify`: unknowns, residuals, and how they are brought to their least."""
+"""The least-squares problem of `identify`: unknowns, residuals, how they are brought to their least, the result."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from eel_dynamics.runs.run import Run
+from eel_model.equality import EqualByFields
 
 from eel_studies.identification.measurements import MeasuredPath, MeasuredSpeed, Measurement, count_of
 from eel_studies.identification.prediction import Predicted, Swims, placed, placement_of
-from eel_studies.identification.statistics import Block, correlation_of, undetermined, whitened
+from eel_studies.identification.statistics import Block, correlation_of, gauss_newton_covariance, undetermined, whitened
 
 POSITIVE = ("body.", "scene.", "robot.")  # parameters that stay above 0
 LEAST = 1e-6  # of the first guess, in place of 0
 PASSES = 4  # of the fit, each with the correlation of the one before
 SAME = 0.01  # change of the correlation that needs no further pass
+UNLIKELY = 1e-3  # probability of such residuals, for the noise given, below which a warning names the misfit
 INSENSITIVE = 1e-8  # relative derivative of an axis below which no parameter moves the point along it
 TOLERANCE = 1e-6  # of the unknowns and of the sum of squares, relative
 MOST_EVALUATIONS = 50  # of the model, in a pass
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Identified(EqualByFields):
+    """P parameters that were fitted to measurements."""
+
+    names: tuple[str, ...]
+    value: np.ndarray  #: (P,)
+    error: np.ndarray  #: (P,) standard errors
+    low: np.ndarray  #: (P,) interval
+    high: np.ndarray  #: (P,)
+    level: float  #: probability with which an interval covers the true value
+    covariance: np.ndarray  #: (P, P)
+    noise: float  #: standard deviation of the measurements' errors [m], [rad] or [m/s]
+    correlation: float  #: of one error of a path with the next, at the median time between samples
+    residuals: tuple[np.ndarray, ...]  #: measured less predicted: (T, D) [m], (T, J) [rad] or (1,) [m/s] of each
+    runs: tuple[Run, ...]  #: the swims with the values found, one per measurement
+    warnings: tuple[str, ...]
+
+    def __getitem__(self, name: str) -> tuple[float, float, float]:
+        """Value, low and high end of the interval of the parameter `name`."""
+        if name not in self.names:
+            raise KeyError(name)
+        index = self.names.index(name)
+        return float(self.value[index]), float(self.low[index]), float(self.high[index])
+
+    def __repr__(self) -> str:
+        return f"Identified({', '.join(f'{name}={value:.4g}' for name, value in self.numbers.items())})"
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """The values by name, as `numbers` of `gradient`, `sweep` and `optimise` take them."""
+        return dict(zip(self.names, self.value.tolist(), strict=True))
+
+    def table(self) -> str:
+        """The parameters as lines of text."""
+        width = max(len(name) for name in self.names)
+        lines = [
+            f"{name:<{width}s}  {value:.5g}, {100.0 * self.level:.4g} % interval {low:.5g} to {high:.5g}"
+            for name, value, low, high in zip(self.names, self.value, self.low, self.high, strict=True)
+        ]
+        lines.append(f"{'errors':<{width}s}  {self.noise:.3g}, each correlated with the next by {self.correlation:.2f}")
+        return "\n".join(lines)
 
 
 class Fit:
@@ -46,49 +91,17 @@ class Fit:
         return self._unknown[: len(self.names)]
 
     @property
-    def count(self) -> int:
-        """Measured numbers that tell something."""
-        return count_of(self._measured)
-
-    @property
-    def unknowns(self) -> int:
-        """Parameters and placements."""
-        return len(self._unknown)
-
-    @property
-    def at_bound(self) -> list[str]:
-        """Parameters that the measurements put at 0 or below."""
-        low = 2.0 * LEAST * np.abs(self._start)
-        return [self.names[k] for k in np.flatnonzero(self.values <= low) if self.names[k].startswith(POSITIVE)]
-
-    @property
-    def runs(self) -> tuple[Run, ...]:
-        """The swims with the values reached."""
-        return tuple(found.run for found in self._predicted())
-
-    @property
-    def residuals(self) -> tuple[np.ndarray, ...]:
-        """Measured less predicted: (T, D) of a path, (T, J) of angles, (1,) of a speed."""
-        found = zip(self._measured, self._compared(), strict=True)
-        return tuple(table[0] if isinstance(each, MeasuredSpeed) else table for each, (table, _) in found)
-
-    @property
     def blocks(self) -> list[Block]:
         """Residuals and derivatives at the values reached."""
         found = zip(self._measured, self._compared(), strict=True)
         return [block for each, compared in found for block in _blocks(each.time, *compared)]
 
-    def check_count(self, noise: float | None) -> None:
-        """`ValueError` where the measurements are too few for the unknowns."""
-        least = self.unknowns + (noise is None)
-        if self.count < least:
+    def solve(self, noise: float | None) -> None:
+        """Minimise the sum of squares, with errors as they are correlated. `ValueError`: singular, or too few."""
+        count, unknowns = count_of(self._measured), len(self._unknown)
+        if count < (least := unknowns + (noise is None)):
             known = "" if noise is not None else ", or the noise be given"
-            raise ValueError(
-                f"measured must hold {least} numbers or more for {self.unknowns} unknowns{known}, got {self.count}"
-            )
-
-    def solve(self) -> None:
-        """Minimise the sum of squares, with errors as they are correlated. `ValueError`: singular."""
+            raise ValueError(f"measured must hold {least} numbers or more for {unknowns} unknowns{known}, got {count}")
         self._check_determined()
         for _ in range(PASSES):
             self._minimise()
@@ -98,6 +111,40 @@ class Fit:
         self._check_determined()
         self._progress(len(self._known), len(self._known))
 
+    def result(self, noise: float | None, level: float) -> Identified:
+        """What was found, with the intervals of this `level`."""
+        from scipy.stats import chi2, norm, t
+
+        covariance, squares = gauss_newton_covariance(self.blocks, self.correlation)
+        free = count_of(self._measured) - len(self._unknown)
+        size = noise if noise is not None else float(np.sqrt(squares / free))
+        quantile = norm.ppf(0.5 + 0.5 * level) if noise is not None else t.ppf(0.5 + 0.5 * level, free)
+        value, names = self.values, self.names
+        covariance = (size**2 * covariance)[: len(names), : len(names)]
+        error = np.sqrt(np.diag(covariance))
+        least = 2.0 * LEAST * np.abs(self._start)
+        at_bound = [name for name, low in zip(names, value <= least, strict=True) if low and name.startswith(POSITIVE)]
+        lines = [f"{name} is at its lower bound, 0: its interval does not hold" for name in at_bound]
+        if noise is not None and free > 0 and chi2.sf(squares / noise**2, free) < UNLIKELY:
+            times = f"{np.sqrt(squares / free) / noise:.2g} times the noise"
+            why = "the model does not fit these measurements, and the intervals are too narrow"
+            lines.append(f"the residuals are {times}: {why}")
+        compared = zip(self._measured, self._compared(), strict=True)
+        return Identified(
+            names=names,
+            value=value,
+            error=error,
+            low=value - quantile * error,
+            high=value + quantile * error,
+            level=level,
+            covariance=covariance,
+            noise=size,
+            correlation=self.correlation,
+            residuals=tuple(rows[0] if isinstance(each, MeasuredSpeed) else rows for each, (rows, _) in compared),
+            runs=tuple(found.run for found in self._predicted()),
+            warnings=tuple(lines),
+        )
+
     def _minimise(self) -> None:
         from scipy.optimize import least_squares
 
@@ -106,11 +153,11 @@ class Fit:
             residual, derivative, _ = whitened(self.blocks, self.correlation)
             return residual, -derivative
 
-        low = np.full(self.unknowns, -np.inf)
+        low = np.full(len(self._unknown), -np.inf)
         for index, (name, value) in enumerate(zip(self.names, self._start, strict=True)):
             if name.startswith(POSITIVE) and value > 0.0:
                 low[index] = LEAST * value
-        scale = np.ones(self.unknowns)
+        scale = np.ones(len(self._unknown))
         scale[: len(self.names)] = np.where(self._start, np.abs(self._start), 1.0)
         found = least_squares(
             lambda unknown: at(unknown)[0],
@@ -148,7 +195,7 @@ class Fit:
         place = len(self.names)
         for each, found in zip(self._measured, self._predicted(), strict=True):
             value, by_parameters = found.value, found.derivative
-            derivative = np.zeros((*value.shape, self.unknowns))
+            derivative = np.zeros((*value.shape, len(self._unknown)))
             if isinstance(each, MeasuredPath):
                 own = slice(place, place + value.shape[1] + 1)
                 value, by_parameters, derivative[..., own] = placed(found, self._unknown[own])

@@ -12,21 +12,17 @@ is right and the errors are small: an error of the model is in no interval.
 """
 
 import warnings
-from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 from eel_base.command.progress import progress_of
 from eel_base.quantity import number, positive
 from eel_base.wording import shown
-from eel_dynamics.runs.run import Run
 from eel_model.body.body import Body
-from eel_model.equality import EqualByFields
 from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
 
 from eel_studies.gradients.fixed_discretisation import fixed_steps
-from eel_studies.identification.fit import Fit
+from eel_studies.identification.fit import Fit, Identified
 from eel_studies.identification.measurements import (
     MeasuredAngles,
     MeasuredPath,
@@ -35,53 +31,7 @@ from eel_studies.identification.measurements import (
     Measurements,
 )
 from eel_studies.identification.prediction import Swims
-from eel_studies.identification.statistics import gauss_newton_covariance
 from eel_studies.points import AccuracyLike, Gait, Numbers, Progress, base_point, point_at
-
-UNLIKELY = 1e-3  # probability of such residuals, for the noise given, below which a warning names the misfit
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Identified(EqualByFields):
-    """P parameters that were fitted to measurements."""
-
-    names: tuple[str, ...]
-    value: np.ndarray  #: (P,)
-    error: np.ndarray  #: (P,) standard errors
-    low: np.ndarray  #: (P,) interval
-    high: np.ndarray  #: (P,)
-    level: float  #: probability with which an interval covers the true value
-    covariance: np.ndarray  #: (P, P)
-    noise: float  #: standard deviation of the measurements' errors [m], [rad] or [m/s]
-    correlation: float  #: of one error of a path with the next, at the median time between samples
-    residuals: tuple[np.ndarray, ...]  #: measured less predicted: (T, D) [m], (T, J) [rad] or (1,) [m/s] of each
-    runs: tuple[Run, ...]  #: the swims with the values found, one per measurement
-    warnings: tuple[str, ...]
-
-    def __getitem__(self, name: str) -> tuple[float, float, float]:
-        """Value, low and high end of the interval of the parameter `name`."""
-        if name not in self.names:
-            raise KeyError(name)
-        index = self.names.index(name)
-        return float(self.value[index]), float(self.low[index]), float(self.high[index])
-
-    def __repr__(self) -> str:
-        return f"Identified({', '.join(f'{name}={value:.4g}' for name, value in self.numbers.items())})"
-
-    @property
-    def numbers(self) -> dict[str, float]:
-        """The values by name, as `numbers` of `gradient`, `sweep` and `optimise` take them."""
-        return dict(zip(self.names, self.value.tolist(), strict=True))
-
-    def table(self) -> str:
-        """The parameters as lines of text."""
-        width = max(len(name) for name in self.names)
-        lines = [
-            f"{name:<{width}s}  {value:.5g}, {100.0 * self.level:.4g} % interval {low:.5g} to {high:.5g}"
-            for name, value, low, high in zip(self.names, self.value, self.low, self.high, strict=True)
-        ]
-        lines.append(f"{'errors':<{width}s}  {self.noise:.3g}, each correlated with the next by {self.correlation:.2f}")
-        return "\n".join(lines)
 
 
 def identify(
@@ -132,9 +82,8 @@ def identify(
         if isinstance(each, MeasuredPath) and each.station > base.body.length:
             raise ValueError(f"path station must be at most the body's {base.body.length:g} m, got {each.station:g}")
     fit = Fit(swims, measurements, first, progress_of(progress, "evaluations"))
-    fit.check_count(noise)
-    fit.solve()
-    found = _identified(fit, noise, level)
+    fit.solve(noise)
+    found = fit.result(noise, level)
     for line in found.warnings:
         warnings.warn(line, stacklevel=2)
     return found
@@ -159,35 +108,3 @@ def _check_angles(measured: MeasuredAngles, robot: Robot | None) -> None:
         raise ValueError(
             f"angles must have a column for each of the robot's {count} joints, got {measured.angles.shape[1]}"
         )
-
-
-def _identified(fit: Fit, noise: float | None, level: float) -> Identified:
-    from scipy.stats import chi2, norm, t
-
-    covariance, squares = gauss_newton_covariance(fit.blocks, fit.correlation)
-    free = fit.count - fit.unknowns
-    size = noise if noise is not None else float(np.sqrt(squares / free))
-    quantile = norm.ppf(0.5 + 0.5 * level) if noise is not None else t.ppf(0.5 + 0.5 * level, free)
-    covariance = (size**2 * covariance)[: len(fit.names), : len(fit.names)]
-    error = np.sqrt(np.diag(covariance))
-    lines = [f"{name} is at its lower bound, 0: its interval does not hold" for name in fit.at_bound]
-    if noise is not None and free > 0 and chi2.sf(squares / noise**2, free) < UNLIKELY:
-        lines.append(
-            f"the residuals are {np.sqrt(squares / free) / noise:.2g} times the noise: the model does not fit these "
-            "measurements, and the intervals are too narrow"
-        )
-    value = fit.values
-    return Identified(
-        names=fit.names,
-        value=value,
-        error=error,
-        low=value - quantile * error,
-        high=value + quantile * error,
-        level=level,
-        covariance=covariance,
-        noise=size,
-        correlation=fit.correlation,
-        residuals=fit.residuals,
-        runs=fit.runs,
-        warnings=tuple(lines),
-    )

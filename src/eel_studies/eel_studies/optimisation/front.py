@@ -3,6 +3,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from eel_base.wording import shown
@@ -114,15 +115,8 @@ def _draw_cost(axes: Axes, front: Front) -> None:
     axes.plot(front.speed, front.cost, "-", color=BLUE, linewidth=1.2, zorder=2)
     axes.plot(front.speed[kept], front.cost[kept], "o", color=BLUE, label="least cost at this speed", zorder=3)
     if not kept.all():
-        axes.plot(
-            front.speed[~kept],
-            front.cost[~kept],
-            "o",
-            color=BLUE,
-            markerfacecolor="white",
-            label="another gait is faster and costs less",
-            zorder=3,
-        )
+        beaten: dict[str, Any] = {"markerfacecolor": "white", "label": "another gait is faster and costs less"}
+        axes.plot(front.speed[~kept], front.cost[~kept], "o", color=BLUE, zorder=3, **beaten)
     axes.set(xlabel="speed [m/s]", ylabel=f"{front.cost_name.replace('_', ' ')} [{unit}]", ylim=(0.0, None))
     axes.set_xlim(0.0, None)
     axes.legend()

@@ -42,11 +42,22 @@ def _slsqp(problem: GaitProblem, start: np.ndarray, speed: float) -> tuple[float
             known[key] = *problem.derivatives(place, speed), place.copy()
         return known[key][:2]
 
+    def with_missed_speed(place: np.ndarray) -> tuple[float, np.ndarray]:
+        """Cost by its first value and the squared miss of the speed, and the derivative (P,).
+
+        The second changes no solution. Without it, the line search of SLSQP may refuse a step that brings the speed and
+        costs as much as it should.
+        """
+        (swum, cost), (by_speed, by_cost) = found(place)
+        missed = np.log(swum / speed)
+        value = cost / scale + MISSED_SPEED * missed**2
+        return value, by_cost / scale + 2.0 * MISSED_SPEED * missed * by_speed / swum
+
     start = np.clip(start, STEP, 1.0 - STEP)
     with contextlib.suppress(NoSteadySwim, StopIteration):
         scale = abs(found(start)[0][1])
         scipy.optimize.minimize(
-            lambda place: _with_missed_speed(*found(place), scale, speed),
+            with_missed_speed,
             start,
             jac=True,
             method="SLSQP",
@@ -60,18 +71,6 @@ def _slsqp(problem: GaitProblem, start: np.ndarray, speed: float) -> tuple[float
         )
     met = [(measured[1], place) for measured, _, place in known.values() if abs(measured[0] / speed - 1.0) <= MET]
     return met[-1] if met else None
-
-
-def _with_missed_speed(
-    measured: np.ndarray, derivatives: np.ndarray, scale: float, speed: float
-) -> tuple[float, np.ndarray]:
-    """Cost by `scale` and the squared miss of the speed, and the derivative (P,): none of it changes the solution.
-
-    Without the second, the line search of SLSQP may refuse a step that brings the speed and costs as much as it should.
-    """
-    missed = np.log(measured[0] / speed)
-    value = measured[1] / scale + MISSED_SPEED * missed**2
-    return value, derivatives[1] / scale + 2.0 * MISSED_SPEED * missed * derivatives[0] / measured[0]
 
 
 def _ended(measured: list[np.ndarray], speed: float) -> bool:
@@ -92,14 +91,8 @@ def by_cma(problem: GaitProblem, starts: np.ndarray, speed: float, seed: int) ->
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of matplotlib's absence, on import
         cma = needed("cma", "method 'cma' of optimise", "eel_studies[cma]")
-    options = {
-        "bounds": [0.0, 1.0],
-        "maxiter": GENERATIONS,
-        "tolfun": 5e-4,
-        "tolx": 2e-3,
-        "seed": seed + 1,  # 0 is the clock
-        "verbose": -9,
-    }
+    options = {"bounds": [0.0, 1.0], "maxiter": GENERATIONS, "tolfun": 5e-4, "tolx": 2e-3, "verbose": -9}
+    options["seed"] = seed + 1  # 0 is the clock
     strategy = cma.CMAEvolutionStrategy(starts[0], SPREAD, options)
     best = np.inf, None
     while not strategy.stop():

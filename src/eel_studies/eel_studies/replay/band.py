@@ -26,7 +26,6 @@ UNCERTAIN: dict[str, tuple[float, float]] = {  # factors, and why
     "half_height": (0.9, 1.1),
     "half_width": (0.9, 1.1),
 }
-AXES = ("half_height", "half_width")
 STATIONS = 41  # along the body, beside the joints
 SEED = 1
 POINTS = 81  # of a robot's body along its length
@@ -88,16 +87,12 @@ def robot_body(length: float, half_height: float, half_width: float) -> Body:
 
 def with_factors(body: Body, factors: dict[str, float]) -> Body:
     """The `body` with these of its numbers and half-axes times factors; its mass stays the same."""
-    changes: dict[str, Any] = {}
-    for name, factor in factors.items():
-        given = body.arguments[name]
-        changes[name] = _times(given, factor) if name in AXES else factor * given
-    changed = body.changed(**changes)
+
+    def times(given: Any, factor: float) -> Any:
+        return (lambda x: factor * given(x)) if callable(given) else factor * given
+
+    changed = body.changed(**{name: times(body.arguments[name], factor) for name, factor in factors.items()})
     return changed.changed(density=body.mass / changed.volume)
-
-
-def _times(half_axis: Any, factor: float) -> Any:
-    return (lambda x: factor * half_axis(x)) if callable(half_axis) else factor * half_axis
 
 
 def replay(
@@ -127,11 +122,9 @@ def replay(
     ends = [{name: factor} for name, pair in ranges.items() for factor in pair]
     draws: list[dict[str, float]] = []
     if ranges and samples:
-        drawn = qmc.Sobol(len(ranges), seed=SEED).random(samples)
-        draws = [
-            {name: low + part * (high - low) for (name, (low, high)), part in zip(ranges.items(), row, strict=True)}
-            for row in drawn
-        ]
+        low, high = np.array(list(ranges.values())).T
+        drawn = low + qmc.Sobol(len(ranges), seed=SEED).random(samples) * (high - low)
+        draws = [dict(zip(ranges, row, strict=True)) for row in drawn.tolist()]
     bodies = [with_factors(body, each) for each in ({}, *ends, *draws)]
     along = np.unique(np.concatenate((np.linspace(0.0, body.length, STATIONS), joints)))
     batch = simulate_batch(

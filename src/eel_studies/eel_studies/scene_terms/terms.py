@@ -47,9 +47,8 @@ def _one_mode(swim: Swim) -> Swim:
 def _on_the_axis(swim: Swim) -> Swim:
     """The `swim` of a body whose mass lies on its axis."""
     given = swim.body.arguments["centre_of_mass_offset"]
-    return (
-        swim._replace(body=swim.body.changed(centre_of_mass_offset=0.0)) if callable(given) or np.any(given) else swim
-    )
+    off = callable(given) or np.any(given)
+    return swim._replace(body=swim.body.changed(centre_of_mass_offset=0.0)) if off else swim
 
 
 def planar(swim: Swim) -> Swim:

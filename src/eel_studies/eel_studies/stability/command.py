@@ -78,7 +78,7 @@ def _map(options: argparse.Namespace) -> None:
 
 def axes_from(texts: list[str]) -> list[Axis]:
     """The axes that --over gives, of numbers above 0: the map is logarithmic."""
-    found = ranges_of("--over", texts)
+    found = ranges_of("--over", texts, ", 0 < LOW < HIGH")
     for name, (low, high) in found.items():
         if not 0.0 < low < high < float("inf"):
             raise ValueError(f"--over must be NAME=LOW:HIGH, 0 < LOW < HIGH, got {shown(f'{name}={low:g}:{high:g}')}")

@@ -123,7 +123,9 @@ class PeriodicLinearisation:
         The least singular value of [A - multiplier, B] (Popov, Belevitch and Hautus), with time in periods and length
         in body lengths, so that a bend is the angle [rad] between head and tail. `ValueError` for an unknown input.
         """
-        columns = [_index(name) for name in inputs]
+        if unknown := [name for name in inputs if name not in INPUTS]:
+            raise ValueError(not_one_of("inputs", unknown[0], INPUTS))
+        columns = [INPUTS.index(name) for name in inputs]
         scale, length = self._scale, self.body.length
         a = self.monodromy * scale[:, None] / scale
         b = self.input_matrix[:, columns] * scale[:, None] / length
@@ -202,7 +204,8 @@ def periodic_linearisation(
         return found
     coarser = PeriodMap(law, body, scene, round(COARSER * steps), COARSER * resolution, fins)
     other = _linearised(coarser, scene, rise)
-    return replace(found, error=_apart(found.multipliers, other.multipliers))
+    apart = np.abs(found.multipliers[:, None] - other.multipliers).min(axis=1)  # from the nearest
+    return replace(found, error=float(apart.max()))
 
 
 def _linearised(one: PeriodMap, scene: Scene, rise: float) -> PeriodicLinearisation:
@@ -247,14 +250,3 @@ def _bend(name: str, size: float, period: float, rise: float) -> Term:
 
 def _plus(law: Law, *terms: Term) -> Law:
     return Law(*law.terms, *terms, name=law.name)
-
-
-def _index(name: str) -> int:
-    if name not in INPUTS:
-        raise ValueError(not_one_of("inputs", name, INPUTS))
-    return INPUTS.index(name)
-
-
-def _apart(one: np.ndarray, other: np.ndarray) -> float:
-    """The greatest distance of a multiplier in `one` from the nearest in `other`."""
-    return float(np.abs(one[:, None] - other).min(axis=1).max())

@@ -133,7 +133,7 @@ class PeriodMap:
         """
         start, slope, before = self._guess(), None, np.inf
         for _ in range(MOST_SEARCHES):
-            end = self._one(start)
+            end = Motion(*(row[0] for row in self.swim(*start[1:])))
             defect = self._defect(start, end)
             size = float(np.abs(defect).max())
             if size < CLOSE:
@@ -141,7 +141,8 @@ class PeriodMap:
             if slope is None or size > SLOW * before:
                 slope = self._slope(start)
             before = size
-            start = self._improved(start, np.linalg.lstsq(slope, -defect)[0])
+            change = np.linalg.lstsq(slope, -defect)[0]  # a step of Newton's method
+            start = self._moved(start, change / max(1.0, np.abs(change).max() / FARTHEST))
         raise ValueError(
             f"law {shown(self.law.name)} leads to no settled motion: after {MOST_SEARCHES} searches a period still "
             f"ends {size:.1g} from where it began (rad, and relative to the twist)"
@@ -151,22 +152,10 @@ class PeriodMap:
         """The head after some periods from rest; in the plane if the law bends there alone."""
         scene = replace(self.scene, planar=self._whole.in_plane and not (self.fins or self.scene.weight))
         periods = self._start + SETTLING
-        run = simulate(
-            self._whole,
-            periods * self.period,
-            scene=scene,
-            body=self.body,
-            fins=self.fins,
-            accuracy=1e-3,
-            stations=2,
-            estimate=False,
-        )
+        how: dict[str, Any] = {"accuracy": 1e-3, "stations": 2, "estimate": False}
+        run = simulate(self._whole, periods * self.period, scene=scene, body=self.body, fins=self.fins, **how)
         servo = np.zeros(0) if run.fin_angle is None else self._servos_at(run.fin_angle[-1])
         return Motion(np.zeros(3), run.orientation[-1], run.twist[-1], servo)
-
-    def _one(self, start: Motion) -> Motion:
-        end = self.swim(*start[1:])
-        return Motion(*(row[0] for row in end))
 
     def _scale(self, start: Motion) -> np.ndarray:
         """(6,) of the twist: its size, turning by the body's length."""
@@ -196,10 +185,6 @@ class PeriodMap:
         pairs = zip(both, map(Motion, *ends), strict=True)
         above, below = np.split(np.array([self._defect(first, last) for first, last in pairs]), 2)
         return np.asarray(((above - below) / (2.0 * DIFFERENCE)).T)
-
-    def _improved(self, start: Motion, change: np.ndarray) -> Motion:
-        """A step of Newton's method, which goes no farther than `FARTHEST`."""
-        return self._moved(start, change / max(1.0, np.abs(change).max() / FARTHEST))
 
     def _on_course(self, start: Motion, end: Motion) -> tuple[Motion, Motion]:
         """Both turned about the vertical such that the way of the period leads to +x."""

@@ -78,11 +78,8 @@ def drawn(rng: np.random.Generator) -> Swim:
     length, period = body.length, between(*PERIODS)
     envelope = (Ramp(0.0, period * rng.uniform(0.5, 2.0), 1.0),)
     amplitude = rng.uniform(0.2, 1.5, 3) / length ** np.arange(1, 4)
-    wave: dict[str, Any] = {
-        "wavelength": float(length * rng.uniform(0.7, 2.0)),
-        "period": period,
-        "envelope": envelope,
-    }
+    wavelength = float(length * rng.uniform(0.7, 2.0))
+    wave: dict[str, Any] = {"wavelength": wavelength, "period": period, "envelope": envelope}
     terms = [Term(axis="yaw", amplitude=tuple(amplitude.tolist()), **wave)]
     kind, bend = rng.integers(3), (float(rng.uniform(-1.0, 1.0)) / length,)
     if kind == 1:
@@ -122,12 +119,8 @@ def deliver(count: int = COUNT, seed: int = SEED, say: Callable[[str], object] =
     say(f"what the targets deliver: {count} swims of seed {seed}")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # a trial keeps whether its run reported that it misses its target
-        return [each for each in in_threads(trial_of, swims_of(count, seed)) if each is not None]
-
-
-def swims_of(count: int, seed: int) -> list[Swim]:
-    """The `count` swims that `seed` draws."""
-    return [drawn(np.random.default_rng([seed, index])) for index in range(count)]
+        swims = [drawn(np.random.default_rng([seed, index])) for index in range(count)]
+        return [each for each in in_threads(trial_of, swims) if each is not None]
 
 
 def _groups(trials: list[Trial]) -> dict[str, list[Trial]]:
