@@ -82,7 +82,6 @@ def swim(task, steps: int, count: int = 1):
 
 
 def main() -> None:
-    """Measure the task."""
     task = read_task()
     steps, batch = task["steps"], task["batch"]
     for count in {1, batch}:

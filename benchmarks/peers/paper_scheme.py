@@ -257,7 +257,6 @@ def _torque_of(cells, j, y, nose, torque):
 
 
 def main() -> None:
-    """Measure the task."""
     task = read_task()
     cells = Cells(**{name: task[name] for name in Cells._fields})
     arguments = cells, task["shapes"], task["step"], task["wrench"]

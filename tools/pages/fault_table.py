@@ -67,7 +67,6 @@ def faults() -> list[Fault]:
 
 
 def main() -> int:
-    """Write the list, a table for each group."""
     rows, lines = faults(), ["# Faults, and what happens", ""]
     for group, heading in GROUPS.items():
         cells = [(row.fault, row.outcome, f"`{row.test}`") for row in rows if row.group == group]

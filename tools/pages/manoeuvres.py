@@ -200,7 +200,6 @@ NOTES = {  # what was measured, beside the table
 
 
 def main() -> int:
-    """Write pictures and page."""
     PICTURES.mkdir(parents=True, exist_ok=True)
     swims = {name: Swim(name) for name in GAITS}
     for name, swim in swims.items():

@@ -123,7 +123,6 @@ def draw(path: Path):
 
 
 def main() -> int:
-    """Swim, and write the page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--courses", type=int, default=100)
     parser.add_argument("--fins", type=int, default=100, help="tasks of each kind with fins")

@@ -119,7 +119,6 @@ def formulas() -> str:
 
 
 def main() -> int:
-    """Write the four pages."""
     for page in (messages, parameters, commands, formulas):
         path = REFERENCE / f"{page.__name__}.md"
         path.write_text(page(), encoding="utf-8")

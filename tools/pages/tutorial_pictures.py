@@ -106,7 +106,6 @@ TUTORIALS: dict[str, Callable[..., None]] = {
 
 
 def main() -> int:
-    """Draw them all."""
     mpl.use("Agg")
     sys.path.append(str(DOCS.parent / "test"))
     write_bag = importlib.import_module("test_run_from_bag").write_bag

@@ -55,7 +55,6 @@ class MeasuredPath:
 
     @property
     def values(self) -> np.ndarray:
-        """The positions."""
         return self.position
 
 
@@ -90,7 +89,6 @@ class MeasuredAngles:
 
     @property
     def values(self) -> np.ndarray:
-        """The angles."""
         return self.angles
 
 

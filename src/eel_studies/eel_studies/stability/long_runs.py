@@ -32,7 +32,17 @@ SWIMMERS: dict[str, dict[str, Any]] = {  # arguments of `Simulation`
     "straight, planar": {"law": straight(period=PERIOD), "scene": Scene(planar=True, internal_wrench=False)},
     "helix": {"law": helix(period=PERIOD), "scene": Scene(internal_wrench=False)},
 }
-COARSER = {"steps": 60, "resolution": 20.0}  # of a linearisation
+ROBOT = Body.boyer2010()
+SHAPE: dict[str, Any] = {"length": 1.0, "kinks": ROBOT.kinks, "half_width": ROBOT.half_height}
+VARIANTS: dict[str, dict[str, Any]] = {  # arguments of `periodic_linearisation`
+    "the paper's robot": {},
+    "the same, with coarser settings": {"steps": 60, "resolution": 20.0},
+    "without drag": {"scene": Scene(resistive=False)},
+    "without wake": {"scene": Scene(wake=False)},
+    "without inertia of the water": {"scene": Scene(reactive=False)},
+    "sections round": {"body": Body(half_height=ROBOT.half_height, **SHAPE)},
+    "sections wider than high": {"body": Body(half_height=ROBOT.half_width, **SHAPE)},
+}
 
 
 def drift_of(swimmer: dict[str, Any], decades: int = DECADES, compared: int = COMPARED) -> dict[str, np.ndarray]:
@@ -81,28 +91,10 @@ def _recorded(times: np.ndarray, **swimmer: Any) -> tuple[Simulation, Any, np.nd
     return simulation, out, works
 
 
-def variants() -> dict[str, dict[str, Any]]:
-    """Swimmers whose growth out of the plane is compared: arguments of `periodic_linearisation`, by name."""
-    robot = Body.boyer2010()
-
-    def shaped(half_width: Any, half_height: Any) -> Body:
-        return Body(length=1.0, half_width=half_width, half_height=half_height, kinks=robot.kinks)
-
-    return {
-        "the paper's robot": {},
-        "the same, with coarser settings": COARSER,
-        "without drag": {"scene": Scene(resistive=False)},
-        "without wake": {"scene": Scene(wake=False)},
-        "without inertia of the water": {"scene": Scene(reactive=False)},
-        "sections round": {"body": shaped(robot.half_height, robot.half_height)},
-        "sections wider than high": {"body": shaped(robot.half_height, robot.half_width)},
-    }
-
-
 def planes() -> str:
     """What grows out of the plane in a period, as Markdown."""
     rows = []
-    for name, swimmer in variants().items():
+    for name, swimmer in VARIANTS.items():
         found = periodic_linearisation(straight(), estimate=False, **swimmer)
         mode = int(np.argmax(np.where(found.neutral, 0.0, np.abs(found.multipliers))))
         rows.append((name, f"{found.growth:.3f}", found.motion_of(mode).replace("_", " ")))

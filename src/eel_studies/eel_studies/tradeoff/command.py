@@ -94,7 +94,6 @@ def _trade(options: argparse.Namespace) -> None:
     add_options=_add_options_of_delivered,
 )
 def _deliver(options: argparse.Namespace) -> None:
-    """Measure what the targets deliver; print it, and draw it."""
     check_least(options, count=1, seed=0)
     outputs, progress = Outputs(NAME, options, DELIVERED_PARTS), Progress(NAME, "swims")
     trials = deliver(options.count, options.seed, progress.say)
@@ -107,6 +106,5 @@ def _deliver(options: argparse.Namespace) -> None:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Exit status as of `command`."""
     words = sys.argv[1:] if arguments is None else arguments
     return (_deliver if DELIVERED in words else _trade)(words)
