@@ -16,7 +16,7 @@ from eel_base.attitude import heading
 from eel_base.files import markdown
 from eel_gaits.gaits.registry import GAITS
 from eel_studies.outputs import Table
-from eel_studies.pictures import BLUE, ORANGE, SETTINGS
+from eel_studies.pictures import BLUE, ORANGE, SETTINGS, along_way
 from PIL import Image
 from scipy.integrate import cumulative_trapezoid
 
@@ -90,13 +90,11 @@ class Swim:
         last = self.at(SHAPES.get(self.name, DURATION))
         moved = self.path[last] - self.path[last - steps]
         in_plane = np.ptp(self.path[:, 2]) < 1e-6 and np.linalg.norm(moved) > 0.05 and self.name not in SHAPES
-        turn = -math.atan2(moved[1], moved[0]) if in_plane and self.name != "backward" else 0.0
+        ahead = moved[:2] if in_plane and self.name != "backward" else np.array((1.0, 0.0))
         for k, index in enumerate(np.linspace(last - steps, last, 9).astype(int)[:-1]):
-            line = self.run.backbone[index] - self.path[index]
-            x = line[:, 0] * math.cos(turn) - line[:, 1] * math.sin(turn)
-            y = line[:, 0] * math.sin(turn) + line[:, 1] * math.cos(turn)
-            axes.plot(x, y, color=plt.cm.cividis(k / 8.0), linewidth=1.0)
-            axes.plot(x[:1], y[:1], "o", color=plt.cm.cividis(k / 8.0), markersize=2.5)
+            line = along_way((self.run.backbone[index] - self.path[index])[:, :2], ahead)
+            axes.plot(*line.T, color=plt.cm.cividis(k / 8.0), linewidth=1.0)
+            axes.plot(*line[0], "o", color=plt.cm.cividis(k / 8.0), markersize=2.5)
         axes.set_aspect("equal", "datalim")
         axes.set(title="shape over a period, from above", xlabel="m", ylabel="m")
 

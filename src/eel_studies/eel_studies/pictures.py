@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, TypeAlias
 
+import numpy as np
 from eel_base.files.output_file import replacing
 
 Figure: TypeAlias = Any  # of matplotlib, which takes longer to import than all the rest
@@ -57,6 +58,12 @@ def legend_above(figure: Figure, columns: int = 2) -> None:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
             named.setdefault(label, handle)
     figure.legend(named.values(), named.keys(), loc="outside upper center", ncols=columns, frameon=False)
+
+
+def along_way(points: np.ndarray, ahead: np.ndarray) -> np.ndarray:
+    """The `points` (..., 2) in axes along and across the direction `ahead` (2,)."""
+    x, y = ahead / np.linalg.norm(ahead)
+    return np.asarray(points @ np.array([[x, -y], [y, x]]))
 
 
 def letter_panels(figure: Figure) -> None:

@@ -23,7 +23,7 @@ from eel_studies.life.lamprey import HEIGHTS, MEASURED, LampreySwim, in_thick_wa
 from eel_studies.life.lamprey import PLANAR as WATER_OF_FILM
 from eel_studies.life.leave_out import PLANAR, Choice, choices, computed, swum
 from eel_studies.outputs import Table, write_files
-from eel_studies.pictures import BLACK, BLUE, GREY, LOOKS, PALE_BLUE, Axes, Draw, Figure, legend_above
+from eel_studies.pictures import BLACK, BLUE, GREY, LOOKS, PALE_BLUE, Axes, Draw, Figure, along_way, legend_above
 
 NAME = "eel life"
 Drawn: TypeAlias = tuple[Table, Draw, tuple[float, float]]  # with the picture and its size, inches
@@ -178,12 +178,9 @@ def _draw_midlines(axes: Axes, beat: Beat, run: Run) -> None:
     )
     for row, (time, points, colour) in enumerate(sets):
         start = points[0]
-        ahead = start[0] - start[-1]
-        ahead = ahead / np.linalg.norm(ahead)
-        turn = np.stack((ahead, [-ahead[1], ahead[0]]), axis=1)
         for part in range(SHOWN):
             frame = int(np.argmin(np.abs(time - time[0] - part * beat.period / SHOWN)))
-            line = (points[frame] - start.mean(axis=0)) @ turn / length
+            line = along_way(points[frame] - start.mean(axis=0), start[0] - start[-1]) / length
             alpha = 0.35 + 0.65 * part / SHOWN
             axes.plot(line[:, 0], line[:, 1] - 0.45 * row, color=colour, linewidth=1.0, alpha=alpha)
     title = f"one beat of {beat.period:.3f} s: measured (black), computed (blue)"

@@ -12,7 +12,7 @@ from eel_dynamics.runs.run import Run
 from eel_model.equality import EqualByFields
 
 from eel_studies.outputs import Table
-from eel_studies.pictures import BLUE, GREY, LOOKS, Axes, Figure, write_picture
+from eel_studies.pictures import BLUE, GREY, LOOKS, Axes, Figure, along_way, write_picture
 
 BOUND = 1e-3  # of the bounds' distance: nearer to one of them is at it
 FORMATS = (".png", ".svg")
@@ -139,13 +139,11 @@ def _draw_gait(axes: Axes, run: Run, speed: float) -> None:
     window = analysis.window
     period = window.period
     start, end = window.center_of_mass(window.end - period), window.center_of_mass(window.end)
-    ahead = (end - start)[:2] / np.linalg.norm((end - start)[:2])
     backbone = window.spline(run.backbone)
     for phase, time in enumerate(np.linspace(window.end - period, window.end, PHASES)):
         middle = start + (time - window.end + period) / period * (end - start)
-        points = (backbone(time) - middle)[:, :2]
-        along, across = points @ ahead, points @ np.array((-ahead[1], ahead[0]))
-        axes.plot(along, across, color=BLUE, linewidth=0.9, alpha=0.25 + 0.75 * phase / (PHASES - 1))
+        line = along_way((backbone(time) - middle)[:, :2], (end - start)[:2])
+        axes.plot(*line.T, color=BLUE, linewidth=0.9, alpha=0.25 + 0.75 * phase / (PHASES - 1))
     axes.set_aspect("equal")
     strouhal = analysis.strouhal
     number = "" if strouhal is None else f", St {strouhal:.2f}"

@@ -20,7 +20,6 @@ from eel_base.command.progress import progress_of
 from eel_base.quantity import checked_instance, checked_row, number
 from eel_base.wording import not_one_of, shown
 from eel_dynamics.analysis.measures import checked_measures, measures_of
-from eel_dynamics.runs.run import Run
 from eel_model.body.body import Body
 from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
@@ -102,7 +101,10 @@ def _front(
     seed: int,
     progress: Callable[[float, float], object],
 ) -> Front:
-    places = _spread(len(problem.names), seed)
+    from scipy.stats import qmc
+
+    count = SPREAD_OVER_BOUNDS * len(problem.names)
+    places = qmc.Sobol(len(problem.names), seed=seed).random(2 ** int(np.ceil(np.log2(count))))  # spread evenly
     measured = problem.measured(places, None)
     found, runs = [], []
     before: list[Any] = []
@@ -124,14 +126,11 @@ def _front(
     lines = list(_missed(wanted, [speed for speed, _ in found], tried))
     if not runs:
         raise ValueError(lines[0])
-    analyses = [run.analysis() for run in runs]
-    speed = np.array([each.mean_speed for each in analyses])
+    speed = np.array([run.analysis().mean_speed for run in runs])
     reached = np.array([speed for speed, _ in found])
     for index in np.flatnonzero(np.abs(speed / reached - 1.0) > MISSED):
-        lines.append(
-            f"the gait for {reached[index]:.4g} m/s swims at {speed[index]:.4g} m/s in a longer swim: more periods "
-            "settle it"
-        )
+        swum = f"{speed[index]:.4g} m/s in a longer swim: more periods settle it"
+        lines.append(f"the gait for {reached[index]:.4g} m/s swims at {swum}")
     if problem.jumps:
         lines.append("the printed friction jumps between swims of a derivative: friction blended or laminar is smooth")
     for line in lines:
@@ -144,7 +143,7 @@ def _front(
         wanted=reached,
         values=np.array([list(problem.values(place).values()) for _, place in found]),
         speed=speed,
-        cost=np.array([_cost(run, problem.cost) for run in runs]),
+        cost=np.array([measures_of(run, (problem.cost,))[problem.cost] for run in runs]),
         runs=tuple(runs),
         tried=tried,
         warnings=tuple(lines),
@@ -165,15 +164,6 @@ def _checked_bounds(bounds: Any) -> tuple[np.ndarray, np.ndarray]:
     return tuple(np.array(rows).T)
 
 
-def _spread(parameters: int, seed: int) -> np.ndarray:
-    """Places (N, P) spread evenly over the bounds."""
-    from scipy.stats import qmc
-
-    return np.asarray(
-        qmc.Sobol(parameters, seed=seed).random(2 ** int(np.ceil(np.log2(SPREAD_OVER_BOUNDS * parameters))))
-    )
-
-
 def _merit(measured: np.ndarray, speed: float) -> np.ndarray:
     """What makes a gait a good start for `speed` [m/s]: little cost, and its speed near; (N,), the least is best."""
     scale = np.nanmedian(np.abs(measured[:, 1])) if np.isfinite(measured[:, 1]).any() else 1.0
@@ -189,7 +179,3 @@ def _missed(wanted: np.ndarray, met: list[float], tried: np.ndarray) -> Iterator
         if len(tried):
             reached = f"the gaits that were tried swim at {tried[:, 0].min():.3g} to {tried[:, 0].max():.3g} m/s"
         yield f"speeds: no gait within the bounds was found for {', '.join(left)} m/s; {reached}"
-
-
-def _cost(run: Run, cost: str) -> float:
-    return measures_of(run, (cost,))[cost]

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from eel_gaits.sources.tables import read_table
 
-from eel_studies.pictures import BLACK, BLUE, PALE_BLUE, Axes, Figure, legend_above
+from eel_studies.pictures import BLACK, BLUE, PALE_BLUE, Axes, Figure, along_way, legend_above
 from eel_studies.replay.band import Replayed
 
 SHOWN = 6  # instants of the points that are drawn
@@ -80,7 +80,7 @@ def draw_midlines(axes: Axes, first: Replayed, seen: Seen) -> None:
     """
     run = first.run
     assert run.backbone is not None  # the run has stations
-    way = [_turned(each - seen.points[0].mean(axis=0), seen.velocity) for each in seen.points]
+    way = [along_way(each - seen.points[0].mean(axis=0), seen.velocity) for each in seen.points]
     best, lines = np.inf, [way[0]]
     later = run.time > 0.5 * run.time[-1]
     ahead = np.polyfit(run.time[later], run.center_of_mass[later, :2], 1)[0]
@@ -88,7 +88,7 @@ def draw_midlines(axes: Axes, first: Replayed, seen: Seen) -> None:
     for start, side in itertools.product(np.linspace(0.5 * run.time[-1], last, SHIFTS), (1.0, -1.0)):
         places = [int(np.argmin(np.abs(run.time - start - each))) for each in seen.time[:SHOWN]]
         found = [run.backbone[place][:, :2] for place in places]
-        found = [_turned(each - found[0].mean(axis=0), ahead) * (1.0, side) for each in found]
+        found = [along_way(each - found[0].mean(axis=0), ahead) * (1.0, side) for each in found]
         apart = [_distance(a - a.mean(axis=0), b - b.mean(axis=0)) for a, b in zip(way, found, strict=False)]
         if (total := float(np.mean(apart))) < best:
             best, lines = total, found
@@ -96,12 +96,6 @@ def draw_midlines(axes: Axes, first: Replayed, seen: Seen) -> None:
         down = -0.35 * place * np.ptp(lines[0][:, 0])
         axes.plot(line[:, 0], line[:, 1] + down, color=BLUE, label="computed")
         axes.plot(points[:, 0], points[:, 1] + down, ".", color=BLACK, label="seen")
-
-
-def _turned(points: np.ndarray, ahead: np.ndarray) -> np.ndarray:
-    """Points in axes along and across the way."""
-    one = ahead / np.linalg.norm(ahead)
-    return np.asarray(points @ np.array([[one[0], -one[1]], [one[1], one[0]]]))
 
 
 def _distance(points: np.ndarray, line: np.ndarray) -> float:
