@@ -19,9 +19,9 @@ from eel_base.quantity import limits
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_gaits.gaits.registry import GAITS, Transition
 from eel_gaits.gaits.settings import FILE_GAITS, numbers_of
+from eel_gaits.pilot.settings import GROUPS
 from eel_gaits.ros.heading_controller import HeadingParameters
 from eel_gaits.ros.node import FILE
-from eel_gaits.ros.pilot_parameters import GROUPS
 from eel_model.scene import Scene
 from eel_viz.settings import MarkerSettings, Settings
 

@@ -4,19 +4,15 @@
 import eel_command  # noqa: F401  first: Ctrl-C ends a command during the other imports
 from eel_base.quantity import Quantities, quantity
 
-from eel_gaits.gaits.bursts import burst_and_coast, c_start
 from eel_gaits.gaits.cpg import cpg
-from eel_gaits.gaits.diving import diving, falling, rising, spiral
-from eel_gaits.gaits.fish import anguilliform, carangiform
-from eel_gaits.gaits.kern import kern_efficient, kern_fast
+from eel_gaits.gaits.diving import diving, falling, helix, rising, roll_over, rolling, spiral
+from eel_gaits.gaits.fish import anguilliform, carangiform, kern_efficient, kern_fast
 from eel_gaits.gaits.registry import GAITS, gait, load_gaits, register
-from eel_gaits.gaits.rolling import helix, roll_over, rolling
-from eel_gaits.gaits.sequence_file import sequence_from_file
+from eel_gaits.gaits.sequence import sequence, sequence_from_file
 from eel_gaits.gaits.snakes import joint_wave, serpenoid
-from eel_gaits.gaits.swimming import backward, still, straight, turning
+from eel_gaits.gaits.swimming import backward, burst_and_coast, c_start, still, straight, turning
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
-from eel_gaits.laws.sequence import sequence
 from eel_gaits.laws.spline import natural_spline
 from eel_gaits.laws.term import Term
 from eel_gaits.sources.function_law import sampled

@@ -8,14 +8,12 @@ import pytest
 from eel_base.attitude import attitude
 from eel_gaits.laws.steered_law import NUMBERS, SteeredLaw
 from eel_gaits.pilot import goals
-from eel_gaits.pilot.estimate import Plane
+from eel_gaits.pilot.estimate import PeriodMeans, plane_of
 from eel_gaits.pilot.guidance import PathGuidance, against_water
 from eel_gaits.pilot.head_motion import HeadMotion
-from eel_gaits.pilot.period_means import PeriodMeans
-from eel_gaits.pilot.pilot import Pilot
-from eel_gaits.pilot.progress import Progress
+from eel_gaits.pilot.pilot import Pilot, Progress
+from eel_gaits.pilot.regulator import TorqueLimiter
 from eel_gaits.pilot.settings import PilotSettings
-from eel_gaits.pilot.torque_limiter import TorqueLimiter
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -62,10 +60,10 @@ def test_the_plane_of_the_beat_does_not_swing_with_the_head(heading, swing, roll
     tilted = product(about(2, heading), product(about(1, -climb), about(0, roll)))
     still = np.zeros(3)
     head = HeadMotion(still, product(tilted, about(2, swing)), still, still)
-    plane = Plane.of(head, heading)
-    assert plane.climb == pytest.approx(math.asin(math.sin(climb) * math.cos(roll)), abs=1e-12)
+    plane = plane_of(head, heading)
+    assert plane["climb"] == pytest.approx(math.asin(math.sin(climb) * math.cos(roll)), abs=1e-12)
     upright = math.cos(roll) * math.cos(climb)
-    assert plane.roll == pytest.approx(math.atan2(math.sin(roll), upright), abs=1e-12)
+    assert plane["roll"] == pytest.approx(math.atan2(math.sin(roll), upright), abs=1e-12)
 
 
 @given(ANGLES, st.floats(0.05, 0.6), st.floats(-0.3, 0.3), st.floats(-0.3, 0.3))
@@ -97,7 +95,7 @@ def test_numbers_of_a_steered_law_change_without_a_jump():
 def test_guidance_aims_at_the_leg_and_goes_from_point_to_point():
     goal = goals.path([(6.0, 0.0, 0.0), (6.0, 8.0, 1.0)], 0.5, LIMITS)
     pilot = Pilot()
-    guidance, still = PathGuidance(goal, np.zeros(3), 2.5, 0.1), np.zeros(3)
+    guidance, still = PathGuidance(goal, PilotSettings(), np.zeros(3)), np.zeros(3)
 
     def demand(*position):
         head = HeadMotion(np.array(position), np.array((0.0, 0.0, 0.0, 1.0)), still, still)

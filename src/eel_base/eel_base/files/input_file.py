@@ -80,6 +80,15 @@ def from_json(text: str | bytes, **options: Any) -> Any:
     return json.loads(text, **options)
 
 
+def is_number(text: str) -> bool:
+    """Whether Python reads a number in the `text`."""
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
 def _reason(error: BaseException) -> str:
     hint = next((words for kind, words in HINTS.items() if isinstance(error, kind)), None)
     if hint is not None:

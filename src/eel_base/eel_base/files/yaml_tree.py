@@ -6,7 +6,7 @@ from typing import Any
 
 import yaml
 
-from eel_base.files.input_file import InputFile, Misplaced
+from eel_base.files.input_file import InputFile, Misplaced, is_number
 from eel_base.wording import shown
 
 MOST_BYTES, MOST_NODES, DEEPEST = 500_000, 20_000, 32
@@ -87,7 +87,7 @@ class _Loader(yaml.SafeLoader):
         except Exception as error:  # of a tag that does not go with the value
             rule = f"{shown(node.value)} is no {node.tag.rpartition(':')[2]}: {error}"
             raise Misplaced(f"line {line}", rule) from None
-        if isinstance(value, str) and node.style is None and _is_number(value):
+        if isinstance(value, str) and node.style is None and is_number(value):
             return float(value)  # such as 1e-3, which YAML 1.1 calls a text
         return value
 
@@ -95,11 +95,3 @@ class _Loader(yaml.SafeLoader):
         if depth > DEEPEST or nodes > self._most:
             rule = "too many levels" if depth > DEEPEST else f"more than {self._most} values, with all aliases"
             raise Misplaced(f"line {mark.line + 1}", rule)
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True

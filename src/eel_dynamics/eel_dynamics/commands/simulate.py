@@ -25,7 +25,7 @@ from eel_base.quantity import described_fields
 from eel_base.wording import one_line, shown
 from eel_gaits.film.beat import Beat
 from eel_gaits.gaits.registry import gait
-from eel_gaits.gaits.sequence_file import sequence_from_file
+from eel_gaits.gaits.sequence import sequence_from_file
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.motion_file import read_motion
 from eel_gaits.sources.sampled_law import SampledLaw

@@ -10,8 +10,6 @@
 A unit after the last _ of a column counts as the file's. The trackers' points are in pixels, and their time in frames.
 """
 
-import csv
-import io
 import itertools
 import re
 from importlib import import_module
@@ -22,7 +20,7 @@ import numpy as np
 from eel_base.files.input_file import InputFile, Misplaced
 from eel_base.wording import one_line, shown
 
-from eel_gaits.sources.tables import LARGEST, MOST_BYTES, MOST_NUMBERS, lines_of
+from eel_gaits.sources.tables import LARGEST, MOST_BYTES, csv_rows
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}  # metres in each; pixels have no length
 COORDINATE = re.compile(r"m?([xy])_?([0-9]*)_?(m|cm|mm|px)?")  # x, y_mm, x0_m; mxmm of fishmechr
@@ -40,120 +38,108 @@ class Tracks(NamedTuple):
     notes: tuple[str, ...]  # what was done, in words
 
 
+class Cells(NamedTuple):
+    """The names of the columns, and the line and the cells of each row."""
+
+    head: list[str]
+    rows: list[tuple[int, list[str]]]
+
+    def error(self, row: int, text: str) -> Misplaced:
+        """An error in this row."""
+        return Misplaced(f"line {self.rows[row][0]}", text)
+
+    def numbers(self, columns: list[int]) -> np.ndarray:
+        """The numbers (rows, columns); NaN for an empty cell, NA or nan."""
+        found = np.empty((len(self.rows), len(columns)))
+        for place, (_, row) in enumerate(self.rows):
+            for column, index in enumerate(columns):
+                cell = row[index].strip()
+                try:
+                    value = np.nan if cell.lower() in ("", "na", "nan") else float(cell)
+                except ValueError:
+                    raise self.error(place, f"{self.head[index]} must be a number, got {shown(cell)}") from None
+                if abs(value) > LARGEST:
+                    raise self.error(place, f"{self.head[index]} must be at most {LARGEST:g}, got {cell}")
+                found[place, column] = value
+        return found
+
+    def check_rising(self, time: np.ndarray, rows: np.ndarray) -> None:
+        """`ValueError` where the `time` of these rows does not rise."""
+        if len(back := np.flatnonzero(np.diff(time[rows]) <= 0.0)):
+            raise self.error(rows[back[0] + 1], f"time must rise, {_twice(time[rows], back[0])}")
+
+
 def read_tracks(path: Path) -> Tracks:
     """The points in a .csv or .h5 file. `ValueError` names line, column and value of what does not fit."""
     if path.suffix == ".h5":
         return _of_hdf(path)
     if path.suffix != ".csv":
         raise ValueError("tracked points must be in a .csv or .h5 file")
-    rows = _rows(path)
-    head = [name.strip() for name in rows[0][1]]
-    if head[0] == "scorer":
-        return _of_deeplabcut(rows)
-    if "frame_idx" in head:
-        return _of_sleap(head, rows[1:])
-    return _of_columns(head, rows[1:])
+    rows = list(csv_rows(path))
+    if len(rows) < 2:
+        raise ValueError("it has a header and no row" if rows else "it is empty")
+    cells = Cells([name.strip() for name in rows[0][1]], rows[1:])
+    if cells.head[0] == "scorer":
+        return _of_deeplabcut(cells)
+    return _of_sleap(cells) if "frame_idx" in cells.head else _of_columns(cells)
 
 
-def _rows(path: Path) -> list[tuple[int, list[str]]]:
-    """Line numbers and cells, without empty lines; each as long as the first."""
-    found, count = [], 0
-    with InputFile(path, MOST_BYTES) as file, io.TextIOWrapper(file, encoding="utf-8-sig", newline="") as text:
-        rows = csv.reader(lines_of(text), strict=True)
-        for row in filter(None, rows):
-            found.append((rows.line_num, row))
-            count += len(row)
-            if len(row) != len(found[0][1]):
-                rule = f"a row must have {len(found[0][1])} fields, as the header has"
-                raise Misplaced(f"line {rows.line_num}", f"{rule}, got {len(row)}")
-            if count > MOST_NUMBERS:
-                raise ValueError(f"a table must hold at most {MOST_NUMBERS} numbers")
-    if len(found) < 2:
-        raise ValueError("it has a header and no row" if found else "it is empty")
-    return found
-
-
-def _numbers(head: list[str], rows: list[tuple[int, list[str]]], columns: list[int]) -> np.ndarray:
-    """The numbers (rows, columns); NaN for an empty cell, NA or nan."""
-    found = np.empty((len(rows), len(columns)))
-    for place, (line, row) in enumerate(rows):
-        for column, index in enumerate(columns):
-            cell = row[index].strip()
-            try:
-                found[place, column] = np.nan if cell.lower() in ("", "na", "nan") else float(cell)
-            except ValueError:
-                raise Misplaced(f"line {line}", f"{head[index]} must be a number, got {shown(cell)}") from None
-    bad = np.argwhere(np.abs(found) > LARGEST)
-    if len(bad):
-        line, index = rows[bad[0][0]][0], columns[bad[0][1]]
-        raise Misplaced(f"line {line}", f"{head[index]} must be at most {LARGEST:g}, got {rows[bad[0][0]][1][index]}")
-    return found
-
-
-def _of_columns(head: list[str], rows: list[tuple[int, list[str]]]) -> Tracks:
+def _of_columns(cells: Cells) -> Tracks:
+    head = cells.head
     times = [index for index, name in enumerate(head) if TIME.fullmatch(name)]
-    places = {(m[1], m[2]): index for index, name in enumerate(head) if (m := COORDINATE.fullmatch(name))}
+    found = {index: m for index, name in enumerate(head) if (m := COORDINATE.fullmatch(name))}
+    places = {(m[1], m[2]): index for index, m in found.items()}
     marks = [number for axis, number in places if axis == "x" and ("y", number) in places]
     if len(times) != 1 or not marks or ("" in marks and len(marks) > 1):
         raise ValueError(
             "its columns must be time, x, y (perhaps with a unit: time_s, x_mm), or time, x0, y0, x1, y1 ..., "
             f"or those of DeepLabCut or SLEAP, got {shown(head)}"
         )
-    units = {COORDINATE.fullmatch(head[index])[3] or "" for index in places.values()}  # type: ignore[index]
+    units = {found[index][3] or "" for index in places.values()}
     if len(units) > 1:
         raise ValueError(f"its columns must have one unit of length, got {shown(sorted(units))}")
     marks.sort(key=lambda number: int(number or 0))
-    columns = [places[axis, number] for number in marks for axis in "xy"]
-    time = _numbers(head, rows, times)[:, 0] * (1e-3 if head[times[0]].endswith("_ms") else 1.0)
-    unknown = np.flatnonzero(~np.isfinite(time))
-    if len(unknown):
-        raise Misplaced(f"line {rows[unknown[0]][0]}", "time is missing")
-    values = _numbers(head, rows, columns).reshape(len(rows), len(marks), 2)
+    time = cells.numbers(times)[:, 0] * (1e-3 if head[times[0]].endswith("_ms") else 1.0)
+    if len(unknown := np.flatnonzero(~np.isfinite(time))):
+        raise cells.error(unknown[0], "time is missing")
+    points = cells.numbers([places[axis, number] for number in marks for axis in "xy"])
+    starts = np.arange(len(time))
     if marks == [""]:
-        time, values = _framed(head, rows, time, values[:, 0])
-    else:
-        _check_rising(time, [line for line, _ in rows])
-    return Tracks(time, {"": values}, units.pop(), False, ())
+        starts = np.concatenate(([0], np.flatnonzero(np.diff(time)) + 1))
+    cells.check_rising(time, starts)
+    if marks == [""]:
+        _check_frames(cells, starts)
+    return Tracks(time[starts], {"": points.reshape(len(starts), -1, 2)}, units.pop(), False, ())
 
 
-def _framed(
-    head: list[str], rows: list[tuple[int, list[str]]], time: np.ndarray, points: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Time (N,) and points (N, n, 2) of rows that hold a point each."""
-    starts = np.concatenate(([0], np.flatnonzero(np.diff(time)) + 1))
-    _check_rising(time[starts], [rows[start][0] for start in starts])
-    sizes = np.diff(np.append(starts, len(time)))
-    other = np.flatnonzero(sizes != sizes[0])
-    if len(other):
-        line = rows[starts[other[0]]][0]
-        raise Misplaced(f"line {line}", f"a frame of {sizes[other[0]]} points, the first has {sizes[0]}")
-    if "point" in head:
-        order = _numbers(head, rows, [head.index("point")]).reshape(len(starts), -1)
+def _check_frames(cells: Cells, starts: np.ndarray) -> None:
+    """`ValueError` where the frames that begin at the rows `starts` do not have the same points in the same order."""
+    sizes = np.diff(np.append(starts, len(cells.rows)))
+    if len(other := np.flatnonzero(sizes != sizes[0])):
+        raise cells.error(starts[other[0]], f"a frame of {sizes[other[0]]} points, the first has {sizes[0]}")
+    if "point" in cells.head:
+        order = cells.numbers([cells.head.index("point")]).reshape(len(starts), -1)
         if len(np.unique(order[0])) < sizes[0]:
-            line = rows[starts[0]][0]
-            raise Misplaced(f"line {line}", "a point stands twice in one frame: two animals? Give the rows of one")
+            raise cells.error(0, "a point stands twice in one frame: two animals? Give the rows of one")
         if np.any(order != order[0]):
             frame = int(np.argmax(np.any(order != order[0], axis=1)))
-            raise Misplaced(f"line {rows[starts[frame]][0]}", "its points are in another order than in the first frame")
-    return time[starts], points.reshape(len(starts), -1, 2)
+            raise cells.error(starts[frame], "its points are in another order than in the first frame")
 
 
-def _check_rising(time: np.ndarray, lines: list[int] | None = None) -> None:
-    back = np.flatnonzero(np.diff(time) <= 0.0)
-    if len(back):
-        text = f"time must rise, got {time[back[0] + 1]:g} after {time[back[0]]:g}: two animals in one file?"
-        raise Misplaced(f"line {lines[back[0] + 1]}", text) if lines else ValueError(text)
+def _twice(time: np.ndarray, place: int) -> str:
+    return f"got {time[place + 1]:g} after {time[place]:g}: two animals in one file?"
 
 
-def _of_deeplabcut(rows: list[tuple[int, list[str]]]) -> Tracks:
-    names = {row[0].strip(): row[1:] for _, row in rows[:4] if row[0].strip() in ("individuals", "bodyparts", "coords")}
+def _of_deeplabcut(cells: Cells) -> Tracks:
+    names = {row[0].strip(): row[1:] for _, row in cells.rows[:3]}
+    names = {name: row for name, row in names.items() if name in ("individuals", "bodyparts", "coords")}
     if not {"bodyparts", "coords"} <= set(names):
         raise ValueError("a DeepLabCut file must have the header lines scorer, bodyparts and coords")
-    body = rows[1 + len(names) :]
+    body = cells.rows[len(names) :]
     if not body:
         raise ValueError("it has a header and no row")
     head = ["frame", *(f"{part} {what}" for part, what in zip(names["bodyparts"], names["coords"], strict=True))]
-    values = _numbers(head, body, list(range(len(head))))
+    values = Cells(head, body).numbers(list(range(len(head))))
     animals = names.get("individuals", [""] * (len(head) - 1))
     return _of_parts(values[:, 0], list(zip(animals, names["bodyparts"], names["coords"], strict=True)), values[:, 1:])
 
@@ -174,7 +160,8 @@ def _of_parts(frames: np.ndarray, names: list[tuple[str, str, str]], values: np.
                 points[bad, place] = np.nan
                 unlikely += int(bad.sum())
         animals[animal] = points
-    _check_rising(frames)
+    if len(back := np.flatnonzero(np.diff(frames) <= 0.0)):
+        raise ValueError(f"time must rise, {_twice(frames, back[0])}")
     notes = (f"{unlikely} points of a likelihood below {LIKELY} count as missing",) if unlikely else ()
     return Tracks(frames, animals, "px", True, notes)
 
@@ -204,19 +191,20 @@ def tracks_of_frame(frame: Any) -> Tracks:
     return _of_parts(np.arange(len(frame), dtype=float), names, frame.to_numpy(dtype=float))
 
 
-def _of_sleap(head: list[str], rows: list[tuple[int, list[str]]]) -> Tracks:
+def _of_sleap(cells: Cells) -> Tracks:
+    head = cells.head
     parts = [name[:-2] for name in head if name.endswith(".x") and f"{name[:-2]}.y" in head]
     if not parts:
         raise ValueError(f"a SLEAP file must have columns such as nose.x, nose.y, got {shown(head)}")
-    frame = _numbers(head, rows, [head.index("frame_idx")])[:, 0]
-    points = _numbers(head, rows, [head.index(f"{part}.{axis}") for part in parts for axis in "xy"])
-    tracks = [row[head.index("track")].strip() if "track" in head else "" for _, row in rows]
+    frame = cells.numbers([head.index("frame_idx")])[:, 0]
+    points = cells.numbers([head.index(f"{part}.{axis}") for part in parts for axis in "xy"])
+    tracks = [row[head.index("track")].strip() if "track" in head else "" for _, row in cells.rows]
     frames, animals = np.unique(frame), {}
     for track in dict.fromkeys(tracks):
         mine = [place for place, name in enumerate(tracks) if name == track]
         if len(set(frame[mine])) < len(mine):
             twice = next(place for before, place in itertools.pairwise(mine) if frame[place] <= frame[before])
-            raise Misplaced(f"line {rows[twice][0]}", "a track has two instances in one frame: two animals? Track them")
+            raise cells.error(twice, "a track has two instances in one frame: two animals? Track them")
         animals[track] = np.full((len(frames), len(parts), 2), np.nan)
         animals[track][np.searchsorted(frames, frame[mine])] = points[mine].reshape(len(mine), len(parts), 2)
     return Tracks(frames, animals, "px", True, ())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fish by midline: the lateral displacement h(X, t) that was measured on fish, as a curvature (`laws.midline`).
+"""Fish. By midline: the lateral displacement h(X, t) that was measured on fish, as a curvature (`laws.midline`).
 
     h(X, t) = a(X) sin(2 pi (waves X / L - t / T)),   X: arc length from the nose, L: body length
 
@@ -8,8 +8,12 @@ and Lu, Phys. Fluids 19 (2007), 057107, the wave as in Borazjani and Sotiropoulo
 doi:10.1242/jeb.015644.
 anguilliform: a / L = a_tail exp(growth (X / L - 1)), of a lamprey; Borazjani and Sotiropoulos, J. Exp. Biol. 212
 (2009), 576-592, doi:10.1242/jeb.025007, after Hultmark, Leftwich and Smits (2007).
+
+By curvature: kern_fast and kern_efficient evolved in 3-D computations of a self-propelled eel (Kern and Koumoutsakos,
+J. Exp. Biol. 209 (2006), 4841-4857, doi:10.1242/jeb.02526).
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -67,6 +71,45 @@ class Anguilliform(Fish):
     growth: float = quantity(1.0, "", "growth of the lateral amplitude, growth", -10.0, 10.0)
 
 
+def _scaled_bend(default: float, place: str) -> float:
+    return quantity(default, "rad", f"curvature times body length, K L, at {place}", -1e3, 1e3)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kern(PeriodicBody):
+    """A wave whose amplitude is a natural cubic spline through four values of K L, at X = 0, L/3, 2L/3 and L."""
+
+    waves: float = quantity(1.44, "", "waves on the body, tau", 0.0, 100.0)
+    bend_nose: float = _scaled_bend(1.51, "the nose")
+    bend_third: float = _scaled_bend(0.48, "one third of the body")
+    bend_two_thirds: float = _scaled_bend(5.74, "two thirds of the body")
+    bend_tail: float = _scaled_bend(2.73, "the tail")
+
+    def term(self) -> Term:
+        """The wave K(s) sin 2 pi (t/T - tau s/L), written as K(s) sin(2 pi (X/wavelength - t/T) + pi) with s = X."""
+        length, scaled = self.length, (self.bend_nose, self.bend_third, self.bend_two_thirds, self.bend_tail)
+        return Term(
+            axis="yaw",
+            amplitude=tuple(value / length for value in scaled),
+            knots=(0.0, length / 3.0, 2.0 * length / 3.0, length),
+            wavelength=length / self.waves if self.waves else 0.0,
+            period=self.period,
+            phase=math.pi,
+            envelope=self.start,
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class EfficientKern(Kern):
+    """The numbers of `Kern` for the gait that was optimised for efficiency."""
+
+    waves: float = quantity(1.72, "", "waves on the body, tau", 0.0, 100.0)
+    bend_nose: float = _scaled_bend(3.34, "the nose")
+    bend_third: float = _scaled_bend(1.67, "one third of the body")
+    bend_two_thirds: float = _scaled_bend(2.0 * math.pi, "two thirds of the body")
+    bend_tail: float = _scaled_bend(2.0 * math.pi, "the tail")
+
+
 @register(Carangiform)
 def carangiform(numbers: Carangiform) -> tuple[Term, ...]:
     """A mackerel: the lateral amplitude is small in front and grows towards the tail."""
@@ -83,3 +126,15 @@ def anguilliform(numbers: Anguilliform) -> tuple[Term, ...]:
         return a, numbers.growth * a, numbers.growth**2 * a
 
     return numbers.terms(amplitude)
+
+
+@register(Kern)
+def kern_fast(numbers: Kern) -> tuple[Term, ...]:
+    """The gait that evolved for speed in 3-D computations of a self-propelled eel."""
+    return (numbers.term(),)
+
+
+@register(EfficientKern)
+def kern_efficient(numbers: EfficientKern) -> tuple[Term, ...]:
+    """The gait that evolved for efficiency in 3-D computations of a self-propelled eel."""
+    return (numbers.term(),)

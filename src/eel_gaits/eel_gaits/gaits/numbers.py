@@ -5,11 +5,9 @@ A number that has a side is positive to the left.
 """
 
 import math
-from collections.abc import Collection
 from dataclasses import dataclass
 
 from eel_base.quantity import Quantities, quantity
-from eel_base.wording import did_you_mean
 
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
@@ -40,27 +38,27 @@ class PeriodicBody(Periodic):
 
 
 def wavelength_quantity(default: float, description: str = "wavelength of the wave") -> float:
-    """The wavelength of a wave [m]."""
     return quantity(default, "m", description, 1e-4, 1e4)
 
 
 def bend_quantity(default: float, description: str) -> float:
-    """A curvature [rad/m]."""
     return quantity(default, "rad/m", description, -1e5, 1e5)
 
 
 def left_quantity(default: float, description: str) -> float:
-    """A yaw curvature [rad/m] that turns the body to the left."""
     return bend_quantity(default, description + TO_THE_LEFT)
 
 
+def duration_quantity(default: float, description: str) -> float:
+    return quantity(default, "s", description, 1e-3, 1e4)
+
+
 def instant_quantity(default: float, description: str, after: str = "") -> float:
-    """A time of the law [s], which may have to lie after another one."""
+    """A time of the law, which may have to lie after another one."""
     return quantity(default, "s", f"{description}, in the law's own time", 0.0, 1e6, after=after)
 
 
 def waves_quantity(default: float) -> float:
-    """The number of waves on the body."""
     return quantity(default, "", "waves on the body, L / wavelength", 1e-3, 100.0)
 
 
@@ -72,8 +70,3 @@ def constant_bend(axis: str, bend: float, envelope: tuple[Ramp, ...]) -> tuple[T
 def left_turn(bend: float, envelope: tuple[Ramp, ...]) -> tuple[Term, ...]:
     """The terms of a `bend` [rad/m] to the left. A curvature K3 above 0 bends the tail to the right."""
     return constant_bend("yaw", -bend, envelope)
-
-
-def named_instead(name: str, known: Collection[str]) -> str:
-    """What a message says after a number `name` that is not `known`: those that there are."""
-    return f"{did_you_mean(name, known)}, it has: {', '.join(known) or 'none'}"

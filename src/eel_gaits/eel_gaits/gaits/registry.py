@@ -16,7 +16,7 @@ import inspect
 import os
 import pkgutil
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from importlib.metadata import entry_points
 from typing import Any
@@ -24,7 +24,6 @@ from typing import Any
 from eel_base.quantity import Quantities, described_fields, quantity
 from eel_base.wording import did_you_mean, one_line, shown
 
-from eel_gaits.gaits.numbers import named_instead
 from eel_gaits.laws.law import Law
 
 
@@ -54,6 +53,11 @@ def find(name: object) -> Any:
         hint = did_you_mean(name, GAITS) if isinstance(name, str) else ""
         raise ValueError(f"unknown gait {shown(name)}{hint}, must be one of {', '.join(sorted(GAITS))}")
     return GAITS[name]
+
+
+def named_instead(name: str, known: Collection[str]) -> str:
+    """What a message says after a number `name` that is not `known`: those that there are."""
+    return f"{did_you_mean(name, known)}, it has: {', '.join(known) or 'none'}"
 
 
 def register(numbers_class: type[Quantities]) -> Callable[[Callable[..., Any]], Any]:

@@ -14,9 +14,8 @@ from eel_base.quantity import Quantities, quantity
 from eel_base.wording import shown
 
 from eel_gaits.gaits.cpg import Oscillation
-from eel_gaits.gaits.numbers import named_instead
-from eel_gaits.gaits.registry import GAITS, Transition, find
-from eel_gaits.gaits.sequence_file import sequence_from_file
+from eel_gaits.gaits.registry import GAITS, Transition, find, named_instead
+from eel_gaits.gaits.sequence import sequence_from_file
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.motion_file import read_motion
 from eel_gaits.sources.sampled_law import SampledLaw
@@ -32,18 +31,7 @@ class MeasuredBody(Quantities):
     scale: float = quantity(1.0, "", "metres in the file's unit of length", 1e-9, 1e9)
 
 
-def _law_from_file(path: str, numbers: MeasuredBody) -> Law | SampledLaw:
-    """The law of a sequence or of a measured motion, by the suffix of its file."""
-    if path.endswith(SEQUENCES):
-        return sequence_from_file(path)
-    return read_motion(path, length=numbers.length, scale=numbers.scale)
-
-
-# gaits that a file gives: the class of their numbers, and the function of path and numbers that reads the file
-FILE_GAITS = {
-    "file": (MeasuredBody, _law_from_file),
-    "sequence": (Quantities, lambda path, numbers: sequence_from_file(path)),
-}
+FILE_GAITS: dict[str, type[Any]] = {"file": MeasuredBody, "sequence": Quantities}  # that a file gives: their numbers
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,8 +51,7 @@ class Settings:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "chosen", MappingProxyType(dict(self.chosen)))
-        from_file = isinstance(self.gait, str) and self.gait in FILE_GAITS
-        object.__setattr__(self, "_law", self._read_law() if from_file else self._make_law())
+        object.__setattr__(self, "_law", self._made_law())
 
     @classmethod
     def known_names(cls) -> set[str]:
@@ -91,10 +78,7 @@ class Settings:
 
     def groups(self) -> tuple[Any, ...]:
         """The transition and the gait's numbers: two `Quantities`. The user's numbers replace the defaults."""
-        return tuple(
-            kind(**{entry.name: self.chosen[entry.name] for entry in fields(kind) if entry.name in self.chosen})
-            for kind in (Transition, numbers_of(self.gait))
-        )
+        return Transition.among(self.chosen), numbers_of(self.gait).among(self.chosen)
 
     def numbers(self) -> dict[str, Any]:
         """The value of each number that can be set with this gait, by name."""
@@ -106,28 +90,22 @@ class Settings:
 
     def oscillation(self) -> Oscillation | None:
         """The numbers of the oscillators whose curvature the node streams; None for a gait that is a law."""
-        if self.gait != "cpg":
-            return None
-        oscillation: Oscillation
-        _, oscillation = self.groups()
-        return oscillation
+        return Oscillation.among(self.chosen) if self.gait == "cpg" else None
 
-    def _read_law(self) -> Law | SampledLaw:
+    def _made_law(self) -> Law | SampledLaw:
+        if not (isinstance(self.gait, str) and self.gait in FILE_GAITS):
+            law: Law = find(self.gait)(**self.numbers())
+            return law
         transition, numbers = self.groups()
         if not isinstance(self.file, str) or not self.file:
             raise ValueError(f"gait {shown(self.gait)} needs the parameter file, got {shown(self.file)}")
-        _, read = FILE_GAITS[self.gait]
-        law = read(self.file, numbers)
-        if isinstance(law, SampledLaw):
-            return law
-        return Law(*law.terms, name=law.name, transition=transition.transition)
-
-    def _make_law(self) -> Law:
-        law: Law = find(self.gait)(**self.numbers())
-        return law
+        if self.gait == "sequence" or self.file.endswith(SEQUENCES):
+            law = sequence_from_file(self.file)
+            return Law(*law.terms, name=law.name, transition=transition.transition)
+        return read_motion(self.file, length=numbers.length, scale=numbers.scale)
 
 
 def numbers_of(gait: str) -> type[Any]:
     """The class of the numbers of a `gait`. `ValueError` for an unknown gait."""
-    kind: type[Any] = FILE_GAITS[gait][0] if gait in FILE_GAITS else find(gait).numbers
+    kind: type[Any] = FILE_GAITS[gait] if gait in FILE_GAITS else find(gait).numbers
     return kind

@@ -24,7 +24,6 @@ from eel_base.quantity import quantity
 
 from eel_gaits.gaits.numbers import TO_THE_LEFT, PeriodicBody, left_quantity, left_turn, waves_quantity
 from eel_gaits.gaits.registry import register
-from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 
 
@@ -66,41 +65,13 @@ def serpenoid(numbers: Serpenoid) -> tuple[Term, ...]:
 def joint_wave(numbers: JointWave) -> tuple[Term, ...]:
     """A wave of joint angles, as snake robots swim: lateral undulation (eel_like = 0) or eel-like motion (1)."""
     n, segment = numbers.joints, numbers.length / numbers.joints
-    # i - 1 = n - 1/2 - X / segment at joint i, so g and the phase are linear in X
-    first = 1.0 - numbers.eel_like + numbers.eel_like * (-0.5) / (n + 1.0)
-    growth = numbers.eel_like / ((n + 1.0) * segment)
+    # i - 1 = n - 1/2 - X / segment at joint i, so its angle is (first + growth X) sin(2 pi t / T + phase + k X)
+    first = numbers.joint_amplitude * (1.0 - numbers.eel_like + numbers.eel_like * (-0.5) / (n + 1.0))
+    growth = numbers.joint_amplitude * (numbers.eel_like / ((n + 1.0) * segment))
     phase, wave_number = numbers.joint_phase * (n - 0.5), -numbers.joint_phase / segment
-    return (
-        *_segment_wave(
-            numbers.joint_amplitude * first,
-            numbers.joint_amplitude * growth,
-            segment=segment,
-            wave_number=wave_number,
-            phase=phase,
-            period=numbers.period,
-            envelope=numbers.start,
-        ),
-        *left_turn(numbers.left_angle / segment, numbers.start),
-    )
-
-
-def _segment_wave(
-    first: float,
-    growth: float,
-    *,
-    segment: float,
-    wave_number: float,
-    phase: float,
-    period: float,
-    envelope: tuple[Ramp, ...],
-) -> tuple[Term, ...]:
-    """The curvature whose integral over a segment about X is (first + growth X) sin theta.
-
-    With theta = 2 pi t / T + phase + wave_number X, h = segment / 2, and k = wave_number, the integrals over a segment
-    of sin theta, cos theta and (X - X_i) sin theta are S sin theta_i, S cos theta_i and S (1/k - h cot kh) cos theta_i,
-    where S = 2 sin(kh) / k. (A linear growth adds the last one, and the correction takes it away.)
-    """
     half = 0.5 * wave_number * segment
+    # The integrals over a segment of sin theta, cos theta and (X - X_i) sin theta are S sin theta_i, S cos theta_i and
+    # S (1/k - h cot kh) cos theta_i, with h = segment / 2 and S = 2 sin(kh) / k. The last one is the shift.
     if abs(half) < 1e-6:
         share, shift = 1.0 / segment, 0.0
     else:
@@ -108,7 +79,8 @@ def _segment_wave(
         shift = 1.0 / wave_number - 0.5 * segment / math.tan(half)
     # sin(2 pi t / T + b) = sin(-2 pi t / T + pi - b), and the wave number of a term goes with -2 pi t / T
     wavelength = -2.0 * math.pi / wave_number if wave_number else 0.0
-    shared: dict[str, Any] = {"axis": "yaw", "wavelength": wavelength, "period": period, "envelope": envelope}
+    shared: dict[str, Any] = {"wavelength": wavelength, "period": numbers.period, "envelope": numbers.start}
     wave = Term(amplitude=(share * first, share * growth), phase=math.pi - phase, **shared)
     correction = Term(amplitude=(-share * growth * shift,), phase=0.5 * math.pi - phase, **shared)
-    return (wave, correction) if growth * shift else (wave,)
+    bend = left_turn(numbers.left_angle / segment, numbers.start)
+    return (wave, correction, *bend) if growth * shift else (wave, *bend)

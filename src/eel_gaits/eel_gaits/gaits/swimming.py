@@ -1,17 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Swimming in the horizontal plane: straight on, backward, in a turn, and coasting.
+"""Swimming in the horizontal plane: straight on, backward, in a turn, coasting, in bursts, and away from rest.
 
-Source: Boyer, Porez and Leroyer, J. Nonlinear Sci. 20 (2010), section 7.2.2,
-doi:10.1007/s00332-009-9050-5.
+The wave: Boyer, Porez and Leroyer, J. Nonlinear Sci. 20 (2010), section 7.2.2, doi:10.1007/s00332-009-9050-5.
+
+c_start: a bend B(t) of the whole body, positive to the left, and a wave: K3 = wave(t, X) - B(t). The body bends into a
+C, and the wave begins while it straightens. The form, a bend plus a wave, is that of Gazzola, van Rees and
+Koumoutsakos, J. Fluid Mech. 698 (2012), 5-18, doi:10.1017/jfm.2011.558. The numbers are our own, for a robot of 1 m.
+
+burst_and_coast: the forward wave comes and goes; between two bursts the straight body coasts (Weihs, J. Theor. Biol. 48
+(1974), 215-229, doi:10.1016/0022-5193(74)90192-1).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from eel_base.quantity import Quantities, quantity
 
 from eel_gaits.gaits.numbers import (
     Periodic,
     bend_quantity,
+    duration_quantity,
     instant_quantity,
     left_quantity,
     left_turn,
@@ -51,6 +58,42 @@ class TurningWave(Wave):
     bend_full: float = instant_quantity(2.0, "the bend of the turn is complete", after="bend_start")
 
 
+@dataclass(frozen=True, kw_only=True)
+class Start(Wave):
+    """A strong bend of the whole body, and the forward wave that follows it."""
+
+    left_bend: float = left_quantity(-4.0, "yaw curvature of the C")
+    bend_time: float = duration_quantity(0.5, "time in which the body bends into the C")
+    return_time: float = duration_quantity(0.4, "time in which it straightens")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bursts(Wave):
+    """The forward wave in bursts. Each begins and ends over `start_periods`."""
+
+    bursts: float = quantity(20.0, "", "number of bursts", 1.0, 400.0, whole=True)
+    burst_periods: float = quantity(1.0, "periods", "time at full amplitude in a burst", 0.0, 1e4)
+    coast_time: float = duration_quantity(3.0, "time of the straight body between two bursts")
+
+    @property
+    def cycle(self) -> float:
+        """Time [s] from the beginning of one burst to that of the next."""
+        return (2.0 * self.start_periods + self.burst_periods) * self.period + self.coast_time
+
+    def envelope(self) -> tuple[Ramp, ...]:
+        """The ramps of all bursts."""
+        rise, full = self.start_periods * self.period, self.burst_periods * self.period
+        starts = [index * self.cycle for index in range(int(self.bursts))]
+        return tuple(
+            ramp
+            for start in starts
+            for ramp in (
+                Ramp(start, start + rise, 1.0),
+                Ramp(start + rise + full, start + 2.0 * rise + full, -1.0),
+            )
+        )
+
+
 @register(Quantities)
 def still(numbers: Quantities) -> tuple[Term, ...]:
     """The straight body, whose shape does not move. Use it to coast, or to push the body."""
@@ -74,3 +117,19 @@ def turning(numbers: TurningWave) -> tuple[Term, ...]:
     """Forward swimming with a lasting bend in yaw."""
     ramp = Ramp(numbers.bend_start, numbers.bend_full, 1.0)
     return (numbers.term(), *left_turn(numbers.left_bend, (ramp,)))
+
+
+@register(Start)
+def c_start(numbers: Start) -> tuple[Term, ...]:
+    """An escape from rest: the body bends into a C, straightens with a stroke, and swims away to that side."""
+    ramps = (
+        Ramp(0.0, numbers.bend_time, 1.0),
+        Ramp(numbers.bend_time, numbers.bend_time + numbers.return_time, -1.0),
+    )
+    return (*left_turn(numbers.left_bend, ramps), numbers.term().delayed(numbers.bend_time))
+
+
+@register(Bursts)
+def burst_and_coast(numbers: Bursts) -> tuple[Term, ...]:
+    """Forward swimming in bursts, with a straight body that coasts in between."""
+    return (replace(numbers.term(), envelope=numbers.envelope()),)

@@ -15,7 +15,7 @@ K3 > 0 bends it towards +2. X runs from 0 at the nose to the body's length at th
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,7 @@ from eel_base.quantity import number, numbers, positive
 from eel_base.wording import not_one_of, shown
 
 from eel_gaits.laws.law_picture import lines_of_law, picture_of_law
+from eel_gaits.laws.ramp import begun, ended
 from eel_gaits.laws.term import SECTION_COLUMN, Term
 
 MAXIMUM_TERMS = 1000
@@ -149,13 +150,14 @@ class Law:
         A term that is 0 until `start` by itself stays as it is.
         """
         start, end = _interval(start, end)
-        return self._of(term.begun(start, end) for term in self.terms)
+        return self._of(replace(term, envelope=begun(term.envelope, start, end)) for term in self.terms)
 
     def ramped_out(self, start: float, end: float) -> "Law":
         """The law that is unchanged before `start` [s] and straight after `end` [s]."""
         start, end = _interval(start, end)
-        ended = (term.ended(start, end) for term in self.terms)
-        return self._of(term for term in ended if term is not None)
+        envelopes = [ended(term.envelope, start, end) for term in self.terms]
+        pairs = zip(self.terms, envelopes, strict=True)
+        return self._of(replace(term, envelope=envelope) for term, envelope in pairs if envelope is not None)
 
     def followed_by(self, other: "Law", at: float, blend: float = 0.5) -> "Law":
         """This law until `at` [s], then `other`, whose own t = 0 lies there.

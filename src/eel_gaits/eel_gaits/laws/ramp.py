@@ -54,10 +54,6 @@ class Ramp:
         acceleration = np.where(moving, self.delta * 2.0 * math.pi * np.sin(angle) / duration / duration, 0.0)
         return value, rate, acceleration
 
-    def delayed(self, delay: float) -> "Ramp":
-        """The same ramp, later by `delay` [s]."""
-        return replace(self, start=self.start + delay, end=self.end + delay)
-
 
 def envelope_at(ramps: tuple[Ramp, ...], t: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """An envelope of `ramps` and its first and second time derivatives at `t` [s]: three arrays of the shape of `t`.
@@ -67,11 +63,7 @@ def envelope_at(ramps: tuple[Ramp, ...], t: Any) -> tuple[np.ndarray, np.ndarray
     value, rate, acceleration = np.ones_like(np.asarray(t, dtype=float)), 0.0, 0.0
     for each in factors_of(ramps):
         v, r, a = np.sum([ramp.value(t) for ramp in each], axis=0)
-        value, rate, acceleration = (
-            value * v,
-            rate * v + value * r,
-            acceleration * v + 2.0 * rate * r + value * a,
-        )
+        value, rate, acceleration = value * v, rate * v + value * r, acceleration * v + 2.0 * rate * r + value * a
     zero = np.zeros_like(value)
     return value, zero + rate, zero + acceleration
 

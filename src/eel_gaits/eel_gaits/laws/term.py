@@ -9,7 +9,7 @@ import numpy as np
 from eel_base.quantity import number
 from eel_base.wording import not_one_of, shown
 
-from eel_gaits.laws.ramp import Ramp, begun, ended, envelope_at
+from eel_gaits.laws.ramp import Ramp, envelope_at
 from eel_gaits.laws.spline import natural_spline
 
 SECTION_COLUMN = {"pitch": 1, "yaw": 2}  # name of the axis: its column in a curvature array
@@ -52,14 +52,19 @@ class Term:
         for field, least in (("wavelength", None), ("period", 0.0), ("phase", None)):
             object.__setattr__(self, field, number(field, getattr(self, field), "s", minimum=least))
         object.__setattr__(self, "envelope", _row("envelope", "Ramps", self.envelope))
-        self._check_amplitude()
-        self._check_wave()
+        if self.knots:
+            self._check_spline()
+        elif not self.amplitude:
+            raise ValueError("amplitude must have at least 1 coefficient, got none")
+        if self.period and self.period < 1e-100:
+            raise ValueError(f"period must be 0 or long enough for finite rates, got {self.period}")
+        if self.wavelength and abs(self.wavelength) < 1e-100:
+            raise ValueError(f"wavelength must be 0 or long enough for a finite wave number, got {self.wavelength}")
+        for ramp in self.envelope:
+            if not isinstance(ramp, Ramp):
+                raise ValueError(f"envelope must hold Ramps, got {shown(ramp)}")
 
-    def _check_amplitude(self) -> None:
-        if not self.knots:
-            if not self.amplitude:
-                raise ValueError("amplitude must have at least 1 coefficient, got none")
-            return
+    def _check_spline(self) -> None:
         if len(self.knots) < 2:
             raise ValueError(f"knots must be none or at least 2, got {len(self.knots)}")
         if len(self.amplitude) != len(self.knots):
@@ -71,15 +76,6 @@ class Term:
         with np.errstate(all="ignore"):
             if not np.all(np.isfinite(self.amplitude_at(self.knots))):
                 raise ValueError(f"knots must lie far enough apart for a finite spline, got {shown(list(self.knots))}")
-
-    def _check_wave(self) -> None:
-        if self.period and self.period < 1e-100:
-            raise ValueError(f"period must be 0 or long enough for finite rates, got {self.period}")
-        if self.wavelength and abs(self.wavelength) < 1e-100:
-            raise ValueError(f"wavelength must be 0 or long enough for a finite wave number, got {self.wavelength}")
-        for ramp in self.envelope:
-            if not isinstance(ramp, Ramp):
-                raise ValueError(f"envelope must hold Ramps, got {shown(ramp)}")
 
     @property
     def wave_number(self) -> float:
@@ -124,20 +120,8 @@ class Term:
     def delayed(self, delay: float) -> "Term":
         """The same motion, later by `delay` [s]."""
         turns = math.remainder(delay / self.period, 1.0) if self.period else 0.0
-        return replace(
-            self,
-            phase=self.phase + 2.0 * math.pi * turns,
-            envelope=tuple(ramp.delayed(delay) for ramp in self.envelope),
-        )
-
-    def begun(self, start: float, end: float) -> "Term":
-        """The term that fades in from `start` to `end` [s], or begins by itself after `start`."""
-        return replace(self, envelope=begun(self.envelope, start, end))
-
-    def ended(self, start: float, end: float) -> "Term | None":
-        """The term that fades out from `start` to `end` [s]; None where it begins after `end`."""
-        envelope = ended(self.envelope, start, end)
-        return None if envelope is None else replace(self, envelope=envelope)
+        envelope = tuple(replace(ramp, start=ramp.start + delay, end=ramp.end + delay) for ramp in self.envelope)
+        return replace(self, phase=self.phase + 2.0 * math.pi * turns, envelope=envelope)
 
 
 def amplitude_of(amplitude: tuple[float, ...], knots: tuple[float, ...], x: Any) -> np.ndarray:

@@ -3,20 +3,21 @@
 
 The body swims in a plane that the beat keeps: all of its sections move across it alike. The head's up axis is normal to
 it and does not swing, so the roll and the climb of that plane are known at once, about the mean heading. Heading and
-velocity need a mean over a period; its lag of half a period is made up for by the rate of change.
+velocity need a mean over a period of the gait, whose length changes with its tempo: over a whole period of the gait's
+own time the swings cancel. The lag of half a period is made up for by the rate of change.
 
 The water's velocity is the mean velocity over ground less the one that the gait gives through the water, followed with
 a time constant. So it also takes in what the swimmer does other than expected: it is the integral action of the pilot.
 """
 
 import math
-from typing import NamedTuple
+from collections import deque
+from typing import Any, NamedTuple
 
 import numpy as np
 from eel_base.attitude import world_from_body
 
 from eel_gaits.pilot.head_motion import HeadMotion, wrapped
-from eel_gaits.pilot.period_means import PeriodMeans
 
 
 class Estimate(NamedTuple):
@@ -67,38 +68,72 @@ class Estimator:
         if whole:
             through = mean[4] * np.array((math.cos(mean[3]), math.sin(mean[3])))
             self._water += (rate[:2] - through - self._water) * (1.0 - math.exp(-step / self._water_time))
-        plane = Plane.of(head, heading)
         return Estimate(
             time=time,
             position=mean[:3] + lag * rate[:3],
             velocity=rate[:3],
             heading=wrapped(heading),
             heading_rate=float(rate[3]),
-            roll=plane.roll,
-            climb=plane.climb,
-            roll_rate=plane.roll_rate,
-            climb_rate=plane.climb_rate,
+            **plane_of(head, heading),
             rise=float(head.velocity[2]),
             water=self._water.copy(),
             settled=whole,
         )
 
 
-class Plane(NamedTuple):
-    """The plane of the beat."""
+def plane_of(head: HeadMotion, heading: float) -> dict[str, float]:
+    """Roll and climb [rad] of the plane normal to the head's up axis about a level frame of this `heading` [rad], and
+    their rates [rad/s]."""
+    forward, left, up = world_from_body(head.orientation).T
+    turning = head.angular_velocity[0] * forward + head.angular_velocity[1] * left  # without that about `up`
+    c, s = math.cos(heading), math.sin(heading)
+    level = np.array(((c, s), (-s, c)))
+    (ahead, aside), (ahead_rate, aside_rate) = level @ up[:2], level @ turning[:2]
+    climb = math.asin(max(-1.0, min(1.0, -ahead)))
+    roll = math.atan2(-aside, up[2])
+    return {"roll": roll, "climb": climb, "roll_rate": float(ahead_rate), "climb_rate": float(-aside_rate)}
 
-    roll: float  # rad
-    climb: float  # rad
-    roll_rate: float  # rad/s
-    climb_rate: float  # rad/s
 
-    @staticmethod
-    def of(head: HeadMotion, heading: float) -> "Plane":
-        """The plane normal to the head's up axis; its angles [rad] are about a level frame of this `heading` [rad]."""
-        forward, left, up = world_from_body(head.orientation).T
-        turning = head.angular_velocity[0] * forward + head.angular_velocity[1] * left  # without that about `up`
-        c, s = math.cos(heading), math.sin(heading)
-        level = np.array(((c, s), (-s, c)))
-        (ahead, aside), (ahead_rate, aside_rate) = level @ up[:2], level @ turning[:2]
-        climb = math.asin(max(-1.0, min(1.0, -ahead)))
-        return Plane(math.atan2(-aside, up[2]), climb, float(ahead_rate), float(-aside_rate))
+class Means(NamedTuple):
+    """Of signals over the last period."""
+
+    mean: np.ndarray  # (n,) of each signal
+    rate: np.ndarray  # (n,) per s: change over the period, by its length
+    span: float  # s, length of that period
+    whole: bool  # whether a whole period has passed
+
+
+class PeriodMeans:
+    """Collects `count` signals and gives their means over the last `period` [s] of the gait's own time."""
+
+    def __init__(self, count: int, period: float) -> None:
+        self._period = period
+        self._rows: deque[Any] = deque()  # time, own time, signals and their integrals since the start
+        self._empty = np.zeros(count)
+
+    def clear(self) -> None:
+        """Forget all signals."""
+        self._rows.clear()
+
+    def add(self, time: float, own_time: float, signals: Any) -> Means:
+        """Add the `signals` (n,) at `time` [s], when the gait's own time is `own_time` [s]; the means since then."""
+        signals = np.asarray(signals, dtype=float)
+        if not self._rows:
+            self._rows.append((time, own_time, signals, self._empty))
+            return Means(signals, self._empty, 0.0, False)
+        before, _, last, integral = self._rows[-1]
+        integral = integral + 0.5 * (time - before) * (last + signals)
+        self._rows.append((time, own_time, signals, integral))
+        begin = own_time - self._period
+        while len(self._rows) > 2 and self._rows[1][1] <= begin:
+            self._rows.popleft()
+        first, start = self._rows[0], self._row_at(begin)
+        span = time - start[0]
+        return Means((integral - start[2]) / span, (signals - start[1]) / span, span, first[1] <= begin)
+
+    def _row_at(self, own_time: float) -> tuple[Any, ...]:
+        """Time, signals and integrals at `own_time` [s], which lies in the oldest interval or before it."""
+        (t0, tau0, signals0, integral0), (t1, tau1, signals1, _) = self._rows[0], self._rows[1]
+        share = (own_time - tau0) / (tau1 - tau0) if own_time > tau0 else 0.0
+        time, signals = t0 + share * (t1 - t0), signals0 + share * (signals1 - signals0)
+        return time, signals, integral0 + 0.5 * (time - t0) * (signals0 + signals)

@@ -13,16 +13,18 @@ Here it is the estimate of the water's velocity, which is taken off the wanted v
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from eel_gaits.pilot.estimate import Estimate
 from eel_gaits.pilot.goals import Course, Path, Station
 from eel_gaits.pilot.head_motion import wrapped
+from eel_gaits.pilot.settings import PilotSettings
 
 STANDOFF = 2.2  # turning radii: what lies behind and nearer than this is swum away from first
 BEHIND = 1.2  # rad to either side of ahead
+CLOSE = 0.5  # reaches: a way point that is so close is left for the next one
 
 
 class Demand(NamedTuple):
@@ -36,19 +38,17 @@ class Demand(NamedTuple):
 
 
 class CourseGuidance:
-    """Holds heading and depth."""
+    """Holds heading and depth. Each guidance is made of its `goal`, which may change its speed, and the `settings`."""
 
-    done = False
-
-    def __init__(self, goal: Course, look_ahead: float) -> None:
-        self._goal, self._look_ahead, self.speed = goal, look_ahead, goal.speed
+    def __init__(self, goal: Course, settings: PilotSettings, start: np.ndarray) -> None:
+        self.goal, self._settings = goal, settings
 
     def demand(self, estimate: Estimate, greatest_speed: float) -> Demand:
         """The demand at present. greatest_speed [m/s]: through the water."""
-        goal, water = self._goal, estimate.water
+        goal, water = self.goal, estimate.water
         along = water[0] * math.cos(goal.heading) + water[1] * math.sin(goal.heading)
-        speed = self.speed - float(along)
-        climb = math.atan((-goal.depth - estimate.position[2]) / self._look_ahead)
+        speed = goal.speed - float(along)
+        climb = math.atan((-goal.depth - estimate.position[2]) / self._settings.ahead)
         return Demand(goal.heading, min(max(speed, 0.0), greatest_speed), climb, -goal.depth, speed <= greatest_speed)
 
 
@@ -60,9 +60,9 @@ class PathGuidance:
         last_miss: [m], the head's least distance to the point that was passed last.
     """
 
-    def __init__(self, goal: Path, start: np.ndarray, look_ahead: float, close: float) -> None:
-        self._points, self.speed = np.vstack((start, goal.points)), goal.speed
-        self._look_ahead, self._close = look_ahead, close
+    def __init__(self, goal: Path, settings: PilotSettings, start: np.ndarray) -> None:
+        self.goal, self._settings = goal, settings
+        self._points, self._close = np.vstack((start, goal.points)), CLOSE * settings.limits.reach
         self.target, self.last_miss, self._least = 0, math.inf, math.inf
 
     @property
@@ -89,51 +89,43 @@ class PathGuidance:
         begin, end = self._points[self.target : self.target + 2]
         leg, away = end - begin, estimate.position - begin
         length = math.hypot(leg[0], leg[1])
-        if length == 0.0:  # the point lies straight above or below the start
-            return self._on_the_spot(end, estimate, greatest_speed)
+        if length == 0.0:  # the point lies straight above or below the start: swim on, and climb or dive
+            climb, height = math.atan((end[2] - estimate.position[2]) / self._settings.ahead), float(end[2])
+            heading, speed, possible = against_water(estimate.heading, self.goal.speed, estimate.water, greatest_speed)
+            return Demand(heading, speed, climb, height, possible)
         along = float(away[:2] @ leg[:2]) / length
         left = float(leg[0] * away[1] - leg[1] * away[0]) / length
-        ahead = max(min(self._look_ahead, length - along), self._close)
+        ahead = max(min(self._settings.ahead, length - along), self._close)
         course = math.atan2(leg[1], leg[0]) - math.atan2(left, ahead)
         height = float(begin[2] + min(1.0, max(0.0, along / length)) * leg[2])
         climb = math.atan2(leg[2], length) + math.atan((height - estimate.position[2]) / ahead)
-        heading, speed, possible = against_water(course, self.speed, estimate.water, greatest_speed)
-        return Demand(heading, speed, climb, height, possible)
-
-    def _on_the_spot(self, end: np.ndarray, estimate: Estimate, greatest_speed: float) -> Demand:
-        """The demand of a leg that leads to no side: swim on, and climb or dive to the depth of its `end` (3,)."""
-        climb, height = math.atan((end[2] - estimate.position[2]) / self._look_ahead), float(end[2])
-        heading, speed, possible = against_water(estimate.heading, self.speed, estimate.water, greatest_speed)
+        heading, speed, possible = against_water(course, self.goal.speed, estimate.water, greatest_speed)
         return Demand(heading, speed, climb, height, possible)
 
 
 class StationGuidance:
-    """Swims to a point and stays there.
+    """Swims to a point and stays there. In still water it stops within `reach` of it."""
 
-    gain: [1/s], of the velocity by the distance. rest: [m], the distance within which the swimmer stops in still water.
-    """
-
-    done = False
-
-    def __init__(self, goal: Station, look_ahead: float, turning_radius: float, gain: float, rest: float) -> None:
-        self._goal, self._look_ahead, self._radius = goal, look_ahead, turning_radius
-        self.speed = goal.speed
-        self._gain, self._rest, self._resting = gain, rest, False
+    def __init__(self, goal: Station, settings: PilotSettings, start: np.ndarray) -> None:
+        self.goal, self._settings, self._limits, self._resting = goal, settings, settings.limits, False
 
     def demand(self, estimate: Estimate, greatest_speed: float) -> Demand:
         """The demand at present. greatest_speed [m/s]: through the water."""
-        away = self._goal.point - estimate.position
-        distance, height = math.hypot(away[0], away[1]), float(self._goal.point[2])
-        climb = math.atan(away[2] / self._look_ahead)
-        still = math.hypot(*estimate.water) < self._gain * self._rest
-        self._resting = still and distance < (2.0 if self._resting else 1.0) * self._rest
+        away, gain, rest = self.goal.point - estimate.position, self._settings.station_gain, self._limits.reach
+        distance, height = math.hypot(away[0], away[1]), float(self.goal.point[2])
+        climb = math.atan(away[2] / self._settings.ahead)
+        still = math.hypot(*estimate.water) < gain * rest
+        self._resting = still and distance < (2.0 if self._resting else 1.0) * rest
         if self._resting:
             return Demand(estimate.heading, 0.0, climb, height, True)
-        speed, bearing = min(self.speed, self._gain * distance), math.atan2(away[1], away[0])
+        speed, bearing = min(self.goal.speed, gain * distance), math.atan2(away[1], away[0])
         heading, through, possible = against_water(bearing, speed, estimate.water, greatest_speed)
-        if distance < STANDOFF * self._radius and abs(wrapped(heading - estimate.heading)) > BEHIND:
+        if distance < STANDOFF * self._limits.turning_radius and abs(wrapped(heading - estimate.heading)) > BEHIND:
             return Demand(estimate.heading, through, climb, height, possible)  # there is no room to turn round
         return Demand(heading, through, climb, height, possible)
+
+
+GUIDANCE: dict[type, Any] = {Course: CourseGuidance, Path: PathGuidance, Station: StationGuidance}
 
 
 def against_water(course: float, speed: float, water: np.ndarray, greatest: float) -> tuple[float, float, bool]:

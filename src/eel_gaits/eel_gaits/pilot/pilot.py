@@ -6,8 +6,9 @@ targets of a steered law (laws/steered_law.py), which makes curvature of them th
 pilot sends samples rather than laws: it decides at each step, and a law in closed form would need a blend each time.
 """
 
+import math
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -16,15 +17,13 @@ from eel_gaits.laws.law import Law
 from eel_gaits.laws.steered_law import SteeredLaw
 from eel_gaits.pilot.estimate import Estimate, Estimator
 from eel_gaits.pilot.goals import Course, Path, Station, check_first_point
-from eel_gaits.pilot.guidance import CourseGuidance, Demand, PathGuidance, StationGuidance
+from eel_gaits.pilot.guidance import GUIDANCE, Demand, PathGuidance
 from eel_gaits.pilot.head_motion import HeadMotion, wrapped
-from eel_gaits.pilot.progress import Progress
 from eel_gaits.pilot.regulator import Gains, Regulator
 from eel_gaits.pilot.settings import PilotSettings
-from eel_gaits.pilot.torque_limiter import TorqueLimiter
 
 RESPONSE = 0.2  # periods of the gait in which the numbers of the law follow their targets
-CLOSE = 0.5  # reaches: a way point that is so close is left for the next one
+NEARER = 0.98  # of a goal's least error: what counts as nearer
 ON_COURSE = 0.1  # error of the heading [rad] and of the depth [m] together, below which a course counts as held
 
 
@@ -64,9 +63,8 @@ class Pilot:
         )
         self._regulator = Regulator(self.settings, gains)
         self._progress = Progress(self.settings.patience)
-        self._torque = TorqueLimiter(self.settings.slowest_tempo, self.settings.fastest_tempo)
         self.goal: Course | Path | Station = Course(0.0, 0.0, 0.0)
-        self._guidance: CourseGuidance | PathGuidance | StationGuidance | None = None
+        self._guidance: Any = None  # to the goal, as of `GUIDANCE`
         self.estimate: Estimate | None = None
         self.demand: Demand | None = None
         self.misses: list[float] = []
@@ -76,8 +74,6 @@ class Pilot:
         """Begin a run: the straight body at rest. The curvature (6, points) as of `SteeredLaw.advance`."""
         self._estimator.restart()
         self._regulator.restart()
-        self._torque.restart()
-        self._regulator.tempo_limit = self._torque.tempo
         self._guidance, self.estimate = None, None
         return self.law.begin(0.0, amplitude=0.0, tempo=self.settings.slowest_tempo)
 
@@ -96,7 +92,7 @@ class Pilot:
         """Swim to the same goal with another `speed` [m/s]."""
         self.goal = replace(self.goal, speed=speed)
         if self._guidance is not None:
-            self._guidance.speed = speed
+            self._guidance.goal = self.goal
 
     @property
     def target(self) -> int:
@@ -105,10 +101,9 @@ class Pilot:
 
     def limit_torque(self, torque: float, limit: float, time: float) -> None:
         """Slow down where the internal `torque` [N m] at `time` [s] exceeds the `limit` [N m]; 0: there is none."""
-        if self._torque.exceeded(torque, limit, time, self.law.values["tempo"][0]):
+        if self._regulator.torque.exceeded(torque, limit, time, self.law.values["tempo"][0]):
             text = f"the torque of {torque:.3g} N m exceeds the limit of {limit:.3g} N m at the slowest beat too"
             self.news.append(News(text))
-        self._regulator.tempo_limit = self._torque.tempo
 
     def step(self, time: float, head: HeadMotion, step: float) -> np.ndarray:
         """See the `head` at `time` [s], and steer for a `step` [s]: the curvature (6, points) at its end."""
@@ -120,8 +115,8 @@ class Pilot:
         values = self.law.values
         through = self.settings.cruise_speed * values["tempo"][0] * min(1.0, values["amplitude"][0])
         self.estimate = estimate = self._estimator.add(time, head, self.law.own_time, through)
-        guidance = self._guided(estimate, head)
-        self.demand = demand = guidance.demand(estimate, self._regulator.greatest_speed)
+        self._guide(estimate, head)
+        self.demand = demand = self._guidance.demand(estimate, self._regulator.greatest_speed)
         self._watch(time, head, estimate, demand)
 
     def steer(self, step: float) -> np.ndarray:
@@ -131,34 +126,23 @@ class Pilot:
         tempo = max(self.law.values["tempo"][0], self.settings.slowest_tempo)
         return self.law.advance(targets, step, RESPONSE * self.law.period / tempo)
 
-    def _guided(self, estimate: Estimate, head: HeadMotion) -> CourseGuidance | PathGuidance | StationGuidance:
-        """The guidance to the present goal. When a path is done, its last point is the station to stay at."""
-        settings, goal = self.settings, self.goal
-        ahead = settings.look_ahead * settings.length
-        reach = settings.reach * settings.length
+    def _guide(self, estimate: Estimate, head: HeadMotion) -> None:
+        """Find the guidance to the present goal. When a path is done, its last point is the station to stay at."""
         if self._guidance is None:
-            if isinstance(goal, Course):
-                self._guidance = CourseGuidance(goal, ahead)
-            elif isinstance(goal, Path):
-                self.misses = []
-                self._guidance = PathGuidance(goal, estimate.position, ahead, CLOSE * reach)
-            else:
-                radius = settings.limits.turning_radius
-                self._guidance = StationGuidance(goal, ahead, radius, settings.station_gain, reach)
+            self.misses = [] if isinstance(self.goal, Path) else self.misses
+            self._guidance = GUIDANCE[type(self.goal)](self.goal, self.settings, estimate.position)
             self._progress.restart(estimate.time)
         path = self._guidance
-        if isinstance(path, PathGuidance) and isinstance(goal, Path) and path.pass_points(estimate, head.position):
-            index, miss = path.target, path.last_miss
+        if isinstance(path, PathGuidance) and path.pass_points(estimate, head.position):
+            miss, reached = path.last_miss, path.last_miss <= self.settings.limits.reach
             self.misses.append(miss)
-            reached = miss <= reach
             passed = "reached" if reached else "missed"
-            text = f"way point {index} of {len(goal.points)} {passed}: {miss:.3g} m from it"
+            text = f"way point {path.target} of {len(path.goal.points)} {passed}: {miss:.3g} m from it"
             self.news.append(News(text, good=reached))
             self._progress.restart(estimate.time)
             if path.done:
-                self.follow(Station(goal.points[-1], goal.speed))
-                return self._guided(estimate, head)
-        return self._guidance
+                self.follow(Station(path.goal.points[-1], path.goal.speed))
+                self._guide(estimate, head)
 
     def _watch(self, time: float, head: HeadMotion, estimate: Estimate, demand: Demand) -> None:
         """Report where the goal does not come nearer."""
@@ -169,10 +153,32 @@ class Pilot:
         else:
             point = goal.point if isinstance(goal, Station) else goal.points[self.target]
             error = float(np.linalg.norm(point - head.position))
-            close = self.settings.reach * self.settings.length if isinstance(goal, Path) else self.settings.length
+            close = self.settings.limits.reach if isinstance(goal, Path) else self.settings.length
             where = f"({point[0]:.3g}, {point[1]:.3g}, {point[2]:.3g}) m"
         if self._progress.stalled(time, error, close):
             why = "" if demand.possible else ": the water is faster than the swimmer may swim"
             least, patience = self._progress.least, self.settings.patience
             text = f"the goal {where} cannot be reached: no nearer than {least:.3g} for {patience:g} s{why}"
             self.news.append(News(text))
+
+
+class Progress:
+    """Watches the error of a goal. patience: [s] without progress after which it counts as out of reach."""
+
+    def __init__(self, patience: float) -> None:
+        self._patience = patience
+        self.least = math.inf  # least error so far
+        self._since, self._said = 0.0, False
+
+    def restart(self, time: float) -> None:
+        """Watch another goal from `time` [s] on."""
+        self.least, self._since, self._said = math.inf, time, False
+
+    def stalled(self, time: float, error: float, close: float) -> bool:
+        """Whether it has just become clear that the error stays above `close`. It is said once for each goal."""
+        if error < NEARER * self.least or error <= close:
+            self.least, self._since = min(error, self.least), time
+        if self._said or time - self._since <= self._patience:
+            return False
+        self._said = True
+        return True

@@ -4,9 +4,11 @@
 Bends in pitch turn the plane of the beat up and down. A wave in pitch a quarter of a period behind the one in yaw (the
 number `swirl`) rolls it; this is how the body can hold its roll without a keel. Both see the plane at once, without a
 mean over a period. In the gait's own time the swimmer is the same at any tempo, as drag grows with the square of speed;
-so rates are divided by the tempo, and the numbers follow their targets in a time that goes with the period.
+so rates are divided by the tempo, and the numbers follow their targets in a time that goes with the period. The
+internal torque goes with the square of the tempo: where it is too great, the beat slows down.
 """
 
+import math
 from dataclasses import dataclass
 
 from eel_gaits.laws.steered_law import SteeredLaw
@@ -18,6 +20,9 @@ from eel_gaits.pilot.settings import PilotSettings
 KEEL = 0.004  # metacentric height by length and by tempo squared, about which the gains of the roll change
 NEAR = 0.1  # body lengths from the wanted depth within which the error of the height is integrated: no windup on a dive
 MOST_CLIMB_OFFSET = 0.1  # rad, that this integral may add to the climb
+RECOVERY = 0.02  # 1/s, by which the greatest tempo grows again
+LONGEST_STEP = 1.0  # s, that count of a longer gap between two torques
+AT_SLOWEST = 1.05  # times the slowest tempo: a beat that is no faster has no room left
 SHARE_OF_BEND = 0.5  # of the limit of the bend, that the integral of the error of the climb may take
 
 
@@ -44,22 +49,23 @@ class Gains:
 
 
 class Regulator:
-    """Turns demands into targets of a `SteeredLaw`. `tempo_limit` may be lowered, where the torque is too great."""
+    """Turns demands into targets of a `SteeredLaw`. `torque` limits the tempo."""
 
     def __init__(self, settings: PilotSettings, gains: Gains | None = None) -> None:
         self._settings, self._gains = settings, gains or Gains()
         self._climb_offset = 0.0  # rad, integral of the error of the height
         self._bend_offset = 0.0  # rad/m, integral of the error of the climb
-        self.tempo_limit = settings.fastest_tempo
+        self.torque = TorqueLimiter(settings.slowest_tempo, settings.fastest_tempo)
 
     def restart(self) -> None:
-        """Forget the integrals."""
+        """Forget the integrals and the torques."""
         self._climb_offset = self._bend_offset = 0.0
+        self.torque.restart()
 
     @property
     def greatest_speed(self) -> float:
         """Greatest speed [m/s] through the water at present."""
-        return self._settings.cruise_speed * self.tempo_limit
+        return self._settings.cruise_speed * self.torque.tempo
 
     def targets(self, demand: Demand, estimate: Estimate, law: SteeredLaw, step: float) -> dict[str, float]:
         """The targets of the numbers, for a `step` [s]."""
@@ -109,10 +115,42 @@ class Regulator:
         """Tempo and amplitude for a `speed` [m/s] through the water: the speed goes with the tempo."""
         settings = self._settings
         wanted = speed / settings.cruise_speed
-        tempo = min(max(wanted, settings.slowest_tempo), self.tempo_limit)
+        tempo = min(max(wanted, settings.slowest_tempo), self.torque.tempo)
         amplitude = min(1.0, wanted / settings.slowest_tempo)
         return tempo, amplitude
 
 
 def _limited(value: float, most: float) -> float:
     return min(max(value, -most), most)
+
+
+class TorqueLimiter:
+    """The greatest tempo, between `slowest` and `fastest`, that keeps the torque below a limit."""
+
+    def __init__(self, slowest: float, fastest: float) -> None:
+        self._slowest, self._fastest = slowest, fastest
+        self._time, self._said = -math.inf, False
+        self.tempo = fastest
+
+    def restart(self) -> None:
+        """Begin a run."""
+        self.tempo, self._time, self._said = self._fastest, -math.inf, False
+
+    def exceeded(self, torque: float, limit: float, time: float, tempo: float) -> bool:
+        """Take in the `torque` [N m] at `time` [s] of a beat of this `tempo`; 0: there is no `limit`.
+
+        Returns whether the torque exceeds the limit at the slowest tempo; it is said once in a run.
+        """
+        if limit <= 0.0:
+            self.tempo = self._fastest
+            return False
+        step = min(LONGEST_STEP, max(0.0, time - self._time))
+        self._time = time
+        if not torque > limit:  # nor NaN
+            self.tempo = min(self._fastest, self.tempo * (1.0 + RECOVERY * step))
+            return False
+        self.tempo = max(self._slowest, min(self.tempo, tempo * math.sqrt(limit / torque)))
+        if self._said or tempo > AT_SLOWEST * self._slowest:
+            return False
+        self._said = True
+        return True

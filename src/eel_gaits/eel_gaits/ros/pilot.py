@@ -27,10 +27,10 @@ from rclpy.subscription import Subscription
 
 from eel_gaits.pilot import goals
 from eel_gaits.pilot.pilot import Pilot
+from eel_gaits.pilot.settings import GROUPS, GoalParameters, TimingParameters
 from eel_gaits.ros.lead import Lead
 from eel_gaits.ros.messages import FRAME, samples_to_message
 from eel_gaits.ros.pilot_messages import head_motion, path_message, point_of, read_path
-from eel_gaits.ros.pilot_parameters import GROUPS, GoalParameters, TimingParameters
 from eel_msgs.msg import CurvatureSamples, SwimState
 
 NAME = "pilot"

@@ -12,13 +12,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from eel_base.wording import shown
 
-from eel_gaits.sources.period import fastest_period
+from eel_gaits.sources.period import long_gap
 from eel_gaits.sources.sampled_law import SampledLaw, points_for
 from eel_gaits.sources.smoothing import FEWEST, interpolated, smoothed, smoothed_in_time
 from eel_gaits.sources.tables import Table
 
 FEWEST_FRAMES = 16
-LONGEST_GAP = 0.25  # of the fastest motion's period
 TOLERANCE = 5e-5  # part of the greatest curvature by which the rows may miss the splines along the body
 MATERIAL = 0.02  # part of the length by which the arc length of a point may differ from frame to frame
 
@@ -38,15 +37,8 @@ class Frames(NamedTuple):
 
     def check_gaps(self, motion: np.ndarray) -> None:
         """`ValueError` for a gap longer than a quarter of the fastest period in `motion` (N, m)."""
-        gaps, period = np.diff(self.time), fastest_period(self.time, motion)
-        place = int(np.argmax(gaps))
-        if gaps[place] > LONGEST_GAP * period:
-            raise self.error(
-                f"a gap of {gaps[place]:.3g} s in time, more than a quarter of the fastest motion's period "
-                f"({period:.3g} s)",
-                place,
-                place + 1,
-            )
+        if gap := long_gap(self.time, motion):
+            raise self.error(gap[1], gap[0], gap[0] + 1)
 
 
 def frames_of(table: Table, names: tuple[str, ...]) -> Frames:

@@ -10,23 +10,21 @@ spread over a width w_j to either side, the mean distance to its neighbours, or 
 So each angle is kept exactly, and at equal distances the angles add up smoothly. phi > 0 bends the tail to the right.
 """
 
-import csv
 import fnmatch
-import io
 import itertools
 import re
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from eel_base.files.input_file import InputFile, reading
+from eel_base.files.input_file import reading
 from eel_base.quantity import checked_row
 from eel_base.wording import shown
 
-from eel_gaits.sources.period import fastest_period
+from eel_gaits.sources.period import long_gap
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_gaits.sources.smoothing import smoothed_in_time
-from eel_gaits.sources.tables import MOST_BYTES, MOST_NUMBERS, lines_of
+from eel_gaits.sources.tables import csv_rows
 
 KNOWN = (  # names of columns of joints, the best first; a number in the name orders them
     r"yaw_(\d+)", r"(\d+)FbckPosition.*", r".*position[\[._/](\d+)\]?", r"pos(?:ition)?_?(\d+)",
@@ -40,7 +38,6 @@ SPREADS, FINEST = 6.0, 2e-3  # robust spreads beyond which a reading has jumped,
 PASSES = 3
 LARGEST = 3.2  # rad, of a joint: beyond it the file is in degrees
 BY_WIDTH = 8  # points of the law in a joint's width
-GAP = 0.25  # of the fastest motion's period
 
 
 class JointLog(NamedTuple):
@@ -114,12 +111,8 @@ def law_of_links(log: JointLog, places: np.ndarray, length: float) -> SampledLaw
     off = (x - places[:, None]) / widths[:, None]  # (n, m)
     shapes = np.where(np.abs(off) < 1.0, (1.0 + np.cos(np.pi * off)) / (2.0 * widths[:, None]), 0.0)
     found = smoothed_in_time(log.time, log.angles)
-    gaps, period = np.diff(log.time), fastest_period(log.time, np.asarray(found.spline(log.time)))
-    if gaps.max() > GAP * period:
-        raise ValueError(
-            f"{log.name}: a gap of {gaps.max():.3g} s at {log.time[gaps.argmax()]:.4g} s, more than a quarter of the "
-            f"fastest motion's period ({period:.3g} s)"
-        )
+    if gap := long_gap(log.time, np.asarray(found.spline(log.time))):
+        raise ValueError(f"{log.name}: {gap[1]}")
     values = np.zeros((len(log.time), 2, 3, len(x)))
     values[:, 1] = np.stack([found.spline(log.time, order) @ shapes for order in range(3)], axis=1)
     residual = np.degrees(np.sqrt(np.mean((found.spline(log.time) - log.angles) ** 2)))
@@ -132,10 +125,7 @@ def law_of_links(log: JointLog, places: np.ndarray, length: float) -> SampledLaw
 
 def _rows(path: Path) -> tuple[list[str], np.ndarray, tuple[str, ...]]:
     """Names of the columns, the rows of numbers (N, columns), and what was left out."""
-    with InputFile(path, MOST_BYTES) as file, io.TextIOWrapper(file, encoding="utf-8-sig", newline="") as text:
-        cells = [[cell.strip() for cell in row] for row in csv.reader(lines_of(text)) if any(map(str.strip, row))]
-    if sum(map(len, cells)) > MOST_NUMBERS:
-        raise ValueError(f"a table must hold at most {MOST_NUMBERS} numbers")
+    cells = [[cell.strip() for cell in row] for _, row in csv_rows(path, strict=False) if any(map(str.strip, row))]
     numbers = [_numbers(row) for row in cells]
     widths = [len(row) for row in numbers if row is not None]
     if not widths:

@@ -18,6 +18,7 @@ LEFT = 0.5  # of the first rise: the period is looked for only after d(T) has ri
 POINTS = 64  # in a period, of the first harmonic
 STANDING = 0.1  # waves on the body below which a harmonic counts as standing
 ALIKE = 0.05  # part by which the periods of pitch and yaw may differ: they are then those of one motion
+LONGEST_GAP = 0.25  # of the fastest motion's period
 HIGHEST = 0.05  # part of the strongest harmonic's amplitude that still counts as motion
 
 
@@ -84,8 +85,11 @@ def _harmonic(axis: str, time: np.ndarray, x: np.ndarray, rows: np.ndarray, peri
     return Term(axis=axis, amplitude=tuple(np.abs(found)), knots=tuple(x), wavelength=wavelength, period=period)
 
 
-def fastest_period(time: np.ndarray, values: np.ndarray) -> float:
-    """The period [s] of the fastest harmonic of `values` (N, m) that has 5 % of the strongest one's amplitude."""
+def long_gap(time: np.ndarray, values: np.ndarray) -> tuple[int, str] | None:
+    """The instant before a gap longer than a quarter of the fastest period in `values` (N, m), and the gap in words.
+
+    The fastest harmonic is that of the highest frequency that has 5 % of the strongest one's amplitude.
+    """
     from scipy.interpolate import CubicSpline
 
     even = np.linspace(time[0], time[-1], max(64, 2 * len(time)))
@@ -93,4 +97,11 @@ def fastest_period(time: np.ndarray, values: np.ndarray) -> float:
     rows = (rows - rows.mean(axis=0)) * np.hanning(len(even))[:, None]
     amplitude = np.sqrt(np.sum(np.abs(np.fft.rfft(rows, axis=0)) ** 2, axis=1))
     strong = np.flatnonzero(amplitude >= HIGHEST * amplitude.max())
-    return float((time[-1] - time[0]) / strong[-1]) if amplitude.max() > 0.0 and strong[-1] else np.inf
+    gaps, period = np.diff(time), np.inf
+    if amplitude.max() > 0.0 and strong[-1]:
+        period = float((time[-1] - time[0]) / strong[-1])
+    place = int(np.argmax(gaps))
+    if not gaps[place] > LONGEST_GAP * period:
+        return None
+    least = f"more than a quarter of the fastest motion's period ({period:.3g} s)"
+    return place, f"a gap of {gaps[place]:.3g} s at {time[place]:.4g} s, {least}"

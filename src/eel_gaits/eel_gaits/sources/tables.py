@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 from eel_base.files.archive import MOST_NUMBERS, read_archive
-from eel_base.files.input_file import InputFile, Misplaced, reading
+from eel_base.files.input_file import InputFile, Misplaced, is_number, reading
 from eel_base.wording import shown
 
 MOST_BYTES, MOST_LINES, LONGEST_LINE, MOST_COLUMNS = 200_000_000, 5_000_000, 1_000_000, 10_000  # of a .csv file
@@ -79,39 +79,52 @@ def _flat(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 
 def _table(path: Path) -> tuple[dict[str, np.ndarray], np.ndarray]:
-    with InputFile(path, MOST_BYTES) as file, io.TextIOWrapper(file, encoding="utf-8-sig", newline="") as text:
-        rows = csv.reader(lines_of(text), strict=True)
-        numbers, lines = array.array("d"), array.array("q")
+    rows = csv_rows(path)
+    first, head = next(rows, (0, []))
+    names = [name.strip() for name in head]
+    if not any(names):
+        raise ValueError("it is empty")
+    if len(set(names)) < len(names) or len(names) > MOST_COLUMNS:
+        rule = f"at most {MOST_COLUMNS} columns, each with a name of its own"
+        raise Misplaced(f"line {first}", f"there must be {rule}, got {len(names)}: {shown(names)}")
+    numbers, lines = array.array("d"), array.array("q")
+    for line, row in rows:
         try:
-            names = [name.strip() for name in next(rows, [])]
-            if not any(names):
-                raise ValueError("it is empty")
-            if len(set(names)) < len(names) or len(names) > MOST_COLUMNS:
-                rule = f"at most {MOST_COLUMNS} columns, each with a name of its own"
-                raise ValueError(f"there must be {rule}, got {len(names)}: {shown(names)}")
+            numbers.extend(map(float, row))
+        except ValueError:
+            name, cell = next(each for each in zip(names, row, strict=True) if not is_number(each[1]))
+            raise Misplaced(f"line {line}", f"{name} must be a number, got {shown(cell)}") from None
+        lines.append(line)
+    if not lines:
+        raise ValueError("it has a header and no row")
+    columns = np.frombuffer(numbers).reshape(-1, len(names)).T
+    return dict(zip(names, columns, strict=True)), np.frombuffer(lines, dtype=np.int64)
+
+
+def csv_rows(path: Path, strict: bool = True) -> Iterator[tuple[int, list[str]]]:
+    """Line number and cells of each row of a .csv file that is not empty. `ValueError` where it exceeds the bounds.
+
+    strict: all rows must be as long as the first, and quotes as they should be.
+    """
+    with InputFile(path, MOST_BYTES) as file, io.TextIOWrapper(file, encoding="utf-8-sig", newline="") as text:
+        rows = csv.reader(_lines(text), strict=strict)
+        width = count = 0
+        try:
             for row in filter(None, rows):
-                if len(row) != len(names):
-                    raise ValueError(f"a row must have {len(names)} fields, as the header has, got {len(row)}")
-                if len(numbers) + len(names) > MOST_NUMBERS:
+                if strict and width and len(row) != width:
+                    raise ValueError(f"a row must have {width} fields, as the header has, got {len(row)}")
+                count += len(row) if width else 0
+                if count > MOST_NUMBERS:
                     raise ValueError(f"a table must hold at most {MOST_NUMBERS} numbers")
-                try:
-                    numbers.extend(map(float, row))
-                except ValueError:
-                    name, cell = next(each for each in zip(names, row, strict=True) if not _is_number(each[1]))
-                    raise ValueError(f"{name} must be a number, got {shown(cell)}") from None
-                lines.append(rows.line_num)
+                width = width or len(row)
+                yield rows.line_num, row
         except (ValueError, csv.Error) as error:
             if rows.line_num == 0 or isinstance(error, UnicodeDecodeError):
                 raise
             raise Misplaced(f"line {rows.line_num}", str(error)) from None
-    if not lines:
-        raise ValueError("it has a header and no row")
-    return dict(zip(names, np.frombuffer(numbers).reshape(-1, len(names)).T, strict=True)), np.frombuffer(
-        lines, dtype=np.int64
-    )
 
 
-def lines_of(text: io.TextIOBase) -> Iterator[str]:
+def _lines(text: io.TextIOBase) -> Iterator[str]:
     """The lines of an open `text`, as many and as long as a table may have."""
     for _ in range(MOST_LINES):
         line = text.readline(LONGEST_LINE)
@@ -121,11 +134,3 @@ def lines_of(text: io.TextIOBase) -> Iterator[str]:
             raise ValueError(f"a line must be shorter than {LONGEST_LINE} characters")
         yield line
     raise ValueError(f"a table must have fewer than {MOST_LINES} lines")
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True

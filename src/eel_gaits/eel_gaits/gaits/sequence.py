@@ -1,9 +1,37 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads a sequence from a YAML file (`laws.sequence` has the format). An error names file, line and key."""
+"""Sequences: laws that follow one another, in Python or from a YAML file.
+
+    sequence([(straight(), 8.0), (turning(), 4.0), (still(), None)], blend=0.5)
+
+    name: patrol              # of the law; the file's name where it is left out
+    blend: 0.5                # s, from one step to the next (0.5)
+    steps:
+      - gait: straight        # any gait, with `set` as in `eel simulate --set`
+        set: {period: 0.8}
+        duration: 8.0         # s; the last step may leave it out, and then lasts
+      - gait: turning
+        set: {left_bend: 0.5}
+        duration: 4.0
+        blend: 1.0            # into this step
+        scale: 0.8            # times the curvature (1)
+        mirror: yaw           # or pitch
+        delay: 0.5            # s, by which the gait's own time begins later (0)
+      - together:             # the sum of several
+          - gait: straight
+          - gait: rolling
+            scale: 0.2
+        duration: 3.0
+      - repeat: 2             # times (1)
+        steps:                # steps of their own, each with a duration
+          - {gait: straight, duration: 2.0}
+          - {gait: still, duration: 1.0}
+
+The curvature is twice differentiable in time.
+"""
 
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
@@ -13,36 +41,70 @@ from eel_base.quantity import positive
 from eel_base.wording import shown
 
 from eel_gaits.gaits.registry import find
-from eel_gaits.laws.law import MAXIMUM_NAME, Law
-from eel_gaits.laws.sequence import BLEND, sequence
+from eel_gaits.laws.law import MAXIMUM_NAME, MAXIMUM_TERMS, Law
+from eel_gaits.laws.term import Term
 
 Made = TypeVar("Made")
 
+BLEND = 0.5  # s
 DEEPEST, MOST_STEPS = 8, 1000
 FILE = ("name", "blend", "steps")
 PART = ("gait", "set", "together", "scale", "mirror", "delay")
 STEP = (*PART, "steps", "repeat", "duration", "blend")
 
 
+def sequence(steps: Iterable[Sequence[Any]], *, blend: float = BLEND, name: str = "sequence") -> Law:
+    """The law in which the `steps` follow one another.
+
+    steps: rows (law, duration [s]) or (law, duration [s], blend [s] into this step). The last duration may be None: the
+    step then lasts. Otherwise the body becomes straight at its end.
+    blend: [s], into each step without one of its own, and at the end. `ValueError` names the step that does not fit.
+    """
+    rows = [(*step, blend)[:3] for step in steps]
+    for index, (_, _, into) in enumerate(rows):
+        positive(f"steps[{index}]: blend", into)
+    fades = [float(into) for _, _, into in rows[1:]] + [positive("blend", blend)]  # out of each step
+    terms: list[Term] = []
+    at = 0.0
+    for index, (law, duration, into) in enumerate(rows):
+        try:
+            if not isinstance(law, Law):
+                raise ValueError(f"a step must begin with a Law, got {shown(law)}")
+            law = law.delayed(at)
+            if index:
+                law = law.ramped_in(at, at + float(into))
+            if duration is not None:
+                at += positive("duration", duration)
+                law = law.ramped_out(at, at + fades[index])
+            elif index + 1 < len(rows):
+                raise ValueError("duration must be given for all steps but the last, got None")
+            terms += law.terms
+            if len(terms) > MAXIMUM_TERMS:
+                raise ValueError(f"the law has more than {MAXIMUM_TERMS} terms")
+        except ValueError as error:
+            raise ValueError(f"steps[{index}]: {error}") from None
+    return Law(*terms, name=name)
+
+
 def sequence_from_file(path: str | os.PathLike[str]) -> Law:
     """The `Law` of the sequence in a YAML file. `ValueError` in one line names file, line and key."""
     path = Path(path)
     with reading(shown(str(path))):
-        return SequenceReader(path.stem[:MAXIMUM_NAME]).law(read_yaml(path))
+        return SequenceReader().law(read_yaml(path), path.stem[:MAXIMUM_NAME])
 
 
 class SequenceReader:
-    """Makes a law of a YAML document. name: of the law, where the document gives none."""
+    """Makes a law of a YAML document."""
 
-    def __init__(self, name: str) -> None:
-        self._name, self._steps = name, 0
+    def __init__(self) -> None:
+        self._steps = 0  # so far
 
-    def law(self, root: Any) -> Law:
-        """The law of the document."""
+    def law(self, root: Any, name: str) -> Law:
+        """The law of the document. name: where it gives none."""
         if not isinstance(root, Entries):
             raise Misplaced("line 1", f"a sequence must have the key steps, got {shown(root)}")
         self._check_keys(root, FILE)
-        name = root.get("name", self._name)
+        name = root.get("name", name)
         blend = self._tried(root, "blend", positive, "blend", root.get("blend", BLEND))
         rows = [
             self._step(each, root, blend, 1, last=index == len(root["steps"]) - 1)
@@ -56,8 +118,7 @@ class SequenceReader:
         self._steps += 1
         if self._steps > MOST_STEPS or depth > DEEPEST:
             self._fail(above, "steps", f"must be at most {MOST_STEPS}, in at most {DEEPEST} levels")
-        self._check_mapping(step, above, "steps")
-        self._check_keys(step, STEP)
+        self._check_mapping(step, STEP, above, "steps")
         into = self._tried(step, "blend", positive, "blend", step.get("blend", blend))
         if "steps" in step:
             return *self._repeated(step, into, depth), into
@@ -93,8 +154,7 @@ class SequenceReader:
             self._fail(part, "set", "goes with gait")
         laws = []
         for each in self._list(part, "together"):
-            self._check_mapping(each, part, "together")
-            self._check_keys(each, PART)
+            self._check_mapping(each, PART, part, "together")
             if depth >= DEEPEST:
                 self._fail(part, "together", f"must be at most {DEEPEST} levels deep")
             laws.append(self._part(each, depth + 1))
@@ -120,9 +180,10 @@ class SequenceReader:
             self._fail(entries, key, f"must be a list, got {shown(entries.get(key))}")
         return list(entries[key])
 
-    def _check_mapping(self, value: Any, above: Entries, key: str) -> None:
+    def _check_mapping(self, value: Any, known: tuple[str, ...], above: Entries, key: str) -> None:
         if not isinstance(value, Entries):
             self._fail(above, key, f"must hold mappings, such as {{gait: straight, duration: 8}}, got {shown(value)}")
+        self._check_keys(value, known)
 
     def _check_keys(self, entries: Entries, known: tuple[str, ...]) -> None:
         for key in entries:
@@ -132,9 +193,9 @@ class SequenceReader:
     def _tried(self, entries: Entries, key: str, make: Callable[..., Made], *arguments: Any, **options: Any) -> Made:
         try:
             return make(*arguments, **options)
+        except Misplaced:
+            raise
         except (ValueError, TypeError) as error:
-            if isinstance(error, Misplaced):
-                raise
             return self._fail(entries, key, error)
 
     def _fail(self, entries: Entries, key: str, reason: object) -> NoReturn:
