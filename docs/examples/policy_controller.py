@@ -5,13 +5,13 @@ dynamics --ros-args -p real_time_factor:=0 -p rate:=10 -p duration:=20 -p scene.
 python docs/examples/policy_controller.py --ros-args -p heading:=0.6
 """
 
-import array
 import json
 import sys
 from pathlib import Path
 
 import numpy as np
 from eel_gaits.ros.lead import Lead
+from eel_gaits.ros.messages import samples_to_message
 from eel_gaits.ros.pilot_messages import head_motion
 from eel_ros.headers import seconds_of
 from eel_ros.parameter_node import ParameterNode
@@ -24,7 +24,6 @@ from eel_gym import HeadingEnv, LawAction
 from eel_msgs.msg import CurvatureSamples
 
 NAME = "policy_controller"
-FIELDS = "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"
 
 
 class PolicyController(ParameterNode):
@@ -59,11 +58,7 @@ class PolicyController(ParameterNode):
     def message(self, time, rows):
         """The curvature `rows` (6, points) at `time` [s]."""
         assert isinstance(self.env.action, LawAction)
-        message = CurvatureSamples(x=array.array("d", self.env.action.x.tobytes()))
-        message.header.stamp.sec, message.header.stamp.nanosec = divmod(round(time * 1e9), 1_000_000_000)
-        for name, row in zip(FIELDS, rows, strict=True):
-            setattr(message, name, array.array("d", row.tobytes()))
-        return message
+        return samples_to_message(time, self.env.action.x, rows)
 
 
 def main() -> int:

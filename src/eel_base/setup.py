@@ -13,7 +13,6 @@ setup(
     ],
     install_requires=["setuptools", "numpy", "PyYAML"],
     extras_require={"test": ["pytest"], "pictures": ["matplotlib"]},
-    zip_safe=False,
     maintainer="Eel simulator maintainers",
     maintainer_email="maintainers@eel-simulator.example.org",
     description="What every package of the eel simulator uses: numbers with bounds, words of messages, output files.",

@@ -15,7 +15,6 @@ setup(
         "test": ["pytest"],
         "data": ["xarray"],
     },
-    zip_safe=False,
     maintainer="Eel simulator maintainers",
     maintainer_email="maintainers@eel-simulator.example.org",
     description="Dynamics of elongated swimmers in water (Boyer, Porez and Leroyer, 2010), as a library and as a node.",

@@ -12,7 +12,6 @@ setup(
     ],
     install_requires=["setuptools", "numpy", "scipy"],
     extras_require={"test": ["pytest"]},
-    zip_safe=True,
     maintainer="Eel simulator maintainers",
     maintainer_email="maintainers@eel-simulator.example.org",
     description="Gaits of elongated swimmers: closed-form curvature laws, and the node that publishes them.",

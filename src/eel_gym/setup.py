@@ -12,7 +12,6 @@ setup(
     ],
     install_requires=["setuptools", "gymnasium"],
     extras_require={"test": ["pytest"]},
-    zip_safe=False,
     maintainer="Eel simulator maintainers",
     maintainer_email="maintainers@eel-simulator.example.org",
     description="Environments of Gymnasium: an elongated swimmer that learns.",

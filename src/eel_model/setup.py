@@ -12,7 +12,6 @@ setup(
     ],
     install_requires=["setuptools", "numpy", "scipy"],
     extras_require={"test": ["pytest"]},
-    zip_safe=False,
     maintainer="Eel simulator maintainers",
     maintainer_email="maintainers@eel-simulator.example.org",
     description="What a run of an elongated swimmer is told: body, fins, robot, physics, flow of the water.",

@@ -12,7 +12,6 @@ setup(
     ],
     install_requires=["setuptools", "numpy"],
     extras_require={"test": ["pytest"]},
-    zip_safe=False,
     maintainer="Eel simulator maintainers",
     maintainer_email="maintainers@eel-simulator.example.org",
     description="What every node of the eel simulator shares: parameters, command line, callbacks, end.",

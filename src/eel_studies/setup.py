@@ -36,7 +36,6 @@ setup(
         "cma": ["cma"],
         "pictures": ["matplotlib"],
     },
-    zip_safe=False,
     maintainer="Eel simulator maintainers",
     maintainer_email="maintainers@eel-simulator.example.org",
     description="Studies of elongated swimmers: sweeps, optimisation, identification, gradients, steering, accuracy.",

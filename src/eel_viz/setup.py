@@ -12,7 +12,6 @@ setup(
     ],
     install_requires=["setuptools"],
     extras_require={"test": ["pytest"]},
-    zip_safe=True,
     maintainer="Eel simulator maintainers",
     maintainer_email="maintainers@eel-simulator.example.org",
     description="Shows and records a swimmer: every topic into Rerun or a rosbag2 file.",

@@ -16,6 +16,12 @@ _brief.maxlevel = 3
 _brief.maxlist = _brief.maxtuple = 8
 
 
+class WorkStopped(RuntimeError):
+    """A work that cannot go on, though its input was good. `exit_status`: of a command that ends by it."""
+
+    exit_status = 3
+
+
 def shown(value: Any) -> str:
     """`value` as Python writes it, in one line of at most `LONGEST` characters.
 

@@ -8,8 +8,7 @@ from pathlib import Path
 
 from eel_base.command.command_line import Parser, interruptible, one_line_warnings, print_to_stderr
 from eel_base.files.output_file import NotWritten, check_output, command_begins
-from eel_base.wording import shown
-from eel_base.work_stopped import WorkStopped
+from eel_base.wording import WorkStopped, shown
 
 Work = Callable[[argparse.Namespace], int | None]  # of a command: returns its exit status, None for 0
 

@@ -30,7 +30,8 @@ class Parser(argparse.ArgumentParser):
         )
 
     def parse_args(self, args: Iterable[str] | None = None, namespace: Any = None) -> Any:
-        write_on_any_terminal()
+        if hasattr(sys.stdout, "reconfigure"):  # an escape for what its encoding lacks, as on stderr, and no failure
+            sys.stdout.reconfigure(errors="backslashreplace")
         if COMPLETING in os.environ:
             import argcomplete
 
@@ -122,9 +123,3 @@ def check_seconds(argument: str, value: float | None) -> None:
     """`ValueError` that names the `argument`, unless its `value` [s] is positive or None."""
     if value is not None and not value > 0.0:
         raise ValueError(f"{argument} must be > 0 s, got {value:g}")
-
-
-def write_on_any_terminal() -> None:
-    """Let stdout write an escape for each character that its encoding lacks, as stderr does, instead of failing."""
-    if hasattr(sys.stdout, "reconfigure"):
-        sys.stdout.reconfigure(errors="backslashreplace")

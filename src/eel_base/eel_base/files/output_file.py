@@ -77,13 +77,10 @@ class Draft:
 
     def _made(self) -> Path:
         """The path of a new file. Another process, or a killed one, may have left a draft of the same name."""
-        path = part_of(self.name)
-        for number in itertools.count(2):
-            try:
-                path.open("xb").close()
+        for mark in itertools.chain(["part"], map("part-{}".format, itertools.count(2))):
+            with contextlib.suppress(FileExistsError):
+                (path := part_of(self.name, mark)).open("xb").close()
                 break
-            except FileExistsError:
-                path = part_of(self.name, f"part-{number}")
         return path
 
 
@@ -112,20 +109,14 @@ def written_as(name: str | os.PathLike[str]) -> Path:
     return _written_as.get(Path(name).absolute(), Path(name))
 
 
-def obstacle(name: str | os.PathLike[str]) -> str:
-    """The reason why the output `name` cannot be written; empty if it can. An older file of its kind is no obstacle."""
+def check_output(argument: str, name: str | os.PathLike[str]) -> None:
+    """`ValueError` that names the `argument` where the output `name` cannot be written. An older file of its kind is no
+    obstacle."""
     try:
         Draft(name).discard()
     except OSError as error:
-        return error.strerror or str(error)
-    return ""
-
-
-def check_output(argument: str, name: str | os.PathLike[str]) -> None:
-    """`ValueError` that names the `argument` where the output `name` cannot be written."""
-    problem = obstacle(name)
-    if problem:
-        raise ValueError(f"{argument} {shown(os.fspath(name))} cannot be written: {problem}")
+        reason = error.strerror or str(error)
+        raise ValueError(f"{argument} {shown(os.fspath(name))} cannot be written: {reason}") from None
 
 
 @contextlib.contextmanager

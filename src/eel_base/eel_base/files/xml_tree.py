@@ -52,9 +52,6 @@ def from_xml(text: bytes | str) -> Element:
         above[-1].children.append(element)
         above.append(element)
 
-    def end(tag: str) -> None:
-        above.pop()
-
     def characters(text: str) -> None:
         above[-1].text += text
 
@@ -62,7 +59,7 @@ def from_xml(text: bytes | str) -> Element:
         raise Misplaced(f"line {parser.CurrentLineNumber}", "a document type is not read")
 
     parser.buffer_text = True
-    parser.StartElementHandler, parser.EndElementHandler = start, end
+    parser.StartElementHandler, parser.EndElementHandler = start, lambda tag: above.pop()
     parser.CharacterDataHandler, parser.StartDoctypeDeclHandler = characters, refuse
     try:
         parser.Parse(text, True)

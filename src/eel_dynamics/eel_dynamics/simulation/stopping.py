@@ -4,8 +4,7 @@
 from typing import Any
 
 import numpy as np
-from eel_base.wording import shown
-from eel_base.work_stopped import WorkStopped
+from eel_base.wording import WorkStopped, shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 

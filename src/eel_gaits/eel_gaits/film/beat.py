@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from eel_gaits.film.film import Film
-from eel_gaits.film.kinematics import Kinematics, kinematics
+from eel_gaits.film.kinematics import Kinematics, harmonics, kinematics
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.spline import natural_spline
 from eel_gaits.laws.term import Term
@@ -56,7 +56,7 @@ class Beat:
 
     @property
     def most_harmonics(self) -> int:
-        """As many as the frames in a beat can tell."""
+        """As many as the frames in a beat can tell: fewer than half of their number."""
         return most_harmonics(self.film, self.period)
 
     @property
@@ -85,13 +85,14 @@ class Beat:
     def about(self) -> list[tuple[str, str]]:
         """What was read and how it was smoothed: names and sentences."""
         film, seen = self.film, self.measured
+        rigid = f", rigid up to {self.rigid:g} of the length" if self.rigid else ""
         kept = f"{len(self.others)} beats, {self.harmonics} harmonic{'s' if self.harmonics > 1 else ''} kept"
         periods = jackknife([each.period for each in self.others])
         return [
             ("film", f"{film.name}: {film.points.shape[1]} points, {len(film.time)} frames, {film.length:.4g} m long"),
             *(("repaired", note) for note in film.notes),
             ("beat", f"period {self.period:.4g} +- {float(periods):.2g} s (95 %), {kept}"),
-            ("along the body", f"splines through {self.knots} knots{self._rigid_part()}"),
+            ("along the body", f"splines through {self.knots} knots{rigid}"),
             ("fit", f"{self.share:.1%} of the variance, {self.predicted:.1%} predicted from the other beats; residual "
                     f"{1e3 * self.residual:.3g} mm (RMS), {self.residual / film.length:.2%} of the length; curvature "
                     f"+- {self.band:.1%} (95 %)"),
@@ -99,9 +100,6 @@ class Beat:
                             f"side to side, wave {seen.wavelength:.3f} L, slip {seen.slip:.2f}, Strouhal number "
                             f"{seen.strouhal:.3f}{'' if seen.ahead else '; it drifts tail first: flowing water?'}"),
         ]  # fmt: skip
-
-    def _rigid_part(self) -> str:
-        return f", rigid up to {self.rigid:g} of the length" if self.rigid else ""
 
 
 def beat_of(film: Film, *, harmonics: int | None = None, rigid: float = 0.0) -> Beat:
@@ -122,7 +120,8 @@ def beat_of(film: Film, *, harmonics: int | None = None, rigid: float = 0.0) -> 
                 "stand from head to tail; a swimmer that swims backward is read by --file"
             )
         note = "points reversed: the wave ran from the last to the first, and the first moved most"
-        return beat_of(film.reversed(note), harmonics=harmonics, rigid=rigid)
+        turned = film._replace(points=film.points[:, ::-1], notes=(*film.notes, note))
+        return beat_of(turned, harmonics=harmonics, rigid=rigid)
     return found
 
 
@@ -157,7 +156,7 @@ class _Fit:
         self.weight = np.diff(film.arc) / np.mean(np.diff(film.arc))  # an error of a point turns a short segment more
         self.mean = self._mean(angles)
         self.angles = self.weight * (angles - self.mean)  # (N, n - 1): no turn of the whole body is left
-        self.time = film.time - film.time[0]
+        self.time, self.all = film.time - film.time[0], np.ones(len(film.time), dtype=bool)
         self.power = float(np.sum((self.angles - self.angles.mean(axis=0)) ** 2))
         if self.power <= 1e-12 * self.angles.size:
             raise ValueError(f"{film.name}: the body does not bend")
@@ -186,39 +185,26 @@ class _Fit:
                 f"{self.film.name}: the motion does not repeat: at its best period, {self.period:.3g} s, the other "
                 f"beats predict {max(predicted, 0.0):.0%} of its variance. Motions that are not steady: --file"
             )
-        all_frames = np.ones(len(self.time), dtype=bool)
-        period = self._refined(self.period, order, all_frames)
-        found = self._beat(order, knots, period, all_frames, predicted)
-        others = []
-        for beat in range(self.beats[-1] + 1):
-            rest = self.beats != beat
-            others.append(self._beat(order, knots, self._refined(period, order, rest), rest, predicted))
+        period = self._refined(self.period, order, self.all)
+        found = self._beat(order, knots, period, self.all, predicted)
+        rests = [self.beats != beat for beat in range(self.beats[-1] + 1)]
+        others = [self._beat(order, knots, self._refined(period, order, rest), rest, predicted) for rest in rests]
         return replace(found, others=tuple(others))
 
     def _beat(self, order: int, knots: int, period: float, frames: np.ndarray, predicted: float) -> Beat:
         angles, curvature = self.bases[knots]
-        design = _in_time(self.time, self.time[-1], period, order)
+        design = self._in_time(period, order)
         found = _solved(design[frames], self.angles[frames], angles)
         fitted = design @ found @ angles.T
-        share = 1.0 - float(np.sum((fitted - self.angles)[frames] ** 2)) / max(
-            float(np.sum((self.angles - self.angles.mean(axis=0))[frames] ** 2)), 1e-300
-        )
-        return Beat(
-            film=self.film,
-            period=period,
-            harmonics=order,
-            knots=knots,
-            rigid=self.rigid,
-            curvature=found @ curvature,
-            share=share,
-            predicted=predicted,
-            residual=self._distance(fitted),
-        )
+        power = float(np.sum((self.angles - self.angles.mean(axis=0))[frames] ** 2))
+        share = 1.0 - float(np.sum((fitted - self.angles)[frames] ** 2)) / max(power, 1e-300)
+        fit = found @ curvature, share, predicted, self._distance(fitted)
+        return Beat(self.film, period, order, knots, self.rigid, *fit)
 
     def _errors(self, order: int, knots: int) -> np.ndarray:
         """Sums of squares by which each beat is missed by the fit of the others."""
         angles, _ = self.bases[knots]
-        design, found = _in_time(self.time, self.time[-1], self.period, order), []
+        design, found = self._in_time(self.period, order), []
         for beat in range(self.beats[-1] + 1):
             out = self.beats == beat
             guess = design[out] @ _solved(design[~out], self.angles[~out], angles) @ angles.T
@@ -249,8 +235,8 @@ class _Fit:
         periods = 1.0 / np.arange(1.5 / span, 1.0 / (LEAST_FRAMES * step), 0.1 / span)
         if not len(periods):
             raise ValueError(f"{self.film.name}: its frames are too few for a beat, {len(self.time)} in {span:.3g} s")
-        missed = [self._missed(period, 1, np.ones(len(self.time), dtype=bool)) for period in periods]
-        return self._refined(float(periods[int(np.argmin(missed))]), 1, np.ones(len(self.time), dtype=bool))
+        missed = [self._missed(period, 1, self.all) for period in periods]
+        return self._refined(float(periods[int(np.argmin(missed))]), 1, self.all)
 
     def _refined(self, period: float, order: int, frames: np.ndarray) -> float:
         from scipy.optimize import minimize_scalar
@@ -262,25 +248,22 @@ class _Fit:
         return float(found.x)
 
     def _missed(self, period: float, order: int, frames: np.ndarray) -> float:
-        design = _in_time(self.time[frames], self.time[-1], period, order)
-        values = self.angles[frames]
+        design, values = self._in_time(period, order)[frames], self.angles[frames]
         return float(np.sum((design @ np.linalg.lstsq(design, values, rcond=None)[0] - values) ** 2))
+
+    def _in_time(self, period: float, order: int) -> np.ndarray:
+        """1, cos and sin (N, 1 + 2 order) from the middle of the film on, where the phase is least uncertain."""
+        turns = 2.0 * math.pi / period * (self.time - 0.5 * self.time[-1])
+        return np.column_stack([np.ones_like(turns), *harmonics(turns, order)])
 
     def _distance(self, fitted: np.ndarray) -> float:
         """Root mean square distance [m] of the points from those of the `fitted` angles (N, n - 1)."""
         whole = fitted / self.weight + self.mean
         steps = np.diff(self.film.arc)[:, None] * np.stack((np.cos(whole), np.sin(whole)), axis=-1)
         points = np.concatenate((np.zeros((len(whole), 1, 2)), np.cumsum(steps, axis=1)), axis=1)
-        apart = (points - points.mean(axis=1, keepdims=True)) - (
-            self.film.points - self.film.points.mean(axis=1, keepdims=True)
-        )
+        here, there = (each - each.mean(axis=1, keepdims=True) for each in (points, self.film.points))
+        apart = here - there
         return float(np.sqrt(np.mean(np.sum(apart**2, axis=2))))
-
-
-def _in_time(time: np.ndarray, span: float, period: float, order: int) -> np.ndarray:
-    turns = 2.0 * math.pi / period * (time - 0.5 * span)  # from the middle, where the phase is least uncertain
-    columns = [np.ones_like(time), *(f(h * turns) for h in range(1, order + 1) for f in (np.cos, np.sin))]
-    return np.column_stack(columns)
 
 
 def _solved(design: np.ndarray, values: np.ndarray, along: np.ndarray) -> np.ndarray:

@@ -16,6 +16,7 @@ from eel_base.quantity import number, positive
 from eel_base.wording import shown
 
 from eel_gaits.film.forms import UNITS, Tracks, read_tracks
+from eel_gaits.film.kinematics import arc_of
 
 FEWEST_POINTS, FEWEST_FRAMES = 5, 16
 MISSING = 0.25  # part of a frame's points that may be missing
@@ -36,18 +37,13 @@ class Film(NamedTuple):
 
     @property
     def arc(self) -> np.ndarray:
-        """(n,) m, mean arc lengths of the points, by their distances."""
-        steps = np.linalg.norm(np.diff(self.points, axis=1), axis=2).mean(axis=0)
-        return np.concatenate(([0.0], np.cumsum(steps)))
+        """(n,) m, as of `arc_of`."""
+        return arc_of(self.points)
 
     @property
     def length(self) -> float:
         """[m] from the first point to the last, along the body."""
         return float(self.arc[-1])
-
-    def reversed(self, note: str) -> "Film":
-        """The points in the other order."""
-        return self._replace(points=self.points[:, ::-1], notes=(*self.notes, note))
 
 
 def read_film(
@@ -121,6 +117,9 @@ def _repaired(name: str, time: np.ndarray, points: np.ndarray, notes: list[str])
             notes.append(f"{np.sum(~frames)} of {len(frames)} frames left out: {why}")
             time, points = time[frames], points[frames]
 
+    def in_brackets() -> str:
+        return f" ({'; '.join(notes)})" if notes else ""
+
     keep(np.any(np.isfinite(points), axis=(1, 2)), "empty")
     there = np.all(np.isfinite(points), axis=2)
     rare = np.flatnonzero(there.mean(axis=0) < OFTEN)
@@ -130,7 +129,7 @@ def _repaired(name: str, time: np.ndarray, points: np.ndarray, notes: list[str])
     points = _apart(points, notes)
     if points.shape[1] < FEWEST_POINTS or len(time) < FEWEST_FRAMES:
         rule = f"{FEWEST_POINTS} points in {FEWEST_FRAMES} frames or more"
-        raise ValueError(f"there must be {rule}, got {points.shape[1]} in {len(time)}{_told(notes)}")
+        raise ValueError(f"there must be {rule}, got {points.shape[1]} in {len(time)}{in_brackets()}")
     jumped = _jumps(points)
     points = np.where(jumped[..., None], np.nan, points)
     missing = ~np.all(np.isfinite(points), axis=2)
@@ -139,7 +138,7 @@ def _repaired(name: str, time: np.ndarray, points: np.ndarray, notes: list[str])
     keep(~(missing[:, 0] | missing[:, -1]), "an end of the body is missing")
     keep(np.mean(~np.all(np.isfinite(points), axis=2), axis=1) <= MISSING, "more than a quarter of the points missing")
     if len(time) < FEWEST_FRAMES:
-        raise ValueError(f"there must be {FEWEST_FRAMES} frames or more, got {len(time)}{_told(notes)}")
+        raise ValueError(f"there must be {FEWEST_FRAMES} frames or more, got {len(time)}{in_brackets()}")
     missing = ~np.all(np.isfinite(points), axis=2)
     if np.any(missing):
         notes.append(f"{np.sum(missing)} of {missing.size} points filled by a cubic along the body")
@@ -158,10 +157,6 @@ def _apart(points: np.ndarray, notes: list[str]) -> np.ndarray:
     if out:
         notes.append(f"points left out, as they lie on the one ahead: {', '.join(out)}")
     return points[:, kept]
-
-
-def _told(notes: list[str]) -> str:
-    return f" ({'; '.join(notes)})" if notes else ""
 
 
 def _jumps(points: np.ndarray) -> np.ndarray:

@@ -65,8 +65,16 @@ class Cells(NamedTuple):
 
     def check_rising(self, time: np.ndarray, rows: np.ndarray) -> None:
         """`ValueError` where the `time` of these rows does not rise."""
-        if len(back := np.flatnonzero(np.diff(time[rows]) <= 0.0)):
-            raise self.error(rows[back[0] + 1], f"time must rise, {_twice(time[rows], back[0])}")
+        if fall := _fall_of(time[rows]):
+            raise self.error(rows[fall[0]], fall[1])
+
+
+def _fall_of(time: np.ndarray) -> tuple[int, str] | None:
+    """The first place at which `time` does not rise, and an error's text."""
+    if not len(back := np.flatnonzero(np.diff(time) <= 0.0)):
+        return None
+    before, after = time[back[0]], time[back[0] + 1]
+    return back[0] + 1, f"time must rise, got {after:g} after {before:g}: two animals in one file?"
 
 
 def read_tracks(path: Path) -> Tracks:
@@ -126,10 +134,6 @@ def _check_frames(cells: Cells, starts: np.ndarray) -> None:
             raise cells.error(starts[frame], "its points are in another order than in the first frame")
 
 
-def _twice(time: np.ndarray, place: int) -> str:
-    return f"got {time[place + 1]:g} after {time[place]:g}: two animals in one file?"
-
-
 def _of_deeplabcut(cells: Cells) -> Tracks:
     names = {row[0].strip(): row[1:] for _, row in cells.rows[:3]}
     names = {name: row for name, row in names.items() if name in ("individuals", "bodyparts", "coords")}
@@ -160,8 +164,8 @@ def _of_parts(frames: np.ndarray, names: list[tuple[str, str, str]], values: np.
                 points[bad, place] = np.nan
                 unlikely += int(bad.sum())
         animals[animal] = points
-    if len(back := np.flatnonzero(np.diff(frames) <= 0.0)):
-        raise ValueError(f"time must rise, {_twice(frames, back[0])}")
+    if fall := _fall_of(frames):
+        raise ValueError(fall[1])
     notes = (f"{unlikely} points of a likelihood below {LIKELY} count as missing",) if unlikely else ()
     return Tracks(frames, animals, "px", True, notes)
 

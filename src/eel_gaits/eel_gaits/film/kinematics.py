@@ -43,15 +43,22 @@ class Kinematics:
         return float(self.excursion[-1]) / self.stride if self.stride else math.inf
 
 
+def arc_of(points: np.ndarray) -> np.ndarray:
+    """Mean arc lengths (n,) [m] of the points (N, n, 2) [m], by their distances."""
+    steps = np.linalg.norm(np.diff(points, axis=1), axis=2).mean(axis=0)
+    return np.concatenate(([0.0], np.cumsum(steps)))
+
+
 def kinematics(time: np.ndarray, points: np.ndarray, period: float) -> Kinematics:
     """Figures of the points (N, n, 2) [m] from head to tail at `time` (N,) [s], which beat with a `period` [s]."""
     time = time - time.mean()
-    arc = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=1), axis=2).mean(axis=0))))
+    arc = arc_of(points)
     length = float(arc[-1])
     turns = 2.0 * math.pi / period * time
-    beat = np.column_stack([f(h * turns) for h in range(1, HARMONICS + 1) for f in (np.cos, np.sin)])
     powers = np.column_stack((np.ones_like(time), time, time**2))
-    found = np.linalg.lstsq(np.column_stack((powers, beat)), points.mean(axis=1), rcond=None)[0][:3]
+    found = np.linalg.lstsq(np.column_stack((powers, *harmonics(turns, HARMONICS))), points.mean(axis=1), rcond=None)[
+        0
+    ][:3]
     velocity = found[1] + 2.0 * time[:, None] * found[2]
     speed = float(np.mean(np.linalg.norm(velocity, axis=1)))
     axis = (points[:, 0] - points[:, -1]).mean(axis=0)
@@ -76,8 +83,13 @@ def kinematics(time: np.ndarray, points: np.ndarray, period: float) -> Kinematic
     )
 
 
+def harmonics(turns: np.ndarray, order: int) -> list[np.ndarray]:
+    """cos and sin (N,) of 1 to `order` times the `turns` (N,) [rad]."""
+    return [f(h * turns) for h in range(1, order + 1) for f in (np.cos, np.sin)]
+
+
 def _harmonic(turns: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Complex amplitudes A (n,) of the `values` (N, n) = mean + trend + Re(A exp(i turns)) + a second harmonic."""
-    columns = [np.ones_like(turns), turns, *(f(h * turns) for h in (1, 2) for f in (np.cos, np.sin))]
+    columns = [np.ones_like(turns), turns, *harmonics(turns, HARMONICS)]
     found = np.linalg.lstsq(np.column_stack(columns), values, rcond=None)[0]
     return np.asarray(found[2] - 1j * found[3])

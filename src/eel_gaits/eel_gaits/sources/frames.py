@@ -35,11 +35,6 @@ class Frames(NamedTuple):
         last, count = first if last is None else last, self.fields.shape[1]
         return self.table.error(text, first * count, (last + 1) * count - 1)
 
-    def check_gaps(self, motion: np.ndarray) -> None:
-        """`ValueError` for a gap longer than a quarter of the fastest period in `motion` (N, m)."""
-        if gap := long_gap(self.time, motion):
-            raise self.error(gap[1], gap[0], gap[0] + 1)
-
 
 def frames_of(table: Table, names: tuple[str, ...]) -> Frames:
     """The frames of a table with the columns `time`, `names` and, if it has it, `arc_length`.
@@ -136,7 +131,8 @@ def law_of_frames(
         degrees.append(found.degrees)
     smoothing = "not smoothed"
     if raw is not None:
-        frames.check_gaps(values[:, :, 0].reshape(len(rows), -1))
+        if gap := long_gap(time, values[:, :, 0].reshape(len(rows), -1)):
+            raise frames.error(gap[1], gap[0], gap[0] + 1)
         residual = np.sqrt(np.mean((values[:, :, 0] - rows) ** 2))
         left = f"{np.mean(degrees):.0f} of {len(time)}" if degrees else "none"
         smoothing = (

@@ -154,7 +154,10 @@ def _joint_columns(head: list[str], columns: str) -> list[int]:
             found = list(range(int(span[1]) - 1, int(span[2])))
         else:
             found = [
-                index for part in columns.split(",") for index, name in enumerate(head) if _fits(part, name, index)
+                index
+                for part in columns.split(",")
+                for index, name in enumerate(head)
+                if fnmatch.fnmatchcase(name, part) or part == name or (part.isdigit() and int(part) == index + 1)
             ]
         if not found or max(found) >= len(head) or min(found) < 0 or len(set(found)) < len(found):
             raise ValueError(f"columns must name joints among the {len(head)} of the file, got {shown(columns)}")
@@ -164,10 +167,6 @@ def _joint_columns(head: list[str], columns: str) -> list[int]:
         if len(marked) >= FEWEST_JOINTS:
             return [index for _, index in sorted(marked)]
     raise ValueError(f"its joints are not plain from {shown(head)}: give --columns, such as 8-13, or names")
-
-
-def _fits(part: str, name: str, index: int) -> bool:
-    return fnmatch.fnmatchcase(name, part) or part == name or (part.isdigit() and int(part) == index + 1)
 
 
 def _time(head: list[str], rows: np.ndarray) -> np.ndarray:

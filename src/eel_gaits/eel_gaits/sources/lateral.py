@@ -13,6 +13,7 @@ from eel_base.quantity import numbers
 from eel_base.wording import shown
 
 from eel_gaits.laws.midline import curvature_of_lateral
+from eel_gaits.sources.sampled_law import crowded
 
 POINTS = 129  # along the body, at which h is evaluated
 STEEPEST = 0.99  # of a midline's slope
@@ -26,7 +27,7 @@ class LateralMidline:
 
     def __init__(self, displacement: Callable[..., Any], length: float = 1.0) -> None:
         self._displacement, self.length = displacement, float(length)
-        self._x = 0.5 * self.length * (1.0 - np.cos(np.linspace(0.0, np.pi, POINTS)))
+        self._x = crowded(POINTS, self.length)
 
     def curvature(self, time: float, x: np.ndarray) -> np.ndarray:
         """Yaw curvature (n,) [rad/m] at `time` [s] and the points `x` (n,) [m]: a function for `eel_gaits.sampled`."""

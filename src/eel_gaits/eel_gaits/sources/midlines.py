@@ -48,7 +48,12 @@ class Midlines:
         """The law of the midlines, smoothed by generalised cross-validation; not `smooth`: through all points."""
         fitted = SmoothedFrames(self.frames, self.arc, smooth, "mm", 1e3)
         part = self._fitting(fitted) / self.length
-        self._check_upright(fitted)
+        if self.position.shape[2] == 3:
+            tangent = fitted.at(self.arc[:1], 1)[:, 0]
+            upward = np.abs(tangent[:, 2]) / np.linalg.norm(tangent, axis=1)
+            if np.max(upward) > UPRIGHT:
+                text = "the head must not point straight up or down: its roll is not known then"
+                raise self.frames.error(text, int(np.argmax(upward)))
 
         def curvature(x: np.ndarray) -> np.ndarray:
             place = x / self.length * self.arc[-1]
@@ -74,15 +79,6 @@ class Midlines:
         if abs(lengths[worst] - mean) > 2.0 * FITTING * mean:
             raise self.frames.error(f"a midline of {lengths[worst]:.4g} m, the others have {mean:.4g} m", worst)
         return mean
-
-    def _check_upright(self, fitted: SmoothedFrames) -> None:
-        if self.position.shape[2] == 3:
-            tangent = fitted.at(self.arc[:1], 1)[:, 0]
-            upward = np.abs(tangent[:, 2]) / np.linalg.norm(tangent, axis=1)
-            if np.max(upward) > UPRIGHT:
-                raise self.frames.error(
-                    "the head must not point straight up or down: its roll is not known then", int(np.argmax(upward))
-                )
 
 
 def curvature_of(first: np.ndarray, second: np.ndarray) -> np.ndarray:

@@ -7,6 +7,9 @@ The columns tell what a file holds; all have `time` [s]:
     arc_length [m], yaw, perhaps pitch      measured curvature [rad/m], likewise
     yaw_1, yaw_2 ..., pitch_1 ...           joint angles [rad], a row for each instant
 
+Joint j of n stands for the segment (j - 1) l/n to j l/n, as in `Run.actuators`. Its angle is the integral of the
+curvature over its segment. So the curvature is the derivative of the spline through the sums of the angles.
+
 yaw > 0 bends the tail to the right, pitch > 0 down, as in messages. x, y, z are right-handed axes of the laboratory
 with z up; which way the swimmer heads in them does not matter.
 An .npz holds the same columns, or arrays (N, n) for N instants and n points; or `time`, `x` and `values` of a
@@ -14,6 +17,8 @@ An .npz holds the same columns, or arrays (N, n) for N instants and n points; or
 """
 
 import os
+import re
+from collections.abc import Iterable
 from functools import partial
 from pathlib import Path
 
@@ -24,14 +29,15 @@ from eel_base.files.output_file import replacing
 from eel_base.quantity import positive
 from eel_base.wording import shown
 
-from eel_gaits.sources.frames import SmoothedFrames, frames_of, law_of_frames
-from eel_gaits.sources.joint_angles import joint_columns, law_of_joints
+from eel_gaits.sources.frames import Frames, SmoothedFrames, check_rising, frames_of, law_of_frames
 from eel_gaits.sources.midlines import Midlines
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_gaits.sources.tables import Table, read_table
 
 LAW = {"time", "x", "values"}  # arrays of a law's rows
 SUFFIXES = ".csv", ".npz"
+COLUMN = re.compile(r"(pitch|yaw)_([1-9][0-9]*)")  # of a joint
+FEWEST_JOINTS = 3  # in an axis
 FITTING = 1e-6  # part of the body's length by which a law's rows may be shorter or longer
 
 
@@ -64,7 +70,7 @@ def _motion(path: Path, length: float, scale: float, smooth: bool, name: str) ->
     table = read_table(path)
     kind = kind_of(table)
     if kind == "joints":
-        return law_of_joints(table, length, name, smooth)
+        return _law_of_joints(table, length, name, smooth)
     if kind == "curvature":
         return _law_of_curvature(table, length, scale, name, smooth)
     return Midlines(table, length, scale).law(name, smooth)
@@ -122,6 +128,51 @@ def _law_of_curvature(table: Table, length: float, scale: float, name: str, smoo
     raw = partial(_law_of_curvature, table, length, scale, name, smooth=False) if smooth else None
     kind = f"curvature at {len(arc)} points"
     return law_of_frames(frames, curvature, length, name=name, kind=kind, along=fitted.about, raw=raw)
+
+
+def joint_columns(names: Iterable[str]) -> dict[str, list[str]]:
+    """The columns of joints among `names`, of each axis in their order."""
+    found: dict[str, dict[int, str]] = {}
+    for name in names:
+        if match := COLUMN.fullmatch(name):
+            found.setdefault(match[1], {})[int(match[2])] = name
+    return {axis: [places[place] for place in sorted(places)] for axis, places in found.items()}
+
+
+def _law_of_joints(table: Table, length: float, name: str, smooth: bool) -> SampledLaw:
+    """The law of the joint angles [rad] in the columns yaw_1, yaw_2, ... and pitch_1, ... of `table`, over time [s].
+
+    length [m]: of the body. The angles are smoothed in time by generalised cross-validation, if `smooth`. `ValueError`
+    names columns and rows that do not fit.
+    """
+    from scipy.interpolate import make_interp_spline
+
+    axes = joint_columns(table.columns)
+    for axis, names in axes.items():
+        numbers = [int(each.rpartition("_")[2]) for each in names]
+        if numbers != list(range(1, len(names) + 1)) or len(names) < FEWEST_JOINTS:
+            raise table.error(
+                f"joints of {axis} must be {axis}_1 to {axis}_{max(FEWEST_JOINTS, len(names))} without gaps, "
+                f"got {shown(names)}"
+            )
+    columns = [name for names in axes.values() for name in names]
+    table.check_finite(("time", *columns))
+    time = table.columns["time"]
+    check_rising(table, time, np.arange(len(time)))
+    angles = {axis: np.stack([table.columns[each] for each in names]) for axis, names in axes.items()}
+    splines = {}
+    for axis, each in angles.items():
+        sums = np.concatenate((np.zeros((1, len(time))), np.cumsum(each, axis=0)))  # at the ends of the segments
+        ends = np.linspace(0.0, length, len(sums))
+        splines[axis] = make_interp_spline(ends, sums, k=5 if len(each) >= 5 else 3)
+    frames = Frames(table, time - time[0], None, time[:, None, None])
+
+    def curvature(x: np.ndarray) -> np.ndarray:
+        flat = np.zeros((len(time), len(x)))
+        return np.stack([splines[axis](x, 1).T if axis in splines else flat for axis in ("pitch", "yaw")], axis=1)
+
+    raw = partial(_law_of_joints, table, length, name, smooth=False) if smooth else None
+    return law_of_frames(frames, curvature, length, name=name, kind=f"angles of {len(columns)} joints", raw=raw)
 
 
 def _rows(path: Path, length: float, name: str) -> SampledLaw | None:

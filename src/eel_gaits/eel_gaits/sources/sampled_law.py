@@ -130,15 +130,8 @@ class SampledLaw:
         return SampledLaw(self.time[rows], self.x[points], values, name=self.name, transition=self.transition)
 
     def curvature(self, time: float, x: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Curvature, its rate and its acceleration at one time, as `Law.curvature`. At rest beyond the last row.
-
-        Args:
-            time: [s], the law's own time.
-            x: [m], shape (M,), arc length from the nose.
-
-        Returns:
-            value [rad/m], rate [rad/m/s], acceleration [rad/m/s^2], each of shape (M, 3), in section axes.
-        """
+        """Curvature, its rate and its acceleration at `time` [s] and `x` (M,) [m], three arrays (M, 3) as of
+        `Law.curvature`. At rest beyond the last row."""
         x, time = np.atleast_1d(numbers("x", x)), number("time", time)
         inside = min(max(time, 0.0), self.duration)
         row = min(bisect_right(self.time, inside) - 1, len(self.time) - 2)

@@ -20,8 +20,7 @@ from typing import Any
 import numpy as np
 from eel_base.command.progress import progress_of
 from eel_base.quantity import positive
-from eel_base.wording import one_line, shown
-from eel_base.work_stopped import WorkStopped
+from eel_base.wording import WorkStopped, one_line, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import checked_measures, checked_point, described
