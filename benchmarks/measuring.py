@@ -7,6 +7,7 @@ ROS domain of their own, other codes in an environment of their own with pinned 
 
 import contextlib
 import json
+import multiprocessing
 import os
 import statistics
 import subprocess
@@ -52,6 +53,32 @@ def times_in_turn(
 def median_ratio(slow: list[float], fast: list[float]) -> float:
     """Median over the turns of how many times longer `slow` took than `fast`."""
     return statistics.median(a / b for a, b in zip(slow, fast, strict=True))
+
+
+def two_processes_by_one(action: Action, repeats: int = 5) -> float:
+    """How many times as much of `action` two processes do as one, by the least wall times: the most that two threads
+    can gain on this machine. They are forks of this process; one of them acts alone in turn with both."""
+    forking = multiprocessing.get_context("fork")
+    barrier, times = forking.Barrier(2), forking.SimpleQueue()
+
+    def act(first: bool) -> None:
+        action()
+        for alone in [True, False] * repeats:
+            barrier.wait()
+            start = time.perf_counter()
+            if first or not alone:
+                action()
+            barrier.wait()
+            if first:
+                times.put(time.perf_counter() - start)
+
+    processes = [forking.Process(target=act, args=(first,)) for first in (True, False)]
+    for process in processes:
+        process.start()
+    found = [times.get() for _ in range(2 * repeats)]
+    for process in processes:
+        process.join()
+    return 2.0 * min(found[::2]) / min(found[1::2])
 
 
 def swimming(law: Law, scene: Scene, resolution: float = 13.0, kinks: str = "all") -> Simulation:
