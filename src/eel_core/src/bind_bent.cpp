@@ -156,7 +156,6 @@ class PyBentMarch : public BoundMarch<BentMarch> {
         const Profiles profiles = profiles_for(into, 1, wrench, load);
         row_into.check_size(march_.row().size(), "row");
         const Driven in_use(*this);
-        const py::gil_scoped_release unlocked;
         return march_.observe(profiles, into.data(), 0, row_into.data());
     }
     std::optional<std::size_t> singular_mode()

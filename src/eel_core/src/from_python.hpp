@@ -80,10 +80,13 @@ inline Quaternion<double> orientation_from(const py::handle& object)
     const auto q = row_from<4>(object, "orientation");
     return half_turn(Quaternion<double>{q[0], q[1], q[2], q[3]});
 }
+inline Twist<Space, double> twist_of(const double* v)
+{
+    return half_turn(Twist<Space, double>{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
+}
 inline Twist<Space, double> twist_from(const py::handle& object, const std::string& name)
 {
-    const auto v = row_from<6>(object, name);
-    return half_turn(Twist<Space, double>{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
+    return twist_of(row_from<6>(object, name).data());
 }
 inline State state_from(const py::handle& object)
 {

@@ -184,7 +184,6 @@ class PyMarch : public BoundMarch<March> {
         const Numbers into(whole, "whole", true);
         const Profiles profiles = profiles_for(into, 1, wrench, load);
         const Driven in_use(*this);
-        const py::gil_scoped_release unlocked;
         return march_.observe(Observer(march_.swimmer(), profiles, into.data()), 0);
     }
 
@@ -357,15 +356,18 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
             [](Instant<Space>& instant, const LawOnGrid& law, const py::object& times, const py::object& twists,
                const py::object& powers, const py::object& current, std::shared_ptr<Flow> flow,
                const py::object& poses) {
-                const Numbers at(times, "times"), into(powers, "powers", true), heads(poses, "poses");
+                const Numbers at(times, "times"), motion(twists, "twists"), into(powers, "powers", true),
+                    heads(poses, "poses");
+                motion.check_size(6 * at.size(), "twists");
                 into.check_size(4 * at.size(), "powers");
                 heads.check_size(7 * at.size(), "poses");
                 const Water water = water_from(current, std::move(flow));
+                const py::gil_scoped_release unlocked;
                 for (std::size_t k = 0; k < at.size(); ++k) {
                     State y{};
                     std::copy_n(heads.data() + 7 * k, 7, y.begin());
-                    std::ranges::copy(instant.drag_powers(law, at.data()[k], twist_from(twists[py::int_(k)], "twists"),
-                                                          water, half_turn(y)),
+                    const auto twist = twist_of(motion.data() + 6 * k);
+                    std::ranges::copy(instant.drag_powers(law, at.data()[k], twist, water, half_turn(y)),
                                       into.data() + 4 * k);
                 }
             },

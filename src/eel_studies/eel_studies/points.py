@@ -28,9 +28,13 @@ from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import measures_of
 from eel_dynamics.batches.batch import Batch
-from eel_dynamics.batches.simulate_batch import simulate_batch
+from eel_dynamics.batches.simulate_batch import simulate_batch, swim_of
+from eel_dynamics.runs.motions import law_from
 from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.settled_duration import duration_of
 from eel_dynamics.runs.swim import Swim
+from eel_dynamics.runs.swim_request import SwimRequest
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_gaits.gaits.registry import find
 from eel_gaits.laws.law import Law
 from eel_model.body.body import MASSES, NUMBERS, Body, checked_body
@@ -96,6 +100,19 @@ def batch_of_points(
         progress=progress,
         most_evaluations=how.most_evaluations,
     )
+
+
+def run_of_point(point: Swim, how: SwimSettings) -> Run:
+    """Simulate one `point`. `SimulationStopped` where it does not come to its end."""
+    swimmer = point.body, point.scene, point.accuracy, how.stations, *point.start, point.flow, point.robot, point.fins
+    setup = SimulationSetup.of(*swimmer, how.most_evaluations)
+    seconds = duration_of(how.duration, [(point.law, setup)])
+    law = law_from(point.law, seconds, setup.body.length)
+    request = SwimRequest.of(Run, law, setup, seconds, how.sample_period, load=False)
+    swim = swim_of(request.to_refine() if how.estimate else request, how.estimate)
+    if swim.stopped is not None:
+        raise swim.stopped
+    return swim.run
 
 
 def base_point(

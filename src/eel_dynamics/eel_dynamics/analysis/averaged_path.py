@@ -49,14 +49,11 @@ class AveragedPath:
             apart = window.tail(time) - np.outer((time - time[0]) / period, chord)
             way = self._way(window.start, window.end)
             return _width(_across(apart, np.broadcast_to(way, apart.shape), moves))
-        total, half = window.tail.antiderivative(), 0.5 * period
-        widths = []
-        for beat in range(window.periods - 1):
-            start = window.start + half + beat * period
-            time = window.instants(start, start + period)
-            apart = window.tail(time) - (total(time + half) - total(time - half)) / period
-            widths.append(_width(_across(apart, self._way(time - half, time + half), moves)))
-        return float(np.mean(widths))
+        half = 0.5 * period
+        starts = window.start + half + np.arange(window.periods - 1) * period
+        time = np.linspace(starts, starts + period, len(window.instants(0.0, period)), axis=1)  # a row for each beat
+        apart = window.tail(time) - window.averaged_tail(time)
+        return float(np.mean([_width(beat) for beat in _across(apart, self._way(time - half, time + half), moves)]))
 
     def _way(self, start, end) -> np.ndarray:
         """Displacement (..., 3) [m] of the centre of mass over the water, from the times `start` to `end` (...) [s]."""
@@ -64,11 +61,11 @@ class AveragedPath:
 
 
 def _across(apart: np.ndarray, way: np.ndarray, moves: bool) -> np.ndarray:
-    """`apart` (n, 3) [m] less its part along `way` (n, 3)."""
+    """`apart` (..., 3) [m] less its part along `way` (..., 3)."""
     if not moves:
         return apart
-    along = way / np.linalg.norm(way, axis=1, keepdims=True)
-    return apart - np.sum(apart * along, axis=1, keepdims=True) * along
+    along = way / np.linalg.norm(way, axis=-1, keepdims=True)
+    return apart - np.sum(apart * along, axis=-1, keepdims=True) * along
 
 
 def _width(points: np.ndarray) -> float:

@@ -27,30 +27,31 @@ def strength(term: Term, x: np.ndarray, time: np.ndarray) -> float:
     return float(np.max(np.abs(term.amplitude_at(x))) * np.max(np.abs(term.envelope_at(time)[0])))
 
 
-def strongest(law: Law | SampledLaw, x, time, *, axes=("yaw", "pitch"), travelling: bool = False) -> Any:
-    """The periodic term of greatest curvature, yaw before pitch whatever their strength; None where there is none.
+def by_strength(law: Law | SampledLaw, x: np.ndarray, time: np.ndarray) -> list[tuple[Term, float]]:
+    """The periodic terms of `law` and their greatest curvatures [rad/m], the strongest first.
 
-    x (M,) [m] and time (T,) [s]: where and when strength is measured. travelling: waves with a wavelength only.
+    Yaw comes before pitch whatever their strength, and what does not bend the body last. x (M,) [m] and time (T,) [s]:
+    where and when strength is measured.
     """
-    found = []
-    for axis in axes:
-        terms = [term for term in law.waves if term.axis == axis and (term.wavelength or not travelling)]
-        if terms:
-            found.append(max(terms, key=lambda term: strength(term, x, time)))
-    return next((term for term in found if strength(term, x, time) > 0.0), found[0] if found else None)
+    found = [(term, strength(term, x, time)) for term in law.waves]
+    return sorted(found, key=lambda each: (not each[1] > 0.0, each[0].axis != "yaw", -each[1]))
 
 
-def common_period(law: Law | SampledLaw, x, time) -> float:
+def common_period(law: Law | SampledLaw, x: np.ndarray, time: np.ndarray) -> float:
     """Time [s] after which the gait repeats: the least whole multiple of the strongest wave's period that is one of
     every other term's too. `ValueError` for a law without period, or where that multiple is above 12."""
-    first = strongest(law, x, time)
-    if first is None:
+    return _common_period(law, by_strength(law, x, time))
+
+
+def _common_period(law: Law | SampledLaw, waves: list[tuple[Term, float]]) -> float:
+    if not waves:
         raise ValueError(f"law {shown(law.name)} has no periodic term: it has no period to average over")
-    periods = {first.period} | {term.period for term in law.waves if strength(term, x, time) > 0.0}
+    first = waves[0][0].period
+    periods = {first} | {term.period for term, curvature in waves if curvature > 0.0}
     for multiple in range(1, LONGEST_COMMON + 1):
-        ratios = [multiple * first.period / period for period in periods]
+        ratios = [multiple * first / period for period in periods]
         if all(abs(ratio - round(ratio)) < 1e-9 * ratio and round(ratio) for ratio in ratios):
-            return multiple * first.period
+            return multiple * first
     listed = ", ".join(f"{period:g}" for period in sorted(periods))
     raise ValueError(
         f"law {shown(law.name)} does not repeat within {LONGEST_COMMON} periods: it has periods {listed} s"
@@ -68,9 +69,9 @@ class AveragingWindow:
     def __init__(self, run, periods: int | None = None):
         time = np.asarray(run.time, dtype=float)
         x, later = np.linspace(0.0, run.body.length, PLACES), time[time >= 0.5 * (time[0] + time[-1])]
-        self.run, self.period = run, common_period(run.law, x, later)
-        self.wave = strongest(run.law, x, later)
-        self.travelling_wave = strongest(run.law, x, later, axes=("yaw",), travelling=True)
+        waves = by_strength(run.law, x, later)
+        self.run, self.period, self.wave = run, _common_period(run.law, waves), waves[0][0]
+        self.travelling_wave = next((term for term, _ in waves if term.axis == "yaw" and term.wavelength), None)
         whole = math.floor((time[-1] - time[0]) / self.period + WHOLE)
         if whole < 1:
             raise ValueError(f"run must hold a whole period of {self.period:g} s, got {time[-1] - time[0]:g} s")
@@ -132,14 +133,12 @@ class AveragingWindow:
 
         return CubicSpline(self.run.time, values, axis=0)
 
-    @cached_property
-    def center_of_mass(self):
-        """Spline of the centre of mass over the water, (3,) m."""
-        return self.spline(self.run.center_of_mass - self._drift)
+    def center_of_mass(self, time: Any) -> np.ndarray:
+        """The centre of mass over the water (..., 3) [m] at the times (...) [s]."""
+        return np.asarray(self._paths(time))[..., 0, :]
 
-    @cached_property
-    def tail(self):
-        """Spline of the tail's displacement relative to the water since the start, (3,) m.
+    def tail(self, time: Any) -> np.ndarray:
+        """The tail's displacement (..., 3) [m] relative to the water since the start, at the times (...) [s].
 
         `ValueError` if the last station is not the tail.
         """
@@ -148,10 +147,16 @@ class AveragingWindow:
             raise ValueError(
                 f"run must have a station at the tail, X = {length:g} m, got the last at {self.run.x[-1]:g} m"
             )
-        way = self.run.backbone[:, -1] - self._drift
-        return self.spline(way - way[0])
+        return np.asarray(self._paths(time))[..., 1, :]
 
-    @property
-    def _drift(self) -> np.ndarray:
-        """Displacement of the water since t = 0, (T, 3) [m]."""
-        return np.outer(self.run.time, self.run.scene.current)
+    def averaged_tail(self, time: np.ndarray) -> np.ndarray:
+        """The same, averaged over the period around the times (...) [s]."""
+        total, half = self._paths.antiderivative(), 0.5 * self.period
+        return np.asarray(total(time + half) - total(time - half))[..., 1, :] / self.period
+
+    @cached_property
+    def _paths(self):
+        """Spline of the centre of mass, and of the last station's displacement since the start, over the water."""
+        drift = np.outer(self.run.time, self.run.scene.current)
+        last = self.run.backbone[:, -1] - drift
+        return self.spline(np.stack((self.run.center_of_mass - drift, last - last[0]), axis=1))

@@ -13,13 +13,16 @@ recorded elsewhere its own: those of power may then be 2 % off at 20 samples in 
 import numpy as np
 from eel_model.axes import REP103
 
-from eel_dynamics.simulation.simulation import Simulation
+from eel_dynamics.simulation.energy import WORKS
+from eel_dynamics.simulation.march import March
+from eel_dynamics.simulation.observations import Observations
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
 
 DEGREE = 5
 BETWEEN = 8  # instants in a sample period, among which the greatest is looked for; a parabola then gives the peak
 FINER, MOST_SAMPLES = 10, 10_000  # samples in a sample period, and in all, of a run that is swum anew for its peaks
-AT_ONCE = 64  # sample periods that are looked at together
-NEAR = 0.7  # of the greatest sample: a station whose samples stay below does not hold the peak between samples
+AT_ONCE = 512  # of these instants that are looked at together
+NEAR = 0.7  # of the greatest sample: stations and samples that stay below are not beside the peak between samples
 AROUND = 1  # sample periods, and distances of stations, to either side of the peak that are swum anew
 FINE = 12  # instants and stations in each of these
 BESIDE = 6  # of them, to either side of the greatest, through which splines give the peak
@@ -30,22 +33,28 @@ def torque_size(torque: np.ndarray) -> np.ndarray:
     return np.sqrt(np.einsum("...k,...k->...", torque, torque))
 
 
-def peaks(x: np.ndarray, values: np.ndarray, size=np.abs, start=-np.inf, end=np.inf) -> tuple[np.ndarray, np.ndarray]:
+def peaks(
+    x: np.ndarray, values: np.ndarray, size=np.abs, start=-np.inf, end=np.inf, near: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     """The greatest `size` of a spline through `values` (T, ...) at `x` (T,), and where: from `start` to `end`.
 
     size: of values (n, ...); it may take away the last axis. Each other axis has a peak of its own.
+    near: (T,) bool, of the samples beside which they may lie; None: beside any.
     """
     from scipy.interpolate import make_interp_spline
 
     if len(x) < 2:
         return size(values)[0], np.broadcast_to(x[0], size(values)[0].shape)
     curve = make_interp_spline(x, values, k=min(DEGREE, len(x) - 1), axis=0)
-    x = np.unique(np.clip(x, start, end))
+    inside = np.unique(np.clip(x, start, end))
+    between = np.arange((len(inside) - 1) * BETWEEN + 1) / BETWEEN
+    fine = np.interp(between, np.arange(len(inside)), inside)
+    if near is not None:
+        fine = fine[np.interp(between, np.arange(len(inside)), near) > 0.0]
     found = []
-    for begin in range(0, max(1, len(x) - 1), AT_ONCE):
-        part = x[max(0, begin - 1) : begin + AT_ONCE + 2]
-        fine = np.interp(np.arange((len(part) - 1) * BETWEEN + 1) / BETWEEN, np.arange(len(part)), part)
-        found.append(_greatest(fine, size(curve(fine))))
+    for begin in range(0, max(1, len(fine) - 1), AT_ONCE):
+        part = fine[max(0, begin - 1) : begin + AT_ONCE + 1]
+        found.append(_greatest(part, size(curve(part))))
     sizes, places = map(np.array, zip(*found, strict=True))
     first = np.argmax(sizes, axis=0)[None]
     return np.take_along_axis(sizes, first, axis=0)[0], np.take_along_axis(places, first, axis=0)[0]
@@ -57,9 +66,11 @@ def greatest_torque_of(run) -> tuple[float, float, float]:
     A run is not swum anew if it was recorded elsewhere, has a single sample, or is a later part of one that
     `depends_on_its_start`.
     """
-    greatest = torque_size(run.torque).max(axis=0)
-    near = np.flatnonzero(greatest >= NEAR * greatest.max())
-    sizes, times = peaks(run.time, run.torque[:, near], torque_size)
+    size = torque_size(run.torque)
+    high = size >= NEAR * size.max()
+    near, when = np.flatnonzero(high.any(axis=0)), np.flatnonzero(high.any(axis=1))
+    part = slice(max(0, when[0] - BESIDE), when[-1] + BESIDE + 1)
+    sizes, times = peaks(run.time[part], run.torque[part, near], torque_size, near=high[part].any(axis=1))
     station, time = near[np.argmax(sizes)], times[np.argmax(sizes)]
     if not run.steps or len(run.time) < 2 or (depends_on_its_start(run) and run.time[0] != 0.0):
         return peak_along(run.time, run.x, run.torque)
@@ -97,18 +108,19 @@ def _swum_anew(run, time: float, station: int) -> tuple[np.ndarray, np.ndarray, 
     x = np.linspace(near[0], near[-1], (len(near) - 1) * FINE + 1)
     if depends_on_its_start(run):
         first = 0
-    start = run.time[first]
-    swimmer = Simulation(
+    start, orientation = run.time[first], run.orientation[first] / np.linalg.norm(run.orientation[first])
+    setup = SimulationSetup.of(
         accuracy=run.accuracy.as_it_is(),
         stations=x,
         position=run.position[first],
-        orientation=run.orientation[first] / np.linalg.norm(run.orientation[first]),
+        orientation=orientation,
         twist=run.twist[first],
         most_evaluations=np.finfo(float).max,
         **run.swimmer,
     )
-    swimmer.adopt(run.law, origin=-start)
-    out, _, _, stopped = swimmer.record(times - start, True, False)
+    march = March.from_start(setup, run.law, -float(start))
+    out = Observations.empty(len(times), len(x), load=False, fins=len(setup.fins))
+    _, stopped = march.record(times - start, out, np.zeros((len(times), len(WORKS))), True, False, None)
     if stopped is not None:
         raise stopped
     return times, x, out.torque

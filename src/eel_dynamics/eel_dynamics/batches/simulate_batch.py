@@ -30,7 +30,7 @@ from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
 from eel_dynamics.runs.settled_duration import duration_of
 from eel_dynamics.runs.storage.variables import arrays_of
-from eel_dynamics.runs.swim_request import SwimRequest
+from eel_dynamics.runs.swim_request import SwimRequest, SwimResult
 from eel_dynamics.simulation.bending.joint_motion import JointMotion, Motion
 from eel_dynamics.simulation.energy import WORKS
 from eel_dynamics.simulation.observations import FINS, Observations
@@ -108,14 +108,13 @@ def simulate_batch(
 
     def swim(index: int) -> None:
         request = SwimRequest(Run, *swimmers[index], times, wrench[index], load)
+        request = request.to_refine() if estimate else request
+        fits = wrench[index] == any(wrench) and len(request.setup.fins) == most_fins and request.every == 1
+        space = out[index] if fits else None
         try:
-            request = request.to_refine() if estimate else request
-            fits = wrench[index] == any(wrench) and len(request.setup.fins) == most_fins and request.every == 1
-            space = out[index] if fits else None
-            found = request.swim(request.simulation(), out=space)
-            found = with_error_estimate(found, request) if estimate else found
-        except (SimulationStopped, ValueError) as error:
-            errors[index] = _stopped_at_start(error)
+            found = swim_of(request, estimate, space)
+        except SimulationStopped as error:
+            errors[index] = error
             return
         run = found.run
         if found.out is not space:  # other profiles or fins than others have, or a finer run
@@ -139,6 +138,18 @@ def simulate_batch(
     return batch_of(swum, (settings, errors, estimates, counts), times, arrays, start, stations is not None)
 
 
+def swim_of(request: SwimRequest[Run], estimate: bool, out: Observations | None = None) -> SwimResult[Run]:
+    """The swim of a `request`, with an `estimate` of its error if wanted, as of `simulate`; it may have stopped.
+
+    out: space for its samples. `SimulationStopped` where it cannot start.
+    """
+    try:
+        found = request.swim(request.simulation(), out=out)
+        return with_error_estimate(found, request) if estimate else found
+    except ValueError as error:
+        raise SimulationStopped(0.0, str(error), np.nan, "take a gentler law, or start slower") from None
+
+
 def available_cores() -> int:
     """The number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
@@ -160,9 +171,3 @@ def _for_each(
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
-
-
-def _stopped_at_start(error: Exception) -> SimulationStopped:
-    if isinstance(error, SimulationStopped):
-        return error
-    return SimulationStopped(0.0, str(error), np.nan, "take a gentler law, or start slower")

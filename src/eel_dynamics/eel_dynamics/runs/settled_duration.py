@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How long a swimmer swims until its gait has settled: what the duration "settled" stands for."""
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -46,7 +47,9 @@ def settling_time(law: Any, setup: SimulationSetup) -> float:
     period, last_ramp = period_of(law, setup.body.length), _last_ramp(law)
     others = {"accuracy": _coarse(setup.accuracy), "stations": 2}
     simulation = Simulation(**setup.arguments | others, law=law)
-    current, centre, energy, work = np.array(simulation.scene.current), [], 0.0, []
+    current, energy = simulation.setup.current, 0.0
+    centre: list[np.ndarray] = []
+    work: list[Any] = []
     for count in range(MOST_PERIODS + 1):
         try:
             simulation.advance(count * period)
@@ -55,9 +58,8 @@ def settling_time(law: Any, setup: SimulationSetup) -> float:
         seen = simulation.observe(wrench=False, load=False)
         centre.append(seen.center_of_mass - current * simulation.time)
         if simulation.scene.ledger:
-            work.append(simulation.works[0])
-            assert seen.energy is not None
-            energy = seen.energy.kinetic_body + seen.energy.kinetic_fluid
+            work.append(seen.actuator_work)
+            energy = sum(seen.energies[:2])
         window = (count + 1) // 2
         if window < FEWEST or (count - window) * period < last_ramp * (1.0 - 1e-9):
             continue
@@ -75,11 +77,16 @@ def period_of(law: Any, length: float) -> float:
     """The period [s] of `law` after its last ramp, on a body of `length` [m]. `ValueError` where there is none."""
     if not isinstance(law, Law):
         raise ValueError(f"duration {UNTIL_SETTLED!r} needs a Law, whose terms tell its period, got {shown(law)}")
-    later = _last_ramp(law) + np.linspace(0.0, max((term.period for term in law.waves), default=0.0), 65)
     try:
-        return common_period(law, np.linspace(0.0, length, PLACES), later)
+        return _later_period(law, length)
     except ValueError as error:
         raise ValueError(f"duration {UNTIL_SETTLED!r} needs a gait that repeats: {error}") from None
+
+
+@lru_cache(maxsize=1024)
+def _later_period(law: Law, length: float) -> float:
+    later = _last_ramp(law) + np.linspace(0.0, max((term.period for term in law.waves), default=0.0), 65)
+    return common_period(law, np.linspace(0.0, length, PLACES), later)
 
 
 def _last_ramp(law: Law) -> float:

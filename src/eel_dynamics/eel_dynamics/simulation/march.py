@@ -5,6 +5,7 @@ A robot, whose joints, tails and muscles bend by themselves, takes the steps of 
 `Accuracy.method`.
 """
 
+import threading
 from collections.abc import Callable
 from copy import deepcopy
 from dataclasses import replace
@@ -33,6 +34,8 @@ from eel_dynamics.simulation.sample_check import first_bad_sample
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped, left_grid, not_begun, remedy, stopped_by
 
+UNCUT = 2**62  # nodes that a march evaluates before it comes back: all
+UNCUT = 2**62  # nodes that a march evaluates before it comes back: all
 MARCHED, SINGULAR, UNFINISHED = (eel_core.STATUSES.index(name) for name in ("marched", "singular", "unfinished"))
 
 
@@ -231,6 +234,8 @@ class March:
         done, status = 0, MARCHED
         self._rows = None if self.robot is None else self._empty_rows(len(times))
         rows = () if self._rows is None else (self._rows,)
+        if look is None and threading.current_thread() is not threading.main_thread():
+            self.core.set_slice(UNCUT)  # no signal arrives here, and each return may wait for Python's lock
         while status == MARCHED and done < len(times):
             event, status = self._pass_event(), UNFINISHED
             while status == UNFINISHED:

@@ -30,6 +30,7 @@ from eel_dynamics.runs.sampling import checked_times, default_sample_period
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, period_of, until_settled
 from eel_dynamics.runs.storage.tables import needed
 from eel_dynamics.runs.swim import Swim
+from eel_dynamics.simulation.stopping import SimulationStopped
 from eel_model.axes import REP103
 from eel_model.body.body import Body
 from eel_model.robot.robot import Robot
@@ -44,9 +45,9 @@ from eel_studies.points import (
     Stations,
     SwimSettings,
     base_point,
-    batch_of_points,
     label_of,
     point_at,
+    run_of_point,
 )
 from eel_studies.sweeps.sweep_key import key_of
 from eel_studies.sweeps.sweep_parts import Parts, Results
@@ -198,11 +199,14 @@ def swim_points(points: list[tuple[int, Swim]], how: SwimSettings, record: Sweep
     """
     result = {}
     for index, point in points:
-        batch = batch_of_points([point], how, threads=1)
-        (error,) = batch.error
-        result[index] = {"error": ""} | how.measured(batch[0]) if error is None else {"error": str(error)}
-        if record is not None and error is None:
-            record.record(index, batch[0])
+        try:
+            run = run_of_point(point, how)
+        except SimulationStopped as stopped:
+            result[index] = {"error": str(stopped)}
+            continue
+        result[index] = {"error": ""} | how.measured(run)
+        if record is not None:
+            record.record(index, run)
     return result
 
 
