@@ -46,15 +46,15 @@ def peaks(
     if len(x) < 2:
         return size(values)[0], np.broadcast_to(x[0], size(values)[0].shape)
     curve = make_interp_spline(x, values, k=min(DEGREE, len(x) - 1), axis=0)
-    inside = np.unique(np.clip(x, start, end))
+    inside = np.unique(np.clip(x, start, end)) if np.isfinite([start, end]).any() else x
     between = np.arange((len(inside) - 1) * BETWEEN + 1) / BETWEEN
     fine = np.interp(between, np.arange(len(inside)), inside)
     if near is not None:
         fine = fine[np.interp(between, np.arange(len(inside)), near) > 0.0]
-    found = []
-    for begin in range(0, max(1, len(fine) - 1), AT_ONCE):
-        part = fine[max(0, begin - 1) : begin + AT_ONCE + 1]
-        found.append(_greatest(part, size(curve(part))))
+    parts = [fine[max(0, begin - 1) : begin + AT_ONCE + 1] for begin in range(0, max(1, len(fine) - 1), AT_ONCE)]
+    found = [_greatest(part, size(curve(part))) for part in parts]
+    if len(found) == 1:
+        return found[0]
     sizes, places = map(np.array, zip(*found, strict=True))
     first = np.argmax(sizes, axis=0)[None]
     return np.take_along_axis(sizes, first, axis=0)[0], np.take_along_axis(places, first, axis=0)[0]
@@ -128,15 +128,14 @@ def _swum_anew(run, time: float, station: int) -> tuple[np.ndarray, np.ndarray, 
 
 def _greatest(x: np.ndarray, sizes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The greatest of the `sizes` (n, ...) at `x` (n,) and its place, by a parabola through it and its neighbours."""
-    at = np.argmax(sizes, axis=0)[None]
+    shape, rows = sizes.shape[1:], sizes.reshape(len(sizes), -1)
+    column, at = np.arange(rows.shape[1]), np.argmax(rows, axis=0)
     inner = np.clip(at, 1, max(1, len(x) - 2))
-    before, size, after = (np.take_along_axis(sizes, inner + step, axis=0)[0] for step in (-1, 0, 1))
-    left, right = (x[inner] - x[inner - 1])[0], (x[inner + 1] - x[inner])[0]
+    before, size, after = rows[inner - 1, column], rows[inner, column], rows[inner + 1, column]
+    left, right = x[inner] - x[inner - 1], x[inner + 1] - x[inner]
     up, down = (size - before) / left, (after - size) / right
     bend, slope = (down - up) / (left + right), (up * right + down * left) / (left + right)
-    inside = (at == inner)[0] & (bend < 0.0)
+    inside = (at == inner) & (bend < 0.0)
     step = np.clip(-0.5 * slope / np.where(inside, bend, -1.0), -left, right)
-    return (
-        np.where(inside, size + step * (slope + step * bend), np.take_along_axis(sizes, at, axis=0)[0]),
-        np.where(inside, x[inner][0] + step, x[at][0]),
-    )
+    peak = np.where(inside, size + step * (slope + step * bend), rows[at, column])
+    return peak.reshape(shape), np.where(inside, x[inner] + step, x[at]).reshape(shape)
