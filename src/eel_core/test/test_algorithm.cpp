@@ -23,11 +23,12 @@ State state_with(const Swimmer& swimmer, const LawOnGrid& law, double time, cons
 double place(const Swimmer& swimmer, std::size_t i) { return swimmer.grid.fraction.node(i); }
 
 template <class M>
-Wrench<M, double> wrench_at(const Workspace<M>& work, std::size_t node)
+Wrench<M, double> wrench_at(const Swimmer& swimmer, const Workspace<M>& work, std::size_t node)
 {
-    Field<Wrench<M, double>> wrench(work.frame.stride() / width - 1);
+    Field<Wrench<M, double>> integral(swimmer.grid.blocks), wrench(swimmer.grid.blocks);
+    swimmer.grid.from_nose.integrate(work.density, integral);
     const std::size_t k = node / width;
-    wrench.store(k, wrench_behind<M>(work, work.integral[k], work.frame[k], work.position[k]));
+    wrench.store(k, wrench_behind<M>(work, integral[k], work.frame[k], work.position[k]));
     return wrench.node(node);
 }
 
@@ -75,6 +76,7 @@ TEST(Algorithm, RigidStraightBodyHasTheAccelerationsAndTheShearOfABeam)
     EXPECT_NEAR(rate[9], 0.0, 1e-13);  // Munk's moment is the wake's
 
     const Powers powers = find_powers(*swimmer, law, work);
+    find_accelerations(*swimmer, work);
     const double m = body_mass + added_mass;
     // m (a + alpha / 2) = wake; J alpha + m (a / 2 + alpha / 3) = 0
     const double alpha = -wake / 2.0 / (inertia3 + m / 12.0), a = wake / m - 0.5 * alpha;
@@ -83,7 +85,7 @@ TEST(Algorithm, RigidStraightBodyHasTheAccelerationsAndTheShearOfABeam)
     EXPECT_NEAR(work.head_acceleration.linear.x, -0.5 * added_mass * v2 * v2 / body_mass, 1e-11);
     for (std::size_t i = 0; i < panel_nodes; ++i) {
         const double x = place(*swimmer, i);
-        const auto wrench = wrench_at(work, i);
+        const auto wrench = wrench_at(*swimmer, work, i);
         EXPECT_NEAR(wrench.linear.y, wake - m * (a * (1.0 - x) + 0.5 * alpha * (1.0 - x * x)), 1e-11);
         EXPECT_NEAR(wrench.linear.x, -0.5 * added_mass * v2 * v2 * x, 1e-11);
     }
@@ -101,6 +103,7 @@ TEST(Algorithm, SinkingBodyOfEqualSectionsIsBrakedAlikeEverywhereAndBearsNoWrenc
     ASSERT_TRUE(find_motion(*swimmer, law, {}, 0.0, y, work));
     swimmer->wake = 0.0;
     const Powers powers = find_powers(*swimmer, law, work);
+    find_accelerations(*swimmer, work);
     const double drag = -drag3 * v3 * std::abs(v3);
     EXPECT_NEAR(work.drag.linear.z, drag, 1e-13);
     EXPECT_NEAR(powers[3], drag * v3, 1e-13);
@@ -108,7 +111,7 @@ TEST(Algorithm, SinkingBodyOfEqualSectionsIsBrakedAlikeEverywhereAndBearsNoWrenc
     EXPECT_NEAR(work.head_acceleration.linear.z, drag / (body_mass + added_mass3), 1e-11);
     EXPECT_NEAR(work.head_acceleration.angular.y, 0.0, 1e-11);
     for (std::size_t i = 0; i < panel_nodes; ++i) {
-        const auto wrench = wrench_at(work, i);
+        const auto wrench = wrench_at(*swimmer, work, i);
         EXPECT_NEAR(wrench.linear.z, 0.0, 1e-11);
         EXPECT_NEAR(wrench.angular.y, 0.0, 1e-11);
     }
@@ -149,6 +152,7 @@ TEST(Algorithm, WrenchAtTheNoseIsTheNosesLoad)
     const State y = state_with<Space>(*swimmer, law, 0.4, {{0.1, -0.3, 0.2}, {v1, v2, v3}}, work);
     ASSERT_TRUE(find_motion(*swimmer, law, {}, 0.4, y, work));
     find_powers(*swimmer, law, work);
+    find_accelerations(*swimmer, work);
     const auto left = components_of(plus_axial<Space>(work.tail - work.balance, work.nose_force));
     for (const double part : left) EXPECT_NEAR(part, 0.0, 1e-13);
     EXPECT_GT(std::abs(work.nose_force), 1e-3);

@@ -128,33 +128,38 @@ double water_on_nose(const Swimmer& swimmer, const Workspace<M>& work)
     return work.flowing ? drag + swimmer.nose_mass * work.flow.nose().acceleration().x : drag;
 }
 
-// Acceleration of the head and of the sections, and the density of the balance: eq. (60) in accelerations. `work` holds
-// the true velocities, the loads that go with them and the factored inertia.
+// Acceleration of the head: eq. (60) in accelerations. `work` holds the true velocities, the loads that go with them
+// and the factored inertia. The accelerations of the sections, the density of the balance and the forces of the fins
+// stay those of a head without any.
 template <class M>
-void find_accelerations(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
+void find_head_acceleration(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
 {
     find_shape_accelerations(swimmer, law, work);
     const double on_nose = water_on_nose(swimmer, work);
     auto left = work.tail + work.drag - set_inertial_density(swimmer, work);
     left.linear.x += on_nose;
-    Wrench<M, double> of_flow{};
-    if (work.flowing) of_flow = total_wrench_of_flow(swimmer, work), left = left - of_flow;
+    if (work.flowing) left = left - add_wrench_of_flow(swimmer, work);
     if (swimmer.weighs()) left += work.weight;
     if constexpr (!M::planar)
         if (!work.fins.empty()) left += wrench_of_fins(swimmer, work);
     auto head = components_of(left);
     work.inertia.solve(head);
     work.head_acceleration = Components<Twist<M, double>>::make([&](std::size_t k) { return head[k]; });
+    work.nose_force = on_nose - swimmer.nose_mass * work.head_acceleration.linear.x;
+}
 
+// Then the accelerations of the sections, and the density of the balance with all loads.
+template <class M>
+void find_accelerations(const Swimmer& swimmer, Workspace<M>& work)
+{
     add_head_motion(swimmer, work.head_acceleration, work.position, work.angular_acceleration, work.linear_acceleration,
                     work.angular_acceleration, work.linear_acceleration);
     work.balance = set_inertial_density(swimmer, work) - work.drag;
     if (swimmer.resistive) add_resistance(swimmer, work);
-    if (work.flowing) add_wrench_of_flow(swimmer, of_flow, work);
+    if (work.flowing) work.balance += add_wrench_of_flow(swimmer, work);
     if (swimmer.weighs()) take_weight(swimmer, work);
     if constexpr (!M::planar)
         if (!work.fins.empty()) work.balance = work.balance - wrench_of_fins(swimmer, work);
-    work.nose_force = on_nose - swimmer.nose_mass * work.head_acceleration.linear.x;
 }
 
 }  // namespace eel_core

@@ -67,16 +67,7 @@ bool rate_of_state(const Swimmer& swimmer, const LawOnGrid& law, const Water& wa
     return true;
 }
 
-// What the internal wrench needs, in the motion that `work` holds: accelerations, eq. (60); then the balance's density
-// integrated from the nose, from which `internal_wrench` gives eq. (50) at a section.
-template <class M>
-void find_internal_wrench(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
-{
-    find_accelerations(swimmer, law, work);
-    integrate_balance(swimmer, work);
-}
-
-// Powers [W] of all but the actuators, after the accelerations.
+// Powers [W] of all but the actuators, after the acceleration of the head.
 template <class M>
 Powers powers_of_loads(const Swimmer& swimmer, const Workspace<M>& work)
 {
@@ -92,16 +83,30 @@ Powers powers_of_loads(const Swimmer& swimmer, const Workspace<M>& work)
     return powers;
 }
 
-// Powers [W] of actuators, wake, nose, drag, flow and fins, in the motion that `work` holds.
+// Powers [W] of actuators, wake, nose, drag, flow and fins, in the motion that `work` holds; with the acceleration of
+// the head, eq. (60).
 template <class M>
 Powers find_powers(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
 {
-    find_internal_wrench(swimmer, law, work);
-    Powers powers = powers_of_loads(swimmer, work);
-    powers[0] = actuator_power(swimmer, work);
+    find_head_acceleration(swimmer, law, work);
+    double actuators = power_of_shape(swimmer, work);
+    const auto head = components_of(work.head_acceleration), momentum = components_of(work.shape_momentum);
+    for (std::size_t k = 0; k < head.size(); ++k) actuators += head[k] * momentum[k];
     if constexpr (!M::planar)
-        if (!work.fins.empty()) powers[0] += actuator_power_of_fins(swimmer, work);
+        if (!work.fins.empty()) accelerate_fins(swimmer, work.head_acceleration, work);
+    Powers powers = powers_of_loads(swimmer, work);
+    powers[0] = actuators;
     return powers;
+}
+
+// THE STEP OF THE INTERNAL WRENCH, after the accelerations: the `integral` of the balance's density from the nose to
+// the stations, from which `internal_wrench` gives eq. (50) there.
+inline void find_internal_wrench(const Swimmer& swimmer, Workspace<Space>& work, UnsignedResistance& resistance,
+                                 Field<Wrench<Space, double>>& integral)
+{
+    smooth_kinks(swimmer, work);
+    swimmer.to_station.integrate(work.density, swimmer.grid.weight, integral);
+    add_jumps(swimmer, work, resistance, integral);
 }
 
 }  // namespace eel_core

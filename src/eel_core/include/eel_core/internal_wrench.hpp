@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The internal wrench, eq. (50), from the balance of the part of the body behind each section; and the actuators'
-// power.
+// The internal wrench, eq. (50), from the balance of the part of the body behind each section; and the power that
+// actuators need for the change of shape.
 #pragma once
 
 #include "eel_core/accelerations.hpp"
@@ -8,14 +8,6 @@
 namespace eel_core {
 
 using Powers = std::array<double, 6>;  // [W], of actuators, wake, nose, drag, flow and fins
-
-// Integral of the density from the nose to the nodes.
-template <class M>
-void integrate_balance(const Swimmer& swimmer, Workspace<M>& work)
-{
-    swimmer.grid.from_nose.integrate(work.density, work.integral);
-    add_kinks(swimmer, swimmer.grid.from_nose, false, work, work.integral);
-}
 
 // The wrench on the part of the body behind a section, w_tail - integral from X to the tail of the density, about the
 // section and in its axes; from the integral `integral` X.
@@ -41,36 +33,56 @@ Wrench<M, Lanes> internal_wrench(const Swimmer& swimmer, const Workspace<M>& wor
     return swimmer.distributed_pressure ? plus_axial<M, Lanes>(wrench, swept.water_energy(v, omega)) : wrench;
 }
 
-// Bending torque times the rate of bending, of a block.
-inline Lanes bending_power(const Vector3<Lanes>& torque, const Vector2<Lanes>& rate)
-{
-    return torque.y * rate.x + torque.z * rate.y;
-}
-inline Lanes bending_power(Lanes torque, const Vector2<Lanes>& rate) { return torque * rate.y; }
-
-// - integral of C . Kdot over the body [W]. The water that is swept past a section has no part in C2 and C3.
+// Drag and weight on a block of sections, about them and weighed by their length, in the axes of the head.
 template <class M>
-double actuator_power(const Swimmer& swimmer, const Workspace<M>& work)
+Wrench<M, Lanes> loads_on_sections(const Swimmer& swimmer, const Workspace<M>& work, std::size_t k)
 {
-    Lanes power(0.0);
-    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-        const auto wrench = wrench_behind<M>(work, work.integral[k], work.frame[k], work.position[k]);
-        power -= swimmer.grid.weight[k] * bending_power(wrench.angular, work.curvature_rate[k]);
+    Wrench<M, Lanes> load{};
+    const auto frame = work.frame[k];
+    if (swimmer.resistive) {
+        const auto drag =
+            resistive_load(swimmer.sections.drag(k), work.friction_laminar[k], work.friction_excess[k],
+                           load_weights(swimmer, work, k), speeds_from(work, width * k), roll_from(work, width * k));
+        load = {frame.parent(drag.angular), frame.parent(drag.linear)};
     }
-    return total(power);
+    if constexpr (!M::planar)
+        if (swimmer.weighs()) {
+            const Lanes weight = swimmer.grid.weight[k];
+            load.angular +=
+                righting_torque(swimmer.righting * (weight * swimmer.sections.lever[k]), frame.axis3, work.up);
+            load.linear += swimmer.gravity * (weight * swimmer.sections.net[k]) * work.up;
+        }
+    return load;
 }
 
-// What that power lacks for the fins: behind each, their wrench is no longer among those of the part behind. A fin's
-// node ends a panel, so that its own value is the one ahead of the fin.
-inline double actuator_power_of_fins(const Swimmer& swimmer, const Workspace<Space>& work)
+// The power that the change of shape needs [W] where the head has no acceleration, after `find_head_acceleration`:
+//
+//     - integral C . Kdot = integral (omega_s . c + v_s . n) - omega_s(l) . C_t - v_s(l) . N_t
+//
+// by parts, since omega_s' = R Kdot and v_s' = omega_s x t1 of the change of shape: (c, n) is what the motion takes of
+// a section, less its loads. An acceleration a of the head adds a . (momentum of the change of shape).
+template <class M>
+double power_of_shape(const Swimmer& swimmer, const Workspace<M>& work)
 {
-    Lanes power(0.0);
+    Lanes sum(0.0);
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-        const Wrench<Space, Lanes> ahead = fins_ahead(swimmer, work, k, &Fin::node_behind);
-        const Vector3<Lanes> torque = work.frame[k].local(ahead.angular - cross(work.position[k], ahead.linear));
-        power += swimmer.grid.weight[k] * bending_power(torque, work.curvature_rate[k]);
+        Wrench<M, Lanes> taken = work.density[k];
+        taken.angular = taken.angular - cross(work.position[k], taken.linear);
+        taken = swimmer.grid.weight[k] * taken - loads_on_sections(swimmer, work, k);
+        sum += dot(work.shape_omega[k], taken.angular) + dot(work.shape_velocity[k], taken.linear);
     }
-    return total(power);
+    const std::size_t tail = swimmer.grid.nodes - 1;
+    const Angular<M, double> torque = work.tail.angular - cross(work.position.node(tail), work.tail.linear);
+    double power =
+        total(sum) - dot(work.shape_omega.node(tail), torque) - dot(work.shape_velocity.node(tail), work.tail.linear);
+    if constexpr (!M::planar)
+        for (std::size_t i = 0; i < swimmer.fins.size(); ++i) {
+            const FinMotion& fin = work.fins[i];
+            const std::size_t node = swimmer.fins[i].node;
+            power -= dot(work.shape_omega.node(node), cross(fin.arm, fin.whole)) +
+                     dot(work.shape_velocity.node(node), fin.whole);
+        }
+    return power;
 }
 
 }  // namespace eel_core

@@ -128,7 +128,7 @@ Momentum<M, double> inertia_and_momentum(const Swimmer& swimmer, Workspace<M>& w
 template <class M>
 bool find_twist(const Swimmer& swimmer, Workspace<M>& work)
 {
-    Momentum<M, double> shape = inertia_and_momentum(swimmer, work);
+    Momentum<M, double> shape = work.shape_momentum = inertia_and_momentum(swimmer, work);
     if (work.flowing) shape = shape - momentum_of_flow(swimmer, work);
     const bool definite = work.inertia.factor();
     auto solution = components_of(work.momentum - shape);

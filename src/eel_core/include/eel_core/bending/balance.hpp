@@ -32,6 +32,7 @@ class BentBody {
           swimmer_(&swimmer),
           modes_(&modes),
           load_(swimmer.grid.blocks),
+          momentum_ahead_(swimmer.grid.blocks),
           mode_load_(modes.modes),
           added_(modes.modes),
           solution_(head + modes.coordinates)
@@ -52,7 +53,7 @@ class BentBody {
 
     std::size_t bytes() const
     {
-        std::size_t sum = work.bytes() + load_.bytes();
+        std::size_t sum = work.bytes() + load_.bytes() + momentum_ahead_.bytes();
         for (const Column<M>& each : columns.column)
             sum += each.omega.bytes() + each.velocity.bytes() + each.momentum.bytes();
         return sum;
@@ -172,14 +173,11 @@ class BentBody {
         const double on_nose = water_on_nose(*swimmer_, work);
         auto left = work.tail + work.drag - set_inertial_density(*swimmer_, work);
         left.linear.x += on_nose;
-        if (work.flowing) {
-            const Wrench<M, double> of_flow = total_wrench_of_flow(*swimmer_, work);
-            add_wrench_of_flow(*swimmer_, of_flow, work);
-            left = left - of_flow;
-        }
+        if (work.flowing) left = left - add_wrench_of_flow(*swimmer_, work);
         if (swimmer_->weighs()) left += work.weight;
         if constexpr (!M::planar)
             if (!work.fins.empty()) left += wrench_of_fins(*swimmer_, work);
+        imposed_at_rest_ = power_of_shape(*swimmer_, work);
         for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {  // about the sections, weighed
             Wrench<M, Lanes> taken = work.density[k];
             taken.angular = taken.angular - cross(work.position[k], taken.linear);
@@ -210,13 +208,7 @@ class BentBody {
     // Power of what imposes the change of shape [W], - integral C . Kdot_imposed, after the accelerations.
     double imposed_power() const
     {
-        double power = -imposed_load_ - imposed_fins_;
-        Lanes sum(0.0);
-        for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {
-            const Wrench<M, Lanes> taken = load_[k];
-            sum += dot(work.shape_omega[k], taken.angular) + dot(work.shape_velocity[k], taken.linear);
-        }
-        power += total(sum);
+        double power = imposed_at_rest_;
         for (std::size_t i = 0; i < solution_.size(); ++i) power += solution_[i] * columns.momentum[i];
         return power;
     }
@@ -229,27 +221,10 @@ class BentBody {
     }
 
   private:
-    // omega_a(l) . C_t + v_a(l) . N_t + integral (omega_a . c + v_a . n) dX, of the modes and of the imposed change.
+    // omega_a(l) . C_t + v_a(l) . N_t + integral (omega_a . c + v_a . n) dX, of the modes.
     void set_mode_loads()
     {
-        for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {
-            Wrench<M, Lanes> load{};
-            const auto frame = work.frame[k];
-            if (swimmer_->resistive) {
-                const auto drag = resistive_load(swimmer_->sections.drag(k), work.friction_laminar[k],
-                                                 work.friction_excess[k], load_weights(*swimmer_, work, k),
-                                                 speeds_from(work, width * k), roll_from(work, width * k));
-                load = {frame.parent(drag.angular), frame.parent(drag.linear)};
-            }
-            if constexpr (!M::planar)
-                if (swimmer_->weighs()) {
-                    const Lanes weight = swimmer_->grid.weight[k];
-                    const Lanes moment = swimmer_->righting * (weight * swimmer_->sections.lever[k]);
-                    load.angular += righting_torque(moment, frame.axis3, work.up);
-                    load.linear += swimmer_->gravity * (weight * swimmer_->sections.net[k]) * work.up;
-                }
-            load_.store(k, load);
-        }
+        for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) load_.store(k, loads_on_sections(*swimmer_, work, k));
         const std::size_t tail = swimmer_->grid.nodes - 1;
         const auto force = work.tail.linear;
         const Angular<M, double> torque = work.tail.angular - cross(work.position.node(tail), force);
@@ -258,13 +233,6 @@ class BentBody {
             mode_load_[m] =
                 columns.work_of(m, load_) + dot(own.omega.node(tail), torque) + dot(own.velocity.node(tail), force);
         }
-        Lanes sum(0.0);
-        for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {
-            const Wrench<M, Lanes> here = load_[k];
-            sum += dot(work.shape_omega[k], here.angular) + dot(work.shape_velocity[k], here.linear);
-        }
-        imposed_load_ =
-            total(sum) + dot(work.shape_omega.node(tail), torque) + dot(work.shape_velocity.node(tail), force);
     }
 
     // What the flow and the fins add to the rates of the modes' momenta.
@@ -292,17 +260,12 @@ class BentBody {
         return sum;
     }
 
-    // Gives the fins' forces the accelerations that were found, and keeps the work of those without on the imposed
-    // change of shape.
+    // Gives the fins' forces the accelerations that were found.
     EEL_CORE_APART void accelerate_fins()
     {
-        imposed_fins_ = 0.0;
         for (std::size_t i = 0; i < swimmer_->fins.size(); ++i) {
             FinMotion& now = work.fins[i];
             const std::size_t node = swimmer_->fins[i].node;
-            const Wrench<Space, double> wrench = of_force(now);
-            imposed_fins_ +=
-                dot(work.shape_omega.node(node), wrench.angular) + dot(work.shape_velocity.node(node), wrench.linear);
             const Twist<Space, double>& of_head = work.head_acceleration;
             Vector3<double> gained = of_head.linear + cross(of_head.angular, now.position);
             for (std::size_t m = 0; m < modes_->modes; ++m) gained += acceleration[m] * columns.at(now, node, m);
@@ -310,7 +273,7 @@ class BentBody {
         }
     }
 
-    // The momentum from the nose to each node, to `work.integral`; then what turns with the modes, to `integrand`.
+    // The momentum from the nose to each node; then what turns with the modes, to `integrand`.
     void set_momentum_behind()
     {
         for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {
@@ -319,14 +282,14 @@ class BentBody {
             auto [angular, linear] = momentum_of_sections<M>(*swimmer_, section, swimmer_->sections.lever[k], frame,
                                                              work.omega[k], work.velocity[k]);
             if (work.flowing) linear = linear - frame.parent(section.water_momentum(frame.local(work.flow[k].u)));
-            work.density.store(k, {angular + cross(work.position[k], linear), linear});
+            work.integrand.store(k, {angular + cross(work.position[k], linear), linear});
         }
-        swimmer_->grid.from_nose.integrate(work.density, work.integral);
-        Momentum<M, double> whole = work.integral.node(swimmer_->grid.nodes - 1);
+        swimmer_->grid.from_nose.integrate(work.integrand, momentum_ahead_);
+        Momentum<M, double> whole = momentum_ahead_.node(swimmer_->grid.nodes - 1);
         if constexpr (!M::planar)
             for (const FinMotion& fin : work.fins) whole += at_fin(fin, fin.momentum);
         for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {
-            Momentum<M, Lanes> ahead = work.integral[k];
+            Momentum<M, Lanes> ahead = momentum_ahead_[k];
             if constexpr (!M::planar)
                 if (!work.fins.empty())
                     ahead += fins_ahead(*swimmer_, work, k, &Fin::node_behind, &FinMotion::momentum);
@@ -358,11 +321,12 @@ class BentBody {
     const Swimmer* swimmer_;
     const Modes* modes_;
     Definite factored_;
-    Field<Wrench<M, double>> load_;  // about the sections, weighed by their length, in the axes of the head
+    Field<Wrench<M, double>> load_;              // about the sections, weighed by their length, in the axes of the head
+    Field<Momentum<M, double>> momentum_ahead_;  // of each node, about the head
     std::vector<double> mode_load_, added_, solution_;  // `added_`: in the rates of momenta alone
     std::vector<Jet> drive_;
     Wrench<M, double> by_loads_{};
-    double imposed_load_ = 0.0, imposed_fins_ = 0.0;
+    double imposed_at_rest_ = 0.0;    // W, of what imposes the change of shape, without accelerations
     const LawOnGrid* law_ = nullptr;  // of the instant, as the next two
     double time_ = 0.0;
     State state_{};

@@ -206,55 +206,77 @@ void find_kinks(const Swimmer& swimmer, Workspace<M>& work)
     if (jumps(swimmer.friction)) find_kinks_of(swimmer, above_critical, -1.0, 0.0, work);
 }
 
-// Corrects `integral` for the kinks. `integral` holds the integrals of the balance's density from the nose to the
-// points of `from_nose`. The density holds the resistance (minus the load), with the signs that the speeds have at the
-// nodes. The integrals to the points continue those to the nodes. `known_have_kinks`: those to the nodes are corrected
-// already.
+// The part of the resistance (minus the drag) whose sign is that of a `speed`, as if that were positive: per length,
+// about the head, of a block of nodes.
 template <class M>
-void add_kinks(const Swimmer& swimmer, const FromNose& from_nose, bool known_have_kinks, Workspace<M>& work,
-               Field<Wrench<M, double>>& integral)
+Wrench<M, Lanes> unsigned_resistance(const Swimmer& swimmer, const Workspace<M>& work, Speed speed, std::size_t k)
 {
-    const Grid& grid = swimmer.grid;
-    for (std::size_t j = 0; j < work.kink_count; ++j) {
-        const Kink& kink = work.kinks[j];
-        const std::size_t first = kink.first, count = grid.count[first];
-        const auto jump = [&](Speed speed) { return Lanes(kink.speed == speed ? kink.jump : 0.0); };
-        const LoadSigns<Lanes> sign{0.0, jump(above_critical), jump(lateral), jump(vertical), jump(roll)};
-        Wrench<M, Lanes> to_kink{}, to_node{};  // integrals over the panel up to the kink, and by the nodes before it
-        for (std::size_t k = 0; k < count; k += width) {
-            const std::size_t node = first + k;
-            const auto load =
-                resistive_load(swimmer.sections.drag_from(node), work.friction_laminar.from(node),
-                               work.friction_excess.from(node), sign, speeds_from(work, node), roll_from(work, node));
-            const auto density = -about_head<M>(work.frame.from(node), work.position.from(node), load);
-            work.kink_density.store_from(k, density);
-            const Mask inside = Mask::below(count - k), ahead = grid.fraction.from(node) < Lanes(kink.fraction);
-            to_kink += select(inside, Lanes::load(kink.weights.data() + k), 0.0) * density;
-            to_node += select(inside, select(ahead, grid.weight.from(node), 0.0), 0.0) * density;
+    const auto part = [&](Speed other) { return Lanes(speed == other ? 1.0 : 0.0); };
+    const LoadSigns<Lanes> sign{0.0, part(above_critical), part(lateral), part(vertical), part(roll)};
+    const auto load = resistive_load(swimmer.sections.drag(k), work.friction_laminar[k], work.friction_excess[k], sign,
+                                     speeds_from(work, width * k), roll_from(work, width * k));
+    return -about_head<M>(work.frame[k], work.position[k], load);
+}
+
+// Jump of the sign at a kink, at those points of a block that lie behind it, by their `place`; 0 ahead of it.
+inline Lanes jump_behind(const Kink& kink, Lanes place)
+{
+    return select(place >= Lanes(static_cast<double>(kink.first) + kink.fraction), kink.jump, 0.0);
+}
+
+// Speeds that change their sign along the body.
+inline std::array<bool, speeds> kinked_speeds(const auto& work)
+{
+    std::array<bool, speeds> found{};
+    for (std::size_t j = 0; j < work.kink_count; ++j) found[work.kinks[j].speed] = true;
+    return found;
+}
+
+// Takes the jumps at the kinks out of the `density` of the balance, which has the signs that the speeds have at the
+// nodes: what is left is as smooth as the motion.
+template <class M>
+void smooth_kinks(const Swimmer& swimmer, Workspace<M>& work)
+{
+    const auto kinked = kinked_speeds(work);
+    for (const Speed speed : {lateral, vertical, roll, above_critical})
+        for (std::size_t k = 0; kinked[speed] && k < swimmer.grid.blocks; ++k) {
+            Lanes jump(0.0);
+            for (std::size_t j = 0; j < work.kink_count; ++j)
+                if (work.kinks[j].speed == speed) jump += jump_behind(work.kinks[j], swimmer.grid.from_nose.place()[k]);
+            work.density.store(k, work.density[k] - jump * unsigned_resistance(swimmer, work, speed, k));
         }
-        const Wrench<M, double> before = total_of(to_kink), change = total_of(to_node) - before;
-        for (std::size_t s = 0; s < from_nose.stretches().size(); ++s) {
-            const FromNose::Stretch& stretch = from_nose.stretches()[s];
-            const bool behind_panel = stretch.begin >= first + count;
-            if (stretch.end <= first || (behind_panel && known_have_kinks)) continue;
-            for (std::size_t part = 0; part < FromNose::parts; ++part) {
-                const std::size_t k = FromNose::parts * s + part;
-                auto here = integral[k];
-                if (behind_panel) {
-                    integral.store(k, here + change);
-                    continue;
-                }
-                const Mask behind = from_nose.place()[k] >= Lanes(static_cast<double>(first) + kink.fraction);
-                const FromNose::Column* const column = from_nose.columns(stretch) + (first - stretch.begin);
-                here = here - select(behind, 1.0, 0.0) * before;
-                for (std::size_t node = 0; node < count; ++node) {
-                    const Lanes weight = column[node][part];
-                    const bool ahead = grid.fraction.node(first + node) < kink.fraction;
-                    here += (ahead ? select(behind, weight, 0.0) : select(behind, 0.0, -weight)) *
-                            work.kink_density.node(node);
-                }
-                integral.store(k, here);
-            }
+}
+
+// What `add_jumps` works with: the resistance of a speed at the nodes, per length, and its integral from the nose to
+// the stations.
+struct UnsignedResistance {
+    Field<Wrench<Space, double>> density, integral;
+};
+
+// Adds what the jumps give of the `integral` of the balance's density from the nose to the stations.
+inline void add_jumps(const Swimmer& swimmer, const Workspace<Space>& work, UnsignedResistance& own,
+                      Field<Wrench<Space, double>>& integral)
+{
+    const auto kinked = kinked_speeds(work);
+    for (const Speed speed : {lateral, vertical, roll, above_critical}) {
+        if (!kinked[speed]) continue;
+        for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
+            own.density.store(k, unsigned_resistance(swimmer, work, speed, k));
+        swimmer.to_station.integrate(own.density, swimmer.grid.weight, own.integral);
+        for (std::size_t j = 0; j < work.kink_count; ++j) {
+            const Kink& kink = work.kinks[j];
+            if (kink.speed != speed) continue;
+            const std::size_t first = kink.first, count = swimmer.grid.count[first];
+            Wrench<Space, Lanes> sum{};
+            for (std::size_t k = 0; width * k < first; ++k)
+                sum += select(Mask::below(first - width * k), swimmer.grid.weight[k], 0.0) * own.density[k];
+            for (std::size_t k = 0; k < count; k += width)
+                sum += select(Mask::below(count - k), Lanes::load(kink.weights.data() + k), 0.0) *
+                       own.density.from(first + k);
+            const Wrench<Space, double> upto_kink = total_of(sum);
+            for (std::size_t k = 0; k < blocks_of(swimmer.stations); ++k)
+                integral.store(
+                    k, integral[k] + jump_behind(kink, swimmer.to_station.place()[k]) * (own.integral[k] - upto_kink));
         }
     }
 }

@@ -176,7 +176,17 @@ inline Wrench<Space, Lanes> fins_ahead(const Swimmer& swimmer, const Workspace<S
     return sum;
 }
 
-// Sum of the powers [W], after `wrench_of_fins`.
+// Adds what the acceleration of the head is of the forces, where these are those without.
+inline void accelerate_fins(const Swimmer& swimmer, const Twist<Space, double>& head, Workspace<Space>& work)
+{
+    for (std::size_t i = 0; i < swimmer.fins.size(); ++i) {
+        FinMotion& now = work.fins[i];
+        const double gained = dot(now.normal, head.linear + cross(head.angular, now.position));
+        now.whole = now.whole - swimmer.fins[i].added_mass * gained * now.normal;
+    }
+}
+
+// Sum of the powers [W], with the accelerations.
 inline double fin_power(const Swimmer& swimmer, const Workspace<Space>& work)
 {
     double sum = 0.0;

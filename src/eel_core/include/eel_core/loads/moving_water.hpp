@@ -119,28 +119,22 @@ Wrench<M, Lanes> wrench_of_flow(const Section<Lanes>& section, Lanes displaced, 
                          section.water_momentum(rate) - cross(omega, section.water_momentum(u)) + frame.local(shared)});
 }
 
-// Its integral over the body.
+// Adds it to the `density` of the balance. Returns its integral over the body.
 template <class M>
-EEL_CORE_APART Wrench<M, double> total_wrench_of_flow(const Swimmer& swimmer, const Workspace<M>& work)
+EEL_CORE_APART Wrench<M, double> add_wrench_of_flow(const Swimmer& swimmer, Workspace<M>& work)
 {
     Wrench<M, Lanes> sum{};
-    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
-        sum += swimmer.grid.weight[k] * wrench_of_flow<M>(swimmer.sections[k], swimmer.sections.displaced[k], work, k);
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const auto wrench = wrench_of_flow<M>(swimmer.sections[k], swimmer.sections.displaced[k], work, k);
+        work.density.store(k, work.density[k] + wrench);
+        sum += swimmer.grid.weight[k] * wrench;
+    }
     const Wrench<M, double> whole = total_of(sum);
-    return swimmer.flow_gradient ? whole : whole + total_of_gradient(swimmer, work).first;
-}
-
-// Adds it to the `density` of the balance and to its integral.
-template <class M>
-EEL_CORE_APART void add_wrench_of_flow(const Swimmer& swimmer, const Wrench<M, double>& whole, Workspace<M>& work)
-{
+    if (swimmer.flow_gradient) return whole;
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
-        work.density.store(
-            k, work.density[k] + wrench_of_flow<M>(swimmer.sections[k], swimmer.sections.displaced[k], work, k));
-    for (std::size_t k = 0; !swimmer.flow_gradient && k < swimmer.grid.blocks; ++k)
         work.density.store(
             k, work.density[k] + load_of_gradient<M>(swimmer.sections[k], swimmer.sections.displaced[k], work, k));
-    work.balance += whole;
+    return whole + total_of_gradient(swimmer, work).first;
 }
 
 // integral (p . u_t + rho_f A a_u . v) [W].

@@ -21,6 +21,7 @@ struct StationWork {
         position = omega = velocity = relative = Field<Vector3<double>>(n);
         angular_acceleration = linear_acceleration = Field<Vector3<double>>(n);
         integral = Field<Wrench<Space, double>>(n);
+        resistance = {Field<Wrench<Space, double>>(swimmer.grid.blocks), integral};
         for (std::size_t i = 0; i < swimmer.stations; ++i) base.row(3)[i] = 1.0;
     }
 
@@ -31,7 +32,8 @@ struct StationWork {
     FlowValues<Space> flow;                 // where the water moves by itself
     Field<Vector3<double>> relative;        // velocity through that water
     Field<Wrench<Space, double>> integral;  // integral of the balance's density from the nose
-    MissedWrench missed;                    // of it, where the sections are from data
+    UnsignedResistance resistance;
+    MissedWrench missed;  // of the integral, where the sections are from data
 };
 
 // Puts components of a block of stations, of which there are `stations`, into rows (stations, Components of the value).
@@ -80,6 +82,7 @@ class Observer {
     {
         if (!find_motion(swimmer_, law, water, time, y, work)) return false;
         const Powers powers = find_powers(swimmer_, law, work);
+        find_accelerations(swimmer_, work);
         std::copy(powers.begin(), powers.end(), at(Profiles::powers, sample));
         show_head(y, water.current, sample, work);
         show_energies_and_closure(sample, work);
@@ -209,8 +212,7 @@ class Observer {
 
     void show_internal_wrench(std::size_t sample, Workspace<Space>& work, StationWork& here) const
     {
-        swimmer_.to_station.integrate(work.density, 0, Wrench<Space, double>{}, work.integral, here.integral);
-        add_kinks(swimmer_, swimmer_.to_station, true, work, here.integral);
+        find_internal_wrench(swimmer_, work, here.resistance, here.integral);
         if (!swimmer_.missed.empty())
             here.missed.add(swimmer_, work, here.frame, here.omega, through_water(work, here), here.flow,
                             here.integral);

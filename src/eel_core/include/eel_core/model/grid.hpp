@@ -85,6 +85,19 @@ class FromNose {
         integrate(integrand, first_row, Components<Value>::make([](std::size_t) { return 0.0; }), result, result);
     }
 
+    // The integral from the nose, at the points, from the integrand alone; `weight` [m]: of the nodes.
+    template <class Value>
+    void integrate(const Field<Value>& integrand, const Row& weight, Field<Value>& result) const
+    {
+        Value before = Components<Value>::make([](std::size_t) { return 0.0; });
+        std::size_t node = 0;
+        for (std::size_t s = 0; s < stretches_.size(); ++s) {
+            for (; node < stretches_[s].begin; ++node) before += weight.node(node) * integrand.node(node);
+            const auto here = within<Value>(integrand, 0, stretches_[s]);
+            for (std::size_t part = 0; part < parts; ++part) result.store(parts * s + part, before + here[part]);
+        }
+    }
+
     // The same over the stretches from `begin` up to `end` alone, of an integrand that is zero before them; so must be
     // the `result` there.
     template <class Value, class Source>

@@ -34,14 +34,12 @@ struct Workspace {
         shape_omega = omega = Field<Angular<M, double>>(n), shape_velocity = velocity = Field<Vector<M, double>>(n),
         curvature_rate = Field<Vector2<double>>(n);
         angular_acceleration = Field<Angular<M, double>>(n), linear_acceleration = Field<Vector<M, double>>(n);
-        integrand = Field<Wrench<M, double>>(n), density = Field<Wrench<M, double>>(n),
-        integral = Field<Wrench<M, double>>(n);
+        integrand = Field<Wrench<M, double>>(n), density = Field<Wrench<M, double>>(n);
         friction_laminar = friction_excess = turbulent_share = turbulent_weight = Row(n);
         for (Row& row : speed) row = Row(n);
         for (const Speed each : {lateral, vertical, roll}) load_weight[each] = Row(n);
         fins.resize(swimmer.fins.size());
         if (!fins.empty()) fin_places = Field<Vector3<double>>(blocks_of(fins.size()));
-        kink_density = Field<Wrench<M, double>>(blocks_of(swimmer.grid.widest));
         for (Kink& kink : kinks) kink.weights.resize(swimmer.grid.widest + width);
     }
 
@@ -60,9 +58,8 @@ struct Workspace {
     // Of the sections: without the head's in `find_shape_accelerations`, with it from `add_head_motion` on.
     Field<Angular<M, double>> angular_acceleration;  // [rad/s^2]
     Field<Vector<M, double>> linear_acceleration;    // [m/s^2]
-    Field<Wrench<M, double>>
-        density;  // of the balance: what the motion takes, less the loads, per length, about the head
-    Field<Wrench<M, double>> integral;  // its integral from the nose
+    // Of the balance: what the motion takes, less the loads, per length, about the head.
+    Field<Wrench<M, double>> density;
 
     // Where the water moves by itself (`flowing`); no memory elsewhere:
     bool flowing = false;
@@ -89,20 +86,20 @@ struct Workspace {
     static constexpr std::size_t most_kinks = 24;  // beyond, signs change too often to be integrated apart
     std::array<Kink, most_kinks> kinks;
     std::size_t kink_count = 0;
-    Field<Wrench<M, double>> kink_density;  // of the balance, at the nodes of a kink's panel: what jumps
 
     // Of the whole body:
     Frame<M, double> head;  // axes of the head in the world
     Factored<M::freedoms> inertia;
-    Twist<M, double> twist;        // of the head, relative to the water
-    Momentum<M, double> momentum;  // of body, water and nose
-    Wrench<M, double> tail, drag;  // on the body
-    Vector3<double> up{};          // of the world; as the next two, where the body weighs
-    double height = 0.0;           // of the nose [m], over that of no potential energy
-    Wrench<M, double> weight{};    // of weight and buoyancy
-    double drag_power = 0.0;       // [W]
-    double tail_speed = 0.0;       // V1 at the tail [m/s]
-    double tail_energy = 0.0;      // T_f there [J/m]
+    Twist<M, double> twist;              // of the head, relative to the water
+    Momentum<M, double> momentum;        // of body, water and nose
+    Momentum<M, double> shape_momentum;  // of the change of shape alone
+    Wrench<M, double> tail, drag;        // on the body
+    Vector3<double> up{};                // of the world; as the next two, where the body weighs
+    double height = 0.0;                 // of the nose [m], over that of no potential energy
+    Wrench<M, double> weight{};          // of weight and buoyancy
+    double drag_power = 0.0;             // [W]
+    double tail_speed = 0.0;             // V1 at the tail [m/s]
+    double tail_energy = 0.0;            // T_f there [J/m]
     Twist<M, double> head_acceleration;
     Wrench<M, double> balance;  // integral over the body of the density, as the head equation has it
     double nose_force = 0.0;    // [N], along t1(0)
@@ -112,9 +109,8 @@ struct Workspace {
         std::size_t sum = frame.bytes() + quaternion.bytes() + position.bytes() + shape_omega.bytes() + omega.bytes() +
                           shape_velocity.bytes() + velocity.bytes() + curvature_rate.bytes() + integrand.bytes() +
                           angular_acceleration.bytes() + linear_acceleration.bytes() + density.bytes() +
-                          integral.bytes() + friction_laminar.bytes() + friction_excess.bytes() +
-                          turbulent_share.bytes() + turbulent_weight.bytes() + kink_density.bytes() + flow.bytes() +
-                          relative.bytes();
+                          friction_laminar.bytes() + friction_excess.bytes() + turbulent_share.bytes() +
+                          turbulent_weight.bytes() + flow.bytes() + relative.bytes();
         for (const Row& row : speed) sum += row.bytes();
         for (const Row& row : load_weight) sum += row.bytes();
         return sum + sizeof(*this);
