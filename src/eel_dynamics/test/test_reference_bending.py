@@ -178,18 +178,18 @@ def torques_of_table(table, time, law, q, qdot, th, thdot):
     Q += table.stop_stiffness * (low + high) + table.stop_damping * qdot * ((low < 0.0) | (high > 0.0))
     value, rate, _ = law.curvature(time, table.points)
     reference, reference_rate = (np.sum(table.projection * each[:, table.axis].T, axis=1) for each in (value, rate))
-    motor, acts = 0, table.actuators
-    for a, m in enumerate(acts.mode):
-        if acts.kind[a] == "torque":
-            Q[m] -= table.sign[m] * acts.torque[a].at(time)
+    motor = 0
+    for m, act in table.motors:
+        if isinstance(act, Torque):
+            Q[m] -= table.sign[m] * act.at(time)
             continue
-        angle, speed = (th[motor], thdot[motor]) if acts.series[a] else (q[m], qdot[m])
-        limit, fastest = acts.torque_limit[a], acts.speed_limit[a]
-        tau = acts.kp[a] * (reference[m] - angle) + acts.kd[a] * (reference_rate[m] - speed)
-        if np.isfinite(limit):
+        angle, speed = (th[motor], thdot[motor]) if act.has_spring else (q[m], qdot[m])
+        limit, fastest = act.torque_limit, act.speed_limit or np.inf
+        tau = act.kp * (reference[m] - angle) + act.kd * (reference_rate[m] - speed)
+        if limit is not None:
             tau = np.clip(tau, -limit * np.clip(1 + speed / fastest, 0, 1), limit * np.clip(1 - speed / fastest, 0, 1))
-        if acts.series[a]:
-            Q[m] -= acts.series_stiffness[a] * (angle - q[m]) + acts.series_damping[a] * (speed - qdot[m])
+        if act.has_spring:
+            Q[m] -= act.series_stiffness * (angle - q[m]) + act.series_damping * (speed - qdot[m])
             motor += 1
         else:
             Q[m] -= tau
@@ -210,4 +210,4 @@ def test_tables_give_the_reference_s_torques(time):
         assert table.armature == pytest.approx(reference.armature)
         free = reference.imposed(time)[0]
         law = falling().curvature(time, reference.space.x)[0]
-        assert np.allclose(free[:, 1:], law[:, 1:] * table.imposed(reference.space.x), atol=1e-15)
+        assert np.allclose(free[:, 1:], law[:, 1:] * table.imposed(reference.space.x).T, atol=1e-15)

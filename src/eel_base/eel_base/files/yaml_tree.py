@@ -2,12 +2,15 @@
 """Reads a YAML file into mappings, lists and scalars that know their lines. Size, levels and aliases are bounded."""
 
 import os
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, NoReturn, TypeVar
 
 import yaml
 
 from eel_base.files.input_file import InputFile, Misplaced, is_number
-from eel_base.wording import shown
+from eel_base.wording import did_you_mean, shown
+
+Made = TypeVar("Made")
 
 MOST_BYTES, MOST_NODES, DEEPEST = 500_000, 20_000, 32
 LONGEST_SCALAR = 1000  # characters of what is no text: a number, a date
@@ -95,3 +98,31 @@ class _Loader(yaml.SafeLoader):
         if depth > DEEPEST or nodes > self._most:
             rule = "too many levels" if depth > DEEPEST else f"more than {self._most} values, with all aliases"
             raise Misplaced(f"line {mark.line + 1}", rule)
+
+
+# -- errors of what is made of a document; a mapping that is no file's has no lines
+
+
+def fail(entries: Mapping[str, Any], key: str, reason: object) -> NoReturn:
+    """`Misplaced` at the `key` of a mapping, or at the mapping where the key is empty."""
+    line = [f"line {entries.lines.get(key, entries.line)}"] if isinstance(entries, Entries) else []
+    place = ", ".join([*line, *([f"key {shown(key)}"] if key else [])])
+    raise Misplaced(place or "document", str(reason)) from None
+
+
+def check_keys(entries: Mapping[str, Any], known: Iterable[str]) -> None:
+    """`Misplaced` for a key that is none of those `known`."""
+    names = list(known)
+    for key in entries:
+        if key not in names:
+            fail(entries, key, f"is unknown, must be one of {', '.join(names)}{did_you_mean(key, names)}")
+
+
+def tried(entries: Mapping[str, Any], key: str, make: Callable[..., Made], *arguments: Any, **options: Any) -> Made:
+    """What `make` makes of the arguments; its error is one at the `key`."""
+    try:
+        return make(*arguments, **options)
+    except Misplaced:
+        raise
+    except (ValueError, TypeError) as error:
+        fail(entries, key, error)

@@ -21,14 +21,13 @@ changes along the body is a table {x: [...], values: [...]}.
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, asdict, fields
-from functools import partial
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 import numpy as np
 from eel_base.files.input_file import Misplaced
-from eel_base.files.yaml_tree import Entries, read_yaml
-from eel_base.wording import did_you_mean, shown
+from eel_base.files.yaml_tree import check_keys, fail, read_yaml, tried
+from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
@@ -101,29 +100,24 @@ class RobotReader:
         """parts, and name and body where the document has them."""
         if not isinstance(root, Mapping):
             raise Misplaced("line 1", f"a robot must have keys such as joints, got {shown(root)}")
-        self._check_keys(root, FILE)
+        check_keys(root, FILE)
         found: dict[str, Any] = {"parts": []}
         for key, kind in LISTS.items():
             for entries in self._list(root, key):
                 found["parts"] += self._parts(kind, entries, root, key)
         if not found["parts"]:
-            self._fail(root, "joints", "must hold joints, or tails or muscles in their place, got none")
+            fail(root, "joints", "must hold joints, or tails or muscles in their place, got none")
         if "name" in root:
             found["name"] = root["name"]
         if "body" in root:
-            found["body"] = self._tried(root, "body", lambda: self._body(root["body"]))
+            found["body"] = tried(root, "body", self._body, root["body"])
         return found
 
     def _parts(self, kind: type[Any], entries: Any, root: Mapping[str, Any], key: str) -> list[Any]:
         """The parts of one entry: several joints, where it has several positions."""
         if not isinstance(entries, Mapping):
-            self._fail(root, key, f"must hold mappings of fields, got {shown(entries)}")
-        known = [item.name for item in fields(kind) if item.name != "actuator"]
-        self._check_keys(entries, (*known, *(("servo", "torque") if kind is Joint else ())))
-        given = {name: entries[name] for name in known if name in entries}
-        for item in fields(kind):
-            if item.default is MISSING and item.name not in given:
-                self._fail(entries, item.name, f"must be given for each of the {key}")
+            fail(root, key, f"must hold mappings of fields, got {shown(entries)}")
+        given = self._given(kind, entries, f"each of the {key}", ("servo", "torque") if kind is Joint else ())
         for name in ("bending_stiffness", "damping"):
             if kind is not Joint and isinstance(given.get(name), Mapping):
                 given[name] = self._made(ProfileTable, entries, name)
@@ -134,8 +128,19 @@ class RobotReader:
         if kind is not Joint or not isinstance(given["position"], list):
             return [self._built(kind, entries, given)]
         if "name" in given:
-            self._fail(entries, "name", "goes with one position")
+            fail(entries, "name", "goes with one position")
         return [self._built(kind, entries, given | {"position": place}) for place in given["position"]]
+
+    def _given(
+        self, kind: type[Any], entries: Mapping[str, Any], whose: str, further: tuple[str, ...] = ()
+    ) -> dict[str, Any]:
+        """The fields of a `kind` in a mapping, which may have `further` keys."""
+        known = [item.name for item in fields(kind) if item.name != "actuator"]
+        check_keys(entries, (*known, *further))
+        for item in fields(kind):
+            if item.default is MISSING and item.name not in entries:
+                fail(entries, item.name, f"must be given for {whose}")
+        return {name: entries[name] for name in known if name in entries}
 
     def _built(self, kind: type[Any], entries: Mapping[str, Any], given: dict[str, Any]) -> Any:
         """`kind` of the `given` fields; an error names the key that its text names."""
@@ -144,26 +149,22 @@ class RobotReader:
         except (ValueError, TypeError) as error:
             words = str(error).split()
             guilty = next((word for word in words if word in entries), "")
-            self._fail(entries, guilty, str(error))
+            fail(entries, guilty, str(error))
 
     def _made(self, kind: type[Any], above: Mapping[str, Any], key: str) -> Any:
         """`kind` of the fields in the mapping at `key`."""
         given = above[key]
         if not isinstance(given, Mapping):
-            self._fail(above, key, f"must be a mapping of fields, got {shown(given)}")
-        self._check_keys(given, [item.name for item in fields(kind)])
-        for item in fields(kind):
-            if item.default is MISSING and item.name not in given:
-                self._fail(given, item.name, f"must be given for {key}")
-        return self._built(kind, given, dict(given))
+            fail(above, key, f"must be a mapping of fields, got {shown(given)}")
+        return self._built(kind, given, self._given(kind, given, key))
 
     def _actuator(self, entries: Mapping[str, Any]) -> Servo | Torque | None:
         if "servo" in entries and "torque" in entries:
-            self._fail(entries, "torque", "does not go with servo")
+            fail(entries, "torque", "does not go with servo")
         if isinstance(entries.get("servo"), str):
             name = entries["servo"]
             if name not in SERVOS:
-                self._fail(entries, "servo", f"must be one of {', '.join(SERVOS)}, or a mapping, got {shown(name)}")
+                fail(entries, "servo", f"must be one of {', '.join(SERVOS)}, or a mapping, got {shown(name)}")
             return SERVOS[name]
         for key, kind in (("servo", Servo), ("torque", Torque)):
             if key in entries:
@@ -175,16 +176,14 @@ class RobotReader:
         axis, terms = entries.get("axis", "yaw"), []
         for each in self._list(entries, "moment"):
             if not isinstance(each, Mapping):
-                self._fail(
-                    entries, "moment", f"must hold terms, such as {{amplitude: [0.5], period: 1}}, got {shown(each)}"
-                )
-            self._check_keys(each, [item.name for item in fields(Term)])
+                fail(entries, "moment", f"must hold terms, such as {{amplitude: [0.5], period: 1}}, got {shown(each)}")
+            check_keys(each, [item.name for item in fields(Term)])
             given = {"axis": axis} | dict(each)
             for name in ("amplitude", "knots"):
                 if isinstance(given.get(name), list):
                     given[name] = tuple(given[name])
             ramps = self._list(each, "envelope")
-            given["envelope"] = self._tried(each, "envelope", partial(_envelope, ramps))
+            given["envelope"] = tried(each, "envelope", lambda ramps: tuple(Ramp(**ramp) for ramp in ramps), ramps)
             terms.append(self._built(Term, each, given))
         return Law(*terms)
 
@@ -200,26 +199,5 @@ class RobotReader:
     def _list(self, entries: Mapping[str, Any], key: str) -> list[Any]:
         found = entries.get(key, [])
         if not isinstance(found, (list, tuple)):
-            self._fail(entries, key, f"must be a list, got {shown(found)}")
+            fail(entries, key, f"must be a list, got {shown(found)}")
         return list(found)
-
-    def _check_keys(self, entries: Mapping[str, Any], known: Any) -> None:
-        for key in entries:
-            if key not in known:
-                self._fail(entries, key, f"is unknown, must be one of {', '.join(known)}{did_you_mean(key, known)}")
-
-    def _tried(self, entries: Mapping[str, Any], key: str, make: Callable[[], Any]) -> Any:
-        try:
-            return make()
-        except (ValueError, TypeError) as error:
-            if isinstance(error, Misplaced):
-                raise
-            self._fail(entries, key, str(error))
-
-    def _fail(self, entries: Mapping[str, Any], key: str, reason: str) -> NoReturn:
-        line = f"line {entries.lines.get(key, entries.line)}" if isinstance(entries, Entries) else "robot"
-        raise Misplaced(f"{line}, key {shown(key)}" if key else line, reason) from None
-
-
-def _envelope(ramps: list[Any]) -> tuple[Ramp, ...]:
-    return tuple(Ramp(**ramp) for ramp in ramps)
