@@ -19,7 +19,7 @@ from eel_base.wording import shown
 from eel_gaits.laws.law import MAXIMUM_TERMS
 from eel_gaits.ros.messages import ROWS
 from eel_model.axes import with_section_axes
-from eel_model.flow.lattice import lattice_around, velocities_at
+from eel_model.flow.flow import lattice_around, velocities_at
 from eel_model.robot.actuators import most_torque
 from eel_ros.headers import seconds_of
 from eel_ros.loop.serialised_message import SerialisedMessage

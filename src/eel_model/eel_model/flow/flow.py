@@ -7,7 +7,7 @@ the sum of both. Flows add by `+`.
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from eel_base.quantity import checked_instance, is_finite, numbers
@@ -17,6 +17,8 @@ from numpy.typing import ArrayLike
 import eel_core
 
 ROWS = 18  # numbers of a place in eel_core: x, u, u_t, and the Jacobian row by row
+SPACINGS = 6.0  # of a lattice, in a body's length
+REACH = np.array([8, 6, 3])  # spacings of a lattice to each side, along x, y and z
 
 
 class FlowSample(NamedTuple):
@@ -28,7 +30,12 @@ class FlowSample(NamedTuple):
 
 
 class Flow:
-    """A flow of the water. It never changes; two are equal where their fields are."""
+    """A flow of the water. It never changes; two are equal where their fields are.
+
+    vectors: names of the fields that lie in the plane where u does.
+    """
+
+    vectors: ClassVar[tuple[str, ...]] = ()
 
     def sources(self, planar: bool) -> list[tuple[Any, ...]]:
         """Its sources as `eel_core.Flow` takes them; planar: of a planar scene."""
@@ -52,7 +59,7 @@ class Flow:
     @property
     def in_plane(self) -> bool:
         """Whether u has no part along z and does not depend on it: a planar scene needs that."""
-        return True
+        return not any(np.atleast_2d(getattr(self, name))[:, 2].any() for name in self.vectors)
 
     @property
     def surface_height(self) -> float:
@@ -159,3 +166,24 @@ def check_covers(flow: Flow | None, duration: float) -> None:
     if flow is not None and not flow.span[0] <= 0.0 <= duration <= flow.span[1]:
         start, end = flow.span
         raise ValueError(f"flow time must cover the run, 0 to {duration:g} s, got {start:g} to {end:g} s")
+
+
+def lattice_around(place: np.ndarray, length: float, flow: Flow) -> np.ndarray:
+    """Points (n, 3) [m] at which a flow is shown around a `place` (3,) [m] of a body of this `length` [m].
+
+    They are multiples of a spacing, so that they stand still in the world. They lie in a horizontal sheet at the
+    place's height; an upright one along x crosses it where the flow changes with the height. Their number depends on
+    the flow alone.
+    """
+    spacing = length / SPACINGS
+    middle = np.round(np.asarray(place) / spacing)
+    x, y, z = (np.arange(-reach, reach + 1) for reach in REACH)
+    level = np.stack(np.meshgrid(x, y, [0], indexing="ij"), axis=-1).reshape(-1, 3)
+    upright = np.stack(np.meshgrid(x, [0], z[z != 0], indexing="ij"), axis=-1).reshape(-1, 3)
+    return np.asarray(spacing * (middle + (level if flow.in_plane else np.concatenate([level, upright]))))
+
+
+def velocities_at(flow: Flow, points: np.ndarray, time: float) -> np.ndarray:
+    """Velocities (n, 3) [m/s] at the `points` at `time` [s]; 0 where they are not known."""
+    velocity: np.ndarray = np.nan_to_num(flow.rows_at(points, time)[..., 3:6], nan=0.0)
+    return velocity

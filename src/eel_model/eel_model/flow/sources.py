@@ -25,6 +25,8 @@ class Uniform(Flow):
     after them. `ValueError` names what does not fit. The exact shift of frame of `Scene.current` costs less.
     """
 
+    vectors = ("velocity",)
+
     velocity: tuple[Any, ...]
     time: tuple[float, ...] | None = None
 
@@ -57,10 +59,6 @@ class Uniform(Flow):
     def time_scale(self) -> float:
         return np.inf if self.time is None else FEW_ROWS * float(np.diff(self.time).min())
 
-    @property
-    def in_plane(self) -> bool:
-        return not np.atleast_2d(self.velocity)[:, 2].any()
-
 
 @documented
 @dataclass(frozen=True, kw_only=True)
@@ -68,6 +66,8 @@ class Gust(Quantities, Flow):
     """A gust that is the same everywhere: it grows and falls by the smooth ramp f_r of eq. (64).
 
     Fields, with default, meaning, unit, and bounds:"""
+
+    vectors = ("velocity",)
 
     velocity: tuple[float, float, float] = quantity((0.1, 0.0, 0.0), "m/s", "of the water at its height")
     start: float = quantity(0.0, "s", "when it begins")
@@ -84,10 +84,6 @@ class Gust(Quantities, Flow):
         risen = self.start + self.rise
         return self.start, risen, risen + self.hold, risen + self.hold + self.fall
 
-    @property
-    def in_plane(self) -> bool:
-        return self.velocity[2] == 0.0
-
 
 @documented
 @dataclass(frozen=True, kw_only=True)
@@ -97,6 +93,8 @@ class Shear(Quantities, Flow):
     The theory is that of irrotational flow: see the limits in docs/howto/flow.md.
 
     Fields, with default, meaning, unit, and bounds or choices:"""
+
+    vectors = "velocity", "across"
 
     velocity: tuple[float, float, float] = quantity((0.1, 0.0, 0.0), "m/s", "of the water far to one side")
     across: tuple[float, float, float] = quantity((0.0, 1.0, 0.0), "", "direction in which the velocity changes")
@@ -122,13 +120,11 @@ class Shear(Quantities, Flow):
     def shortest_wave(self) -> float:
         return np.inf if self.profile == "linear" else TURN * self.width
 
-    @property
-    def in_plane(self) -> bool:
-        return self.velocity[2] == 0.0 and self.across[2] == 0.0
-
 
 class _Vortices(Flow):
     """What vortices about vertical axes share: the fields `circulation`, `core`, `drift`."""
+
+    vectors = ("drift",)
 
     circulation: float
     core: float
@@ -142,10 +138,6 @@ class _Vortices(Flow):
     @property
     def shortest_wave(self) -> float:
         return TURN * self.core
-
-    @property
-    def in_plane(self) -> bool:
-        return self.drift[2] == 0.0
 
 
 @documented
@@ -209,6 +201,8 @@ class Wave(Quantities, Flow):
 
     Fields, with default, meaning, unit, and bounds:"""
 
+    in_plane = False
+
     amplitude: float = quantity(0.1, "m", "of the surface", 0.0)
     wavelength: float = quantity(5.0, "m", "2 pi / k", 0.0, exclusive=True)
     direction: tuple[float, float] = quantity((1.0, 0.0), "", "horizontal direction in which it runs")
@@ -231,10 +225,6 @@ class Wave(Quantities, Flow):
     @property
     def shortest_wave(self) -> float:
         return self.wavelength
-
-    @property
-    def in_plane(self) -> bool:
-        return False
 
     @property
     def surface_height(self) -> float:

@@ -25,6 +25,8 @@ class Course(Flow):
     values, rates: (n, 3) [m/s], [m/s^2] at the knots.
     """
 
+    vectors = ("values",)
+
     knots: tuple[float, ...]
     values: tuple[tuple[float, ...], ...]
     rates: tuple[tuple[float, ...], ...]
@@ -44,10 +46,6 @@ class Course(Flow):
     @property
     def time_scale(self) -> float:
         return PERIODS * float(np.diff(self.knots).min())
-
-    @property
-    def in_plane(self) -> bool:
-        return not np.array(self.values)[:, 2].any()
 
 
 class CurrentStream:

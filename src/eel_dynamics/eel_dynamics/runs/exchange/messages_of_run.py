@@ -9,7 +9,7 @@ import numpy as np
 from eel_base.topics import ENERGY_FIELDS
 from eel_model.body.body import Body
 from eel_model.fins.fins import SIDES, Fin
-from eel_model.flow.lattice import lattice_around, velocities_at
+from eel_model.flow.flow import lattice_around, velocities_at
 from eel_model.robot.actuators import most_torque
 from eel_model.robot.part import AXES
 from eel_model.robot.robot import Robot
