@@ -8,6 +8,7 @@ from importlib import import_module
 
 import eel_command  # noqa: F401  first: Ctrl-C ends a command during the other imports
 
+import eel_model
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.settling import Unsettled
 from eel_dynamics.analysis.trim import Ballast, Trim, ballast_for, trim_of
@@ -22,62 +23,21 @@ from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.prescribed import HydrodynamicWrench, hydrodynamic_wrench
 from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.stopping import SimulationStopped
-from eel_model import (
-    Body,
-    Fin,
-    Flow,
-    FlowField,
-    FlowSample,
-    GriddedFlow,
-    Gust,
-    Joint,
-    Muscle,
-    PassiveTail,
-    Robot,
-    RollHold,
-    Scene,
-    Servo,
-    Shear,
-    Torque,
-    Uniform,
-    Vortex,
-    VortexStreet,
-    Wave,
-)
+from eel_model import *  # noqa: F403  the swimmer and its water
 
 __all__ = [
     "Accuracy",
     "Ballast",
     "Batch",
-    "Body",
     "EnergyLedger",
-    "Fin",
-    "Flow",
-    "FlowField",
-    "FlowSample",
-    "GriddedFlow",
-    "Gust",
     "HydrodynamicWrench",
-    "Joint",
-    "Muscle",
-    "PassiveTail",
-    "Robot",
-    "RollHold",
     "Run",
-    "Scene",
-    "Servo",
-    "Shear",
     "Simulation",
     "SimulationStopped",
     "Snapshot",
     "Swim",
-    "Torque",
     "Trim",
-    "Uniform",
     "Unsettled",
-    "Vortex",
-    "VortexStreet",
-    "Wave",
     "ballast_for",
     "hydrodynamic_wrench",
     "load_scene",
@@ -86,6 +46,7 @@ __all__ = [
     "simulate_batch",
     "trim_of",
 ]
+__all__ += eel_model.__all__
 
 STUDIES = (
     "Front",

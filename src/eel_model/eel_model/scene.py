@@ -87,9 +87,7 @@ class Scene(Quantities):
         choices=TAIL_PRESSURE,
     )
     current: tuple[float, float, float] = quantity(
-        (0.0, 0.0, 0.0),
-        "m/s",
-        "uniform velocity (x, y, z) of the water, world frame; against the eel: x < 0",
+        (0.0, 0.0, 0.0), "m/s", "uniform velocity (x, y, z) of the water, world frame; against the eel: x < 0"
     )
     density: float | None = quantity(
         None, "kg/m^3", "density of the body, overrides the body's own", 0.0, exclusive=True

@@ -23,6 +23,7 @@ from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.analysis.measures import MEASURES, measures_of
 from eel_dynamics.analysis.settling import tell_unsettled
 from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.run_data import ObservedArrays
 from eel_dynamics.runs.run_picture import lines_of_batch, picture_of_batch
 from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.storage.netcdf import loaded, write
@@ -30,7 +31,6 @@ from eel_dynamics.runs.storage.run_contents import contents_of_batch, fins_of, w
 from eel_dynamics.runs.storage.tables import dataset_of, frame_of_all, needed
 from eel_dynamics.runs.storage.variables import COUNTS, OWN, VARIABLES, Contents, documented_arrays, fields_of_arrays
 from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS
-from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import FINS, LOAD, WRENCH
 from eel_dynamics.simulation.stopping import SimulationStopped
 
@@ -38,8 +38,8 @@ ALONG = "backbone", "section_orientation", "curvature", "curvature_rate", "torqu
 
 
 @documented_arrays("batch")
-@dataclass(frozen=True, eq=False, repr=False)
-class Batch:
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Batch(ObservedArrays):
     """B swimmers, T samples, M stations, in the axes and units of `Run`.
 
     Values after the last valid sample of a swimmer that stopped are 0, see `valid`. Profiles are None without stations;
@@ -52,40 +52,19 @@ class Batch:
     bodies: tuple[Body, ...]
     scenes: tuple[Scene, ...]
     accuracies: tuple[Accuracy, ...]
-    time: np.ndarray
     samples: np.ndarray
     error: tuple[SimulationStopped | None, ...]  #: why each swimmer stopped: time, quantity, value, hint
     steps: np.ndarray
     evaluations: np.ndarray
     nodes: np.ndarray
     error_estimates: tuple[ErrorEstimate | None, ...]  #: None where none was wanted, or the swimmer stopped
-    position: np.ndarray
-    orientation: np.ndarray
-    twist: np.ndarray
-    head_acceleration: np.ndarray
-    center_of_mass: np.ndarray
-    x: np.ndarray
     backbone: np.ndarray | None
     section_orientation: np.ndarray | None
     curvature: np.ndarray | None
     curvature_rate: np.ndarray | None
-    torque: np.ndarray | None
-    force: np.ndarray | None
-    fluid_force: np.ndarray | None
-    energy: EnergyLedger | None
     flows: tuple[Flow | None, ...] = ()
     robots: tuple[Robot | None, ...] = ()
     fins: tuple[tuple[Fin, ...], ...] = ()  #: of each swimmer; fewer than F leave 0 in the arrays
-    fin_angle: np.ndarray | None = None
-    fin_force: np.ndarray | None = None
-    joint_angle: np.ndarray | None = None
-    joint_rate: np.ndarray | None = None
-    joint_torque: np.ndarray | None = None
-    motor_angle: np.ndarray | None = None
-    motor_torque: np.ndarray | None = None
-    motor_power: np.ndarray | None = None
-    mode_amplitude: np.ndarray | None = None
-    mode_rate: np.ndarray | None = None
     _arrays: dict[str, np.ndarray] = field(default_factory=dict)  # all, as of `storage.variables.arrays_of`
     _energy_at_start: np.ndarray | None = None  # (B,) J
 

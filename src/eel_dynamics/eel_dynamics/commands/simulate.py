@@ -29,16 +29,13 @@ from eel_gaits.gaits.sequence import sequence_from_file
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.motion_file import read_motion
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.body.body import Body, body_of
-from eel_model.fins.text import fins_from_text
-from eel_model.flow.text import flow_from_text
-from eel_model.robot.robot import robot_of
+from eel_model.body.body import Body
 from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.joint_demand import MOST_JOINTS
 from eel_dynamics.commands.filmed import EEL, add_film_options, beat_from, body_for, effect_of_fit
-from eel_dynamics.commands.options import add_options, scene_of, set_numbers
+from eel_dynamics.commands.options import add_options, set_numbers
 from eel_dynamics.commands.scene_options import swim_from
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.scene_file import SUFFIXES as SCENES
@@ -152,23 +149,15 @@ def main(options: argparse.Namespace) -> int:
 
 def _swim_of(options: argparse.Namespace, beat: Beat | None) -> Swim:
     """The swim that the options tell: of a gait, a file of a motion, or the `beat` of a film."""
-    robot = robot_of(options.robot)
-    own = None if robot is None or options.body else robot.body
-    body = own or (body_of(options.body or "boyer2010") if beat is None else body_for(options.body, beat.film))
-    law, duration = _law(options, body, beat), options.duration
+    swim, duration = swim_from("falling", options), options.duration
+    if beat is not None and (options.body or swim.robot is None or swim.robot.body is None):
+        swim = swim._replace(body=body_for(options.body, beat.film))
+    law = _law(options, swim.body, beat)
     if duration is None and beat is not None:
         duration = UNTIL_SETTLED
     elif duration is None:
         duration = law.duration if isinstance(law, SampledLaw) else DURATION
-    more = {
-        "flow": flow_from_text(options.flow),
-        "robot": robot,
-        "fins": fins_from_text(options.fins),
-        "duration": duration,
-        "sample_period": options.sample_period,
-        "stations": options.stations or STATIONS,
-    }
-    return Swim(law, body, scene_of(options.scene), options.accuracy or "standard", **more)
+    return swim._replace(law=law, duration=duration, gait=None)
 
 
 def _scene_of_file(options: argparse.Namespace) -> Swim:

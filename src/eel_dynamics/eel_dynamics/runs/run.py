@@ -38,7 +38,7 @@ MOST_UNSMOOTHED = 5_000.0  # evaluations per simulated second of a motion withou
 
 
 @documented_arrays("run")
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Run(RunData):
     """A run: T samples at M stations, in SI units. At rest the body lies along -x from the head; it swims towards +x.
 

@@ -27,14 +27,10 @@ from eel_dynamics.simulation.observations import OBSERVED, Snapshot
 WHOLE = "energies", "powers", "closure"  # of what is observed: a run has the ledger, and the closures one by one
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class RunData:
-    """What a run holds; `Run` documents it."""
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class ObservedArrays:
+    """The arrays that a run and a batch have in common; what was not asked for is None."""
 
-    law: Law | SampledLaw
-    body: Body
-    scene: Scene
-    accuracy: Accuracy
     time: np.ndarray
     position: np.ndarray
     orientation: np.ndarray
@@ -42,29 +38,12 @@ class RunData:
     head_acceleration: np.ndarray
     center_of_mass: np.ndarray
     x: np.ndarray
-    backbone: np.ndarray
-    section_orientation: np.ndarray
-    curvature: np.ndarray
-    curvature_rate: np.ndarray
     torque: np.ndarray | None
     force: np.ndarray | None
     fluid_force: np.ndarray | None
-    resistive_force: np.ndarray | None
-    tail_force: np.ndarray | None
-    nose_force: np.ndarray | None
-    wake_momentum_rate: np.ndarray | None
     energy: EnergyLedger | None
-    closure_torque: np.ndarray | None
-    closure_force: np.ndarray | None
-    steps: int
-    evaluations: int
-    nodes: int
-    error_estimate: ErrorEstimate | None = None  #: None where none was wanted, or for fewer than two samples
-    flow: Flow | None = None  #: of the water; its own numbers are in REP-103 axes always
-    fins: tuple[Fin, ...] = ()
     fin_angle: np.ndarray | None = None
     fin_force: np.ndarray | None = None
-    robot: Robot | None = None  #: what bends by itself; the joints' arrays are None without one
     joint_angle: np.ndarray | None = None
     joint_rate: np.ndarray | None = None
     joint_torque: np.ndarray | None = None
@@ -73,6 +52,33 @@ class RunData:
     motor_power: np.ndarray | None = None
     mode_amplitude: np.ndarray | None = None
     mode_rate: np.ndarray | None = None
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class RunData(ObservedArrays):
+    """What a run holds; `Run` documents it."""
+
+    law: Law | SampledLaw
+    body: Body
+    scene: Scene
+    accuracy: Accuracy
+    backbone: np.ndarray
+    section_orientation: np.ndarray
+    curvature: np.ndarray
+    curvature_rate: np.ndarray
+    resistive_force: np.ndarray | None
+    tail_force: np.ndarray | None
+    nose_force: np.ndarray | None
+    wake_momentum_rate: np.ndarray | None
+    closure_torque: np.ndarray | None
+    closure_force: np.ndarray | None
+    steps: int
+    evaluations: int
+    nodes: int
+    error_estimate: ErrorEstimate | None = None  #: None where none was wanted, or for fewer than two samples
+    flow: Flow | None = None  #: of the water; its own numbers are in REP-103 axes always
+    fins: tuple[Fin, ...] = ()
+    robot: Robot | None = None  #: what bends by itself; the joints' arrays are None without one
     axes: str = REP103  #: of world and head: "rep103" (x forward, y left, z up), or "paper"
 
     @classmethod

@@ -174,8 +174,7 @@ def _of_start(field: str, part: slice = slice(None)) -> Word:
 def _number(name: str, default: Any) -> Word:
     """A word that is a field of its own."""
     return Word(
-        lambda swim, value: {name: value},
-        lambda swim: None if getattr(swim, name) == default else getattr(swim, name),
+        lambda swim, value: {name: value}, lambda swim: None if getattr(swim, name) == default else getattr(swim, name)
     )
 
 

@@ -99,10 +99,7 @@ class SwimRequest(NamedTuple, Generic[Kind]):
         return Simulation(**setup.arguments, law=self.law)
 
     def swim(
-        self,
-        simulation: Simulation,
-        look: Callable[[float], None] | None = None,
-        out: Observations | None = None,
+        self, simulation: Simulation, look: Callable[[float], None] | None = None, out: Observations | None = None
     ) -> SwimResult[Kind]:
         """Swim it with a `simulation` of its own, at its start. look, out: as in `Simulation.record`."""
         instants, setup = self.instants, self.setup

@@ -183,12 +183,7 @@ class Simulation(Present):
         self._on_both(lambda march: march.command_fins(angles))
 
     def command(
-        self,
-        joint: str,
-        *,
-        position: float | None = None,
-        velocity: float | None = None,
-        effort: float | None = None,
+        self, joint: str, *, position: float | None = None, velocity: float | None = None, effort: float | None = None
     ) -> None:
         """Have the servo of a robot's `joint` hold a position [rad], turn with a velocity [rad/s], or give an effort
         [N m], from now on and whatever the law; with none of them, follow the law again.

@@ -19,14 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
-from eel_model.body.grid import (
-    Grid,
-    Panel,
-    collocation_matrix,
-    integration_matrix,
-    interpolation_matrix,
-    radau_points,
-)
+from eel_model.body.grid import Grid, Panel, collocation_matrix, integration_matrix, interpolation_matrix, radau_points
 
 # Points of Gauss' rule in each part between two breaks, and how many equal parts of a panel are short enough for them
 # beside the waves of its polynomials.

@@ -98,9 +98,7 @@ def fields_of_messages(
     return found | {"energy": _energy(rows, found["time"])}
 
 
-def _collected(
-    messages: Iterable[tuple[str, Any]],
-) -> tuple[dict[str, Any], dict[str, dict[int, Any]]]:
+def _collected(messages: Iterable[tuple[str, Any]]) -> tuple[dict[str, Any], dict[str, dict[int, Any]]]:
     """Messages of topics that come once (the last, all laws), and by topic those of the samples by stamp [ns].
 
     Of several of one stamp, as a node sends them that waits at its start, the last counts.

@@ -107,7 +107,8 @@ def documented_arrays(kind: str) -> Callable[[Kind], Kind]:
 
     def documented(owner: Kind) -> Kind:
         lines = []
-        for name in (item.name for item in fields(owner) if item.name in OWN | OF_SWIMMERS):
+        names = {item.name for item in fields(owner)}
+        for name in (name for name in OWN | OF_SWIMMERS if name in names):
             dimensions, unit, description = variable_of(kind, name)
             shape = [SIZES[each] if each in SIZES else str(len(LABELS[each])) for each in dimensions]
             size = f"({', '.join(shape)}{',' if len(shape) == 1 else ''})" if shape else "a whole number"
