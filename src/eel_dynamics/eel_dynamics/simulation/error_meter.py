@@ -12,8 +12,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from eel_gaits.laws.law import Law
-from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.accuracy import OTHER_GRIDS
 from eel_dynamics.accuracy.error_estimate import (
@@ -24,7 +22,6 @@ from eel_dynamics.accuracy.error_estimate import (
     growth_rate_of,
     least_torque,
 )
-from eel_dynamics.accuracy.grid_settings import ShapeNeeds
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.stopping import SimulationStopped
@@ -58,11 +55,6 @@ class ErrorMeter:
         self.due = False  # whether the next instant is to be compared, as torques have jumped
         self.begin_again(march)
 
-    def restart(self, march: March):
-        """Measure a `march` that has been reset."""
-        self.lost_at = None
-        self.begin_again(march)
-
     def begin_again(self, march: March, growth_rate: float = 0.0):
         """Let the companion begin from the present state. `growth_rate` [1/s]: until a new one is measured."""
         self.measured_since = self._compared_at = march.time
@@ -88,33 +80,25 @@ class ErrorMeter:
 
     def catch_up(self, march: March, interrupted: Callable[[], bool] | None = None):
         """Have the companion at the present time, so that what happens next happens to both at once."""
+
+        def advance(companion: March) -> None:
+            companion.advance(march.time, interrupted)
+
         if self._companion is not None and self._companion.time < march.time:
-            self.repeat(lambda companion: companion.advance(march.time, interrupted))
+            self.repeat(advance)
 
-    def change_law(self, march: March, law: Law | SampledLaw, origin: float, transition: float, needs: ShapeNeeds):
-        """As the `march` has done: `March.change_law`."""
-        self.repeat(lambda companion: companion.change_law(law, origin, transition, needs))
-        if self._has_same_grid(march):
-            self.begin_again(march)
-
-    def begin_with(self, march: March, law: Law | SampledLaw, origin: float):
-        """As the `march` has done before its start: `March.from_start`."""
-        if (there := self._companion) is not None:
+    def repeat(self, action: Callable[[March], March | None]):
+        """Have the companion do what the march has done; an action may return another march in its place."""
+        if self._companion is not None:
             try:
-                self._companion = March.from_start(there.setup, law, origin, there.settings)
+                self._companion = action(self._companion) or self._companion
             except FAILURES:
                 self._companion = None
+
+    def keep_apart(self, march: March):
+        """After a change of the law: the companion begins again where its grid is that of the `march`."""
         if self._has_same_grid(march):
             self.begin_again(march)
-
-    def repeat(self, action: Callable[[March], object]):
-        """Have the companion do what the march has done."""
-        if self._companion is None:
-            return
-        try:
-            action(self._companion)
-        except FAILURES:
-            self._companion = None
 
     # -- comparisons
 

@@ -102,6 +102,10 @@ class March:
         except SimulationStopped as stopped:
             raise stopped if law is None else not_begun(law, stopped) from None
 
+    def begun_with(self, law: Law | SampledLaw, origin: float) -> "March":
+        """A march from the start under `law`, on a grid that is no coarser. `ValueError` as of `from_start`."""
+        return March.from_start(self.setup, law, origin, self.settings)
+
     def copy_with(self, setup: SimulationSetup) -> "March":
         """A copy in the present state, on a grid for the accuracy of `setup`, which differs in that or in its robot."""
         copied, finer = deepcopy(self), setup.settings.resolution / self.setup.settings.resolution

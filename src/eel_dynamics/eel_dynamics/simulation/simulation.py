@@ -103,20 +103,16 @@ class Simulation(Present):
         own transition, or during the default one. After the last row of a `SampledLaw` the shape comes to rest.
         `ValueError` for a law that the scene does not allow.
         """
-        needs, march, meter = self._setup.shape_needs(law), self._march, self._meter
+        needs = self._setup.shape_needs(law)
         if not is_finite(origin):
             raise ValueError(f"law origin must be finite, got {shown(origin)} s")
         origin, blend = float(origin), self._setup.transition_to(law, transition)
         if self._started:
-            if meter is not None:
-                meter.catch_up(march)
-            march.change_law(law, origin, blend, needs)
-            if meter is not None:
-                meter.change_law(march, law, origin, blend, needs)
+            self._on_both(lambda march: march.change_law(law, origin, blend, needs))
         else:
-            self._march = march = March.from_start(march.setup, law, origin, march.settings)
-            if meter is not None:
-                meter.begin_with(march, law, origin)
+            self._on_both(lambda march: march.begun_with(law, origin))
+        if self._meter is not None:
+            self._meter.keep_apart(self._march)
         self.ready = True
 
     def add_samples(
@@ -208,11 +204,14 @@ class Simulation(Present):
         if self._meter is not None:
             self._meter.due = True
 
-    def _on_both(self, action: Callable[[March], object]) -> None:
-        """Do it to the march and, where the error is measured, to its companion, at the same time."""
+    def _on_both(self, action: Callable[[March], March | None]) -> None:
+        """Do it to the march and, where the error is measured, to its companion, at the same time.
+
+        An action may return another march in its place.
+        """
         if self._meter is not None:
             self._meter.catch_up(self._march)
-        action(self._march)
+        self._march = action(self._march) or self._march
         if self._meter is not None:
             self._meter.repeat(action)
 
@@ -283,7 +282,7 @@ class Simulation(Present):
         self.currents = CurrentStream(self._setup.default_transition)
         self.ready, self._started = self.law is not None, False
         if self._meter is not None:
-            self._meter.restart(self._march)
+            self._meter = ErrorMeter(self._march)
 
     def record(
         self,
