@@ -71,7 +71,11 @@ class LawFollower:
         def convert(rows: np.ndarray) -> np.ndarray:
             return tabulation.columns(values_at_nodes(rows[..., :nodes]))
 
-        source = self._source.moved(tabulation, convert)
+        source = self._source
+        if source.law is not None:
+            source = TabulatedLaw.of_law(source.law, source.origin, tabulation)
+        else:
+            source = source._replace(rows=convert(source.rows), tables=None)
         if self._blend is not None:
             self._blend = self._blend._replace(difference=convert(self._blend.difference))
         self._tabulation, self._spline, self._last = tabulation, None, None
@@ -153,7 +157,7 @@ class LawFollower:
 
         Ramps, blends and samples do not count, because they begin and end on steps.
         """
-        return self._source.shortest_period
+        return min((period for period, *_ in self._source.waves if period > 0.0), default=np.inf)
 
     def speed(self, length: float) -> float:
         """Order of magnitude of the speed [m/s] that the law gives to a body of `length` [m].

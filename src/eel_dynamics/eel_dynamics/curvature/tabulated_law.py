@@ -11,7 +11,6 @@ The difference between a motion and the law that takes over, and the quintic bet
 the same form. `eel_core.LawOnGrid` holds both and evaluates them.
 """
 
-from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -116,17 +115,6 @@ class TabulatedLaw(NamedTuple):
         """The quintic between two samples of a controller from `start` to `end` [s]. rows (12, width): for each axis
         value, rate and acceleration at both."""
         return TabulatedLaw(rows, SEGMENT_AXES, segment=(start, end))
-
-    def moved(self, tabulation: Tabulation, convert: Callable[[np.ndarray], np.ndarray]) -> "TabulatedLaw":
-        """The same on another grid: a law is tabulated anew, other rows are converted by convert(rows)."""
-        if self.law is not None:
-            return TabulatedLaw.of_law(self.law, self.origin, tabulation)
-        return self._replace(rows=convert(self.rows), tables=None)
-
-    @property
-    def shortest_period(self) -> float:
-        """Of the law [s]; inf where it has none."""
-        return min((period for period, *_ in self.waves if period > 0.0), default=np.inf)
 
     @property
     def breakpoints(self) -> tuple[float, ...]:

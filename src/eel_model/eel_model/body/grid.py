@@ -106,13 +106,9 @@ class Grid:
         previous = np.concatenate(([0.0], x[:-1]))
         return Grid(panels, x, weight, previous, first, count, matrix, fractions, barycentric, series)
 
-    def points_at(self, x: np.ndarray) -> PanelPoints:
-        """The points at X = `x` (M,) [m], ascending."""
-        return PanelPoints(*self.rows_at(x, "integral"), self.fraction_at(x))
-
     def interpolation_at(self, x: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
         """The function from fields at the nodes (..., n) to their values at X = `x` (M,) [m]: (..., M)."""
-        rows, first, _ = self.rows_at(x, "value")
+        rows, first, *_ = self.points_at(x, "value")
         last = len(self.x) - 1
 
         def values(fields: np.ndarray) -> np.ndarray:
@@ -126,32 +122,25 @@ class Grid:
         ends = np.array([panel.end for panel in self.panels])
         return np.asarray(np.minimum(np.searchsorted(ends, x, side="left"), len(ends) - 1))
 
-    def fraction_at(self, x: np.ndarray) -> np.ndarray:
-        """The variable (M,) of the panel that holds X = `x` (M,) [m]."""
-        home, result = self.panel_at(x), np.empty(len(x))
-        for index, panel in enumerate(self.panels):
-            result[home == index] = panel.fraction(x[home == index])
-        return result
-
-    def rows_at(self, x: np.ndarray, kind: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Rows that turn nodal values into values at X = `x` (M,) [m].
+    def points_at(self, x: np.ndarray, kind: str = "integral") -> PanelPoints:
+        """The points at X = `x` (M,) [m], ascending, with rows that turn nodal values into values there.
 
         kind "integral": the integral from the start of the panel to X [m]. kind "value": the interpolating polynomial.
-        Returns the rows (M, p_max), and for each its panel's first node (M,) and number of points (M,).
         """
         maker = {"integral": integration_matrix, "value": interpolation_matrix}[kind]
         x = np.asarray(x, dtype=float)
-        rows = np.zeros((len(x), self.matrix.shape[1]))
-        begins = np.concatenate(([0], np.cumsum([panel.points for panel in self.panels])))
-        home = self.panel_at(x)
+        home, rows, fraction = self.panel_at(x), np.zeros((len(x), self.matrix.shape[1])), np.empty(len(x))
+        counts = np.array([panel.points for panel in self.panels])
         for index, panel in enumerate(self.panels):
             here = np.flatnonzero(home == index)
             if len(here):
-                part = maker(panel.points, panel.fraction(x[here]))
+                fraction[here] = panel.fraction(x[here])
+                part = maker(panel.points, fraction[here])
                 if kind == "integral":
                     part = part * panel.locate(radau_points(panel.points))[1]
                 rows[here, : panel.points] = part
-        return rows, begins[home].astype(np.uintp), np.array([self.panels[k].points for k in home], dtype=np.uintp)
+        first = (np.cumsum(counts) - counts)[home]
+        return PanelPoints(rows, first.astype(np.uintp), counts[home].astype(np.uintp), fraction)
 
 
 @cache
