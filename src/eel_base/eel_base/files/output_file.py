@@ -34,8 +34,7 @@ class Draft:
     """A new file at `path`, to be written. `complete` gives it its `name`; `discard` removes it.
 
     since: the start [ns, of `time.time_ns`], where the command has not begun before (`command_begins`); None: now.
-    A file that is newer has appeared since, unless this process wrote it. `OSError` where `name` cannot be written, or
-    held something other than an older output at the start.
+    `OSError` where `name` cannot be written, or held something other than an older output at the start.
     """
 
     def __init__(self, name: str | os.PathLike[str], since: int | None = None) -> None:
@@ -54,10 +53,8 @@ class Draft:
         return self._older is not None and _identity(self.name) == self._older
 
     def complete(self) -> Path:
-        """Give the file its name, in place of the older one, or one with a number; returns it.
-
-        `OSError` where that fails; the draft then stays.
-        """
+        """Give the file its name, in place of the older one, or one with a number; returns it. `OSError` where that
+        fails; the draft then stays."""
         with self.path.open("rb") as file:
             os.fsync(file.fileno())
         name = self.name
@@ -121,10 +118,9 @@ def check_output(argument: str, name: str | os.PathLike[str]) -> None:
 
 @contextlib.contextmanager
 def replacing(name: str | os.PathLike[str], since: int | None = None) -> Iterator[Path]:
-    """The path to which to write the output `name`. The output is complete when the context ends without an error.
+    """The path to which to write the output `name`. It is complete when the context ends without an error.
 
-    since: as in `Draft`. A warning says where the output has got a number. `NotWritten` where an `OSError` occurs
-    within.
+    since: as in `Draft`. A warning says where it has got a number. `NotWritten` where an `OSError` occurs within.
     """
     with contextlib.ExitStack() as undo:
         try:

@@ -53,8 +53,6 @@ class Dive(Wave):
 
 @dataclass(frozen=True, kw_only=True)
 class Slope(Wave):
-    """The forward wave with one bend in pitch, after which the body swims on down a slope."""
-
     pitch_bend: float = bend_quantity(0.4, "pitch curvature of the dive; positive: down, negative: up")
     bend_start: float = instant_quantity(1.0, "the bend begins")
     bend_full: float = instant_quantity(2.5, "the bend is complete", "bend_start")
@@ -75,16 +73,12 @@ class Spiral(Wave):
 
 @dataclass(frozen=True, kw_only=True)
 class Roll(Periodic):
-    """A bend of the whole body whose direction turns about the backbone."""
-
     pitch_amplitude: float = bend_quantity(1.0, "amplitude in pitch")
     yaw_amplitude: float = bend_quantity(1.0, "amplitude in yaw")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Helix(Periodic):
-    """Equal waves in pitch and yaw, a quarter of a period apart: a corkscrew that runs to the tail."""
-
     wavelength: float = wavelength_quantity(1.0, "wavelength of the helix")
     pitch_amplitude: float = bend_quantity(1.5, "amplitude in pitch")
     yaw_amplitude: float = bend_quantity(1.5, "amplitude in yaw")
@@ -92,8 +86,6 @@ class Helix(Periodic):
 
 @dataclass(frozen=True, kw_only=True)
 class RollOver(Periodic):
-    """A bend whose direction turns about the backbone for some periods."""
-
     bend: float = bend_quantity(0.3, "amplitude of the bend; positive: the left side goes up, negative: the right side")
     start_periods: float = quantity(3.0, "periods", "length of the start and of the end", 0.01, 1e3)
     hold_periods: float = quantity(1.1, "periods", "time between start and end", 0.0, 1e3)

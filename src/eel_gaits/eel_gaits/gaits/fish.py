@@ -54,8 +54,6 @@ class Fish(PeriodicBody):
 
 @dataclass(frozen=True, kw_only=True)
 class Carangiform(Fish):
-    """A midline whose lateral amplitude is a quadratic in X."""
-
     waves: float = waves_quantity(1.0 / 0.95)
     lateral_0: float = _lateral(0.02, "lateral amplitude at the nose, a0")
     lateral_1: float = _lateral(-0.0825, "growth of the lateral amplitude with X / L, a1")
@@ -64,8 +62,6 @@ class Carangiform(Fish):
 
 @dataclass(frozen=True, kw_only=True)
 class Anguilliform(Fish):
-    """A midline whose lateral amplitude grows exponentially with X."""
-
     waves: float = waves_quantity(1.0 / 0.642)
     lateral_tail: float = _lateral(0.089, "lateral amplitude at the tail, a_tail")
     growth: float = quantity(1.0, "", "growth of the lateral amplitude, growth", -10.0, 10.0)
@@ -101,8 +97,6 @@ class Kern(PeriodicBody):
 
 @dataclass(frozen=True, kw_only=True)
 class EfficientKern(Kern):
-    """The numbers of `Kern` for the gait that was optimised for efficiency."""
-
     waves: float = quantity(1.72, "", "waves on the body, tau", 0.0, 100.0)
     bend_nose: float = _scaled_bend(3.34, "the nose")
     bend_third: float = _scaled_bend(1.67, "one third of the body")

@@ -29,8 +29,6 @@ from eel_gaits.laws.term import Term
 
 @dataclass(frozen=True, kw_only=True)
 class Serpenoid(PeriodicBody):
-    """A serpenoid curve that travels along itself, with a lasting bend."""
-
     waves: float = waves_quantity(1.0)
     winding_angle: float = quantity(0.5, "rad", "greatest angle of the backbone to its mean direction", -1e3, 1e3)
     left_bend: float = left_quantity(0.0, "yaw curvature of a turn")
@@ -38,8 +36,6 @@ class Serpenoid(PeriodicBody):
 
 @dataclass(frozen=True, kw_only=True)
 class JointWave(PeriodicBody):
-    """A wave of the angles of n joints."""
-
     joints: float = quantity(10.0, "", "number of joints, n", 1.0, 1000.0, whole=True)
     joint_amplitude: float = quantity(0.35, "rad", "amplitude of the joint angles, alpha", -math.pi, math.pi)
     joint_phase: float = quantity(0.6, "rad", "phase from joint to joint, delta", -math.pi, math.pi)

@@ -51,8 +51,6 @@ class Wave(Periodic):
 
 @dataclass(frozen=True, kw_only=True)
 class TurningWave(Wave):
-    """The forward wave with a lasting bend in yaw."""
-
     left_bend: float = left_quantity(-0.5, "yaw curvature of the turn")
     bend_start: float = instant_quantity(1.0, "the turn begins")
     bend_full: float = instant_quantity(2.0, "the bend of the turn is complete", after="bend_start")
@@ -60,8 +58,6 @@ class TurningWave(Wave):
 
 @dataclass(frozen=True, kw_only=True)
 class Start(Wave):
-    """A strong bend of the whole body, and the forward wave that follows it."""
-
     left_bend: float = left_quantity(-4.0, "yaw curvature of the C")
     bend_time: float = duration_quantity(0.5, "time in which the body bends into the C")
     return_time: float = duration_quantity(0.4, "time in which it straightens")
@@ -75,23 +71,14 @@ class Bursts(Wave):
     burst_periods: float = quantity(1.0, "periods", "time at full amplitude in a burst", 0.0, 1e4)
     coast_time: float = duration_quantity(3.0, "time of the straight body between two bursts")
 
-    @property
-    def cycle(self) -> float:
-        """Time [s] from the beginning of one burst to that of the next."""
-        return (2.0 * self.start_periods + self.burst_periods) * self.period + self.coast_time
-
     def envelope(self) -> tuple[Ramp, ...]:
         """The ramps of all bursts."""
         rise, full = self.start_periods * self.period, self.burst_periods * self.period
-        starts = [index * self.cycle for index in range(int(self.bursts))]
-        return tuple(
-            ramp
-            for start in starts
-            for ramp in (
-                Ramp(start, start + rise, 1.0),
-                Ramp(start + rise + full, start + 2.0 * rise + full, -1.0),
-            )
-        )
+        cycle, ramps = (2.0 * self.start_periods + self.burst_periods) * self.period + self.coast_time, []
+        for start in (index * cycle for index in range(int(self.bursts))):
+            ramps.append(Ramp(start, start + rise, 1.0))
+            ramps.append(Ramp(start + rise + full, start + 2.0 * rise + full, -1.0))
+        return tuple(ramps)
 
 
 @register(Quantities)
@@ -122,11 +109,9 @@ def turning(numbers: TurningWave) -> tuple[Term, ...]:
 @register(Start)
 def c_start(numbers: Start) -> tuple[Term, ...]:
     """An escape from rest: the body bends into a C, straightens with a stroke, and swims away to that side."""
-    ramps = (
-        Ramp(0.0, numbers.bend_time, 1.0),
-        Ramp(numbers.bend_time, numbers.bend_time + numbers.return_time, -1.0),
-    )
-    return (*left_turn(numbers.left_bend, ramps), numbers.term().delayed(numbers.bend_time))
+    time = numbers.bend_time
+    ramps = Ramp(0.0, time, 1.0), Ramp(time, time + numbers.return_time, -1.0)
+    return (*left_turn(numbers.left_bend, ramps), numbers.term().delayed(time))
 
 
 @register(Bursts)

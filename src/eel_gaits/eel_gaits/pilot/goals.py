@@ -5,6 +5,7 @@
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,6 +25,23 @@ class Limits:
     turning_radius: float  # m, of the tightest turn
     greatest_climb: float  # rad, of the path to the horizontal
     reach: float  # m, within which a way point counts as reached
+
+    def checked_speed(self, speed: float) -> float:
+        """`speed` [m/s], if the swimmer can have it."""
+        return number("speed", speed, "m/s", minimum=0.0, maximum=self.greatest_speed, exclusive=True)
+
+    def check_turn(self, point: int, where: str, leg: np.ndarray, forward: Sequence[float] | np.ndarray) -> None:
+        """`ValueError` where the way point with this number lies within a turning circle.
+
+        leg (3,) [m]: to it. forward (2,): horizontal direction in which the swimmer comes to where the leg begins.
+        """
+        ahead = leg[0] * forward[0] + leg[1] * forward[1]
+        aside = abs(leg[1] * forward[0] - leg[0] * forward[1])
+        if math.hypot(ahead, aside - self.turning_radius) < self.turning_radius - self.reach:
+            raise ValueError(
+                f"path point {point} must lie outside the turning circle of {self.turning_radius:.3g} m {where}, "
+                f"got {ahead:.3g} m ahead and {aside:.3g} m aside"
+            )
 
 
 @dataclass(frozen=True)
@@ -54,7 +72,7 @@ class Station:
 def course(heading: float, depth: float, speed: float, limits: Limits) -> Course:
     """A course that is possible."""
     depth = number("depth", depth, "m", minimum=-FARTHEST, maximum=FARTHEST)
-    return Course(math.remainder(number("heading", heading), 2.0 * math.pi), depth, checked_speed(speed, limits))
+    return Course(math.remainder(number("heading", heading), 2.0 * math.pi), depth, limits.checked_speed(speed))
 
 
 def path(points: Any, speed: float, limits: Limits) -> Path:
@@ -63,9 +81,20 @@ def path(points: Any, speed: float, limits: Limits) -> Path:
     points = _points("path", points)
     if len(points) < 1:
         raise ValueError("path must have one point or more, got none")
-    for k in range(1, len(points)):
-        _check_leg(k, points, limits)
-    return Path(points, checked_speed(speed, limits))
+    legs = np.diff(points, axis=0)
+    for k, leg in enumerate(legs, 1):  # from point k to point k + 1
+        flat = float(np.hypot(leg[0], leg[1]))
+        if flat <= limits.reach:
+            rule = f"more than {limits.reach:g} m ahead of point {k}"
+            raise ValueError(f"path point {k + 1} must lie {rule}, got {flat:.3g}")
+        slope, most = math.atan2(abs(leg[2]), flat), limits.greatest_climb
+        if slope > most:
+            rule = f"at most {math.degrees(most):.3g} degrees"
+            raise ValueError(f"path to point {k + 1} must climb or dive by {rule}, got {math.degrees(slope):.3g}")
+        if k > 1:
+            x, y, _ = legs[k - 2]
+            limits.check_turn(k + 1, f"at point {k}", leg, legs[k - 2, :2] / math.hypot(x, y))
+    return Path(points, limits.checked_speed(speed))
 
 
 def check_count(points: int) -> None:
@@ -76,7 +105,7 @@ def check_count(points: int) -> None:
 
 def station(point: Any, speed: float, limits: Limits) -> Station:
     """A station that is possible."""
-    return Station(_points("station", [point])[0], checked_speed(speed, limits))
+    return Station(_points("station", [point])[0], limits.checked_speed(speed))
 
 
 def way_points(goal: Course | Path | Station) -> np.ndarray:
@@ -95,16 +124,6 @@ def described(goal: Course | Path | Station) -> str:
     return f"swim through {len(goal.points)} points to {where}" if isinstance(goal, Path) else f"stay at {where}"
 
 
-def check_first_point(goal: Path, position: np.ndarray, heading: float, limits: Limits) -> None:
-    """`ValueError` where the first point lies within a turning circle at `position` (3,) [m] with this `heading`."""
-    _check_turn("1", "of the swimmer", goal.points[0] - position, (math.cos(heading), math.sin(heading)), limits)
-
-
-def checked_speed(speed: float, limits: Limits) -> float:
-    """`speed` [m/s], if the swimmer can have it."""
-    return number("speed", speed, "m/s", minimum=0.0, maximum=limits.greatest_speed, exclusive=True)
-
-
 def _points(name: str, points: Any) -> np.ndarray:
     rows: np.ndarray = np.array(points, dtype=float).reshape(-1, 3)
     for k, point in enumerate(rows):
@@ -112,36 +131,3 @@ def _points(name: str, points: Any) -> np.ndarray:
             rule = f"finite and at most {FARTHEST:g} m from the origin"
             raise ValueError(f"{name} point {k + 1} must be {rule}, got {shown(point.tolist())}")
     return rows
-
-
-def _check_leg(k: int, points: np.ndarray, limits: Limits) -> None:
-    """`ValueError` where point k + 1 cannot be reached from point k."""
-    leg, before = points[k] - points[k - 1], points[k - 1] - points[k - 2] if k > 1 else None
-    flat = float(np.hypot(leg[0], leg[1]))
-    if flat <= limits.reach:
-        raise ValueError(f"path point {k + 1} must lie more than {limits.reach:g} m ahead of point {k}, got {flat:.3g}")
-    slope = math.atan2(abs(leg[2]), flat)
-    if slope > limits.greatest_climb:
-        most = math.degrees(limits.greatest_climb)
-        raise ValueError(
-            f"path to point {k + 1} must climb or dive by at most {most:.3g} degrees, got {math.degrees(slope):.3g}"
-        )
-    if before is None:
-        return
-    _check_turn(f"{k + 1}", f"at point {k}", leg, before[:2] / math.hypot(before[0], before[1]), limits)
-
-
-def _check_turn(
-    point: str, where: str, leg: np.ndarray, forward: tuple[float, float] | np.ndarray, limits: Limits
-) -> None:
-    """`ValueError` where a `point` lies within a turning circle.
-
-    leg (3,) [m]: to it. forward (2,): horizontal direction in which the swimmer comes to where the leg begins.
-    """
-    ahead = leg[0] * forward[0] + leg[1] * forward[1]
-    aside = abs(leg[1] * forward[0] - leg[0] * forward[1])
-    if math.hypot(ahead, aside - limits.turning_radius) < limits.turning_radius - limits.reach:
-        raise ValueError(
-            f"path point {point} must lie outside the turning circle of {limits.turning_radius:.3g} m {where}, "
-            f"got {ahead:.3g} m ahead and {aside:.3g} m aside"
-        )

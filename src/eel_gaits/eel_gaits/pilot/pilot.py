@@ -16,7 +16,7 @@ from eel_gaits.gaits.swimming import straight
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.steered_law import SteeredLaw
 from eel_gaits.pilot.estimate import Estimate, Estimator
-from eel_gaits.pilot.goals import Course, Path, Station, check_first_point
+from eel_gaits.pilot.goals import Course, Path, Station
 from eel_gaits.pilot.guidance import GUIDANCE, Demand, PathGuidance
 from eel_gaits.pilot.head_motion import HeadMotion, wrapped
 from eel_gaits.pilot.regulator import Gains, Regulator
@@ -84,8 +84,8 @@ class Pilot:
     def checked_path(self, goal: Path) -> Path:
         """The path, if its first point can be reached from where the swimmer is. `ValueError` otherwise."""
         if self.estimate is not None:
-            where = self.estimate
-            check_first_point(goal, where.position, where.heading, self.settings.limits)
+            forward = math.cos(self.estimate.heading), math.sin(self.estimate.heading)
+            self.settings.limits.check_turn(1, "of the swimmer", goal.points[0] - self.estimate.position, forward)
         return goal
 
     def change_speed(self, speed: float) -> None:

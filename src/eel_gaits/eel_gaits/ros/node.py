@@ -77,14 +77,13 @@ class GaitGenerator(ParameterNode):
         """
         return super().create_subscription(*args, **kwargs, callback_group=self._ticks)
 
-    def look_at_clock(self) -> bool:
-        """Take the newest tick of /clock, if there is one. Returns True: the node continues."""
+    def look_at_clock(self) -> None:
+        """Take the newest tick of /clock, if there is one."""
         for ticks in self.subscriptions:
             with ticks.handle:
                 taken = ticks.handle.take_message(ticks.msg_type, ticks.raw)
             if taken is not None:
                 ticks.callback(*taken)
-        return True
 
     def look(self) -> bool:
         """Look at the clock, and send the samples that are due. Returns True: the node continues."""
@@ -154,12 +153,12 @@ class GaitGenerator(ParameterNode):
         beginning = f"gait {shown(self._settings.gait)}, t = 0 at {began:.3f} s, published on"
         if isinstance(law, SampledLaw):
             if self._stream.running:
-                self._drop_samples()
+                self._publish_law(still())  # so that a simulation drops the samples of one stream before another begins
             self._rows.follow(law, began)
             self.get_logger().info(f"{beginning} {self._rows.topic_name}: {law.about}")
         elif oscillation is not None:
             if self._rows.running:
-                self._drop_samples()
+                self._publish_law(still())
             self._stream.follow(oscillation, self._now())
             self.get_logger().info(f"gait {shown(self._settings.gait)}, published on curvature_samples")
         else:
@@ -171,10 +170,6 @@ class GaitGenerator(ParameterNode):
         self._stream.stop()
         self._rows.stop()
         self._publisher.publish(law_to_message(law, stamp=self._stamp, frame=self._frame))
-
-    def _drop_samples(self) -> None:
-        """Have a simulation drop the samples of one stream before another begins."""
-        self._publish_law(still())
 
 
 def main(args: list[str] | None = None) -> int:

@@ -22,10 +22,8 @@ MOST_SAMPLES = 500  # sent at once, so that the node hears calls and signals; th
 
 
 class SampleStream:
-    """A stream of a `node` on the topic `curvature_samples`. Nothing is on the network until it begins.
-
-    frame: of the messages.
-    """
+    """A stream of a `node` on the topic `curvature_samples`, in this `frame`. Nothing is on the network until it
+    begins."""
 
     def __init__(self, node: Any, frame: str) -> None:
         self._node, self._frame = node, frame
@@ -40,8 +38,7 @@ class SampleStream:
     @property
     def topic_name(self) -> str:
         """The topic, with its namespace."""
-        name: str = self._publisher.topic_name
-        return name
+        return str(self._publisher.topic_name)
 
     def stop(self) -> None:
         """Send nothing more. What has been sent stays with the simulation, until a law takes over."""

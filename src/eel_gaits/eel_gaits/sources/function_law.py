@@ -118,11 +118,10 @@ def _rows(
         rows = completed(time, values)
         change = np.sqrt(np.mean((rows[::2, :, 2] - coarse[:, :, 2]) ** 2))
         missed = float(np.max(apart) / scale) if scale > 0.0 else 0.0
-        if missed <= tolerance and change <= SMOOTH * np.sqrt(np.mean(rows[:, :, 2] ** 2)):
+        last = 2 * len(time) > MOST_ROWS  # accelerations that jump are then found to SMOOTH almost everywhere
+        if missed <= tolerance and (last or change <= SMOOTH * np.sqrt(np.mean(rows[:, :, 2] ** 2))):
             return time, rows, missed
-        if 2 * len(time) > MOST_ROWS:
-            if missed <= tolerance:  # accelerations that jump are still found to the part SMOOTH almost everywhere
-                return time, rows, missed
+        if last:
             raise ValueError(
                 f"the curvature's function must be smooth in time: {len(time)} rows miss it by {missed:.2g} of its "
                 f"greatest value at t = {middle[np.argmax(apart)]:g} s; the tolerance is {tolerance:g}"
