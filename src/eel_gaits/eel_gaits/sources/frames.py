@@ -27,7 +27,6 @@ class Frames(NamedTuple):
 
     table: Table
     time: np.ndarray  # (N,) s, from 0
-    arc: np.ndarray | None  # (n,) arc length of the points, in the file's unit; None where the file has none
     fields: np.ndarray  # (N, n, fields)
 
     def error(self, text: str, first: int, last: int | None = None) -> ValueError:
@@ -36,8 +35,9 @@ class Frames(NamedTuple):
         return self.table.error(text, first * count, (last + 1) * count - 1)
 
 
-def frames_of(table: Table, names: tuple[str, ...]) -> Frames:
-    """The frames of a table with the columns `time`, `names` and, if it has it, `arc_length`.
+def frames_of(table: Table, names: tuple[str, ...]) -> tuple[Frames, np.ndarray | None]:
+    """The frames of a table with the columns `time`, `names` and, if it has it, `arc_length`; and the arc lengths (n,)
+    of the points, in the file's unit.
 
     Rows of one time are a frame, from nose to tail. `ValueError` names the rows that do not fit.
     """
@@ -55,8 +55,8 @@ def frames_of(table: Table, names: tuple[str, ...]) -> Frames:
     if sizes[0] < FEWEST:
         raise table.error(f"a frame must have {FEWEST} points or more, got {sizes[0]}", 0, sizes[0] - 1)
     fields = np.stack([table.columns[name].reshape(len(starts), -1) for name in names], axis=-1)
-    found = Frames(table, instants - instants[0], None, fields)
-    return found if arc is None else found._replace(arc=_material(found, arc.reshape(len(starts), -1)))
+    found = Frames(table, instants - instants[0], fields)
+    return found, None if arc is None else _material(found, arc.reshape(len(starts), -1))
 
 
 def check_rising(table: Table, instants: np.ndarray, rows: np.ndarray) -> None:

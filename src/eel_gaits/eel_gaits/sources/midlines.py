@@ -29,10 +29,9 @@ class Midlines:
 
     def __init__(self, table: Table, length: float, scale: float = 1.0) -> None:
         names = ("x", "y", "z") if "z" in table.columns else ("x", "y")
-        frames = frames_of(table, names)
-        frames = frames._replace(fields=scale * frames.fields, arc=None if frames.arc is None else scale * frames.arc)
-        arc = _mean_arc(frames) if frames.arc is None else frames.arc - frames.arc[0]
-        self.frames, self.length, self.arc = frames._replace(arc=arc), float(length), arc
+        frames, arc = frames_of(table, names)
+        self.frames, self.length = frames._replace(fields=scale * frames.fields), float(length)
+        self.arc = _mean_arc(self.frames) if arc is None else scale * arc - scale * arc[0]
 
     @property
     def time(self) -> np.ndarray:
@@ -70,12 +69,9 @@ class Midlines:
         lengths = np.sum(0.5 * (speed[:, 1:] + speed[:, :-1]) * np.diff(fine), axis=1)
         mean, worst = float(np.mean(lengths)), int(np.argmax(np.abs(lengths - np.mean(lengths))))
         if abs(mean - self.length) > FITTING * self.length:
-            raise self.frames.error(
-                f"midlines must be as long as the body, {self.length:g} m, got {mean:.4g} m on average: give a scale "
-                f"of {self.length / mean:.4g}, or another body",
-                0,
-                len(self.time) - 1,
-            )
+            rule = f"midlines must be as long as the body, {self.length:g} m, got {mean:.4g} m on average"
+            hint = f"give a scale of {self.length / mean:.4g}, or another body"
+            raise self.frames.error(f"{rule}: {hint}", 0, len(self.time) - 1)
         if abs(lengths[worst] - mean) > 2.0 * FITTING * mean:
             raise self.frames.error(f"a midline of {lengths[worst]:.4g} m, the others have {mean:.4g} m", worst)
         return mean

@@ -108,17 +108,13 @@ def kind_of(table: Table) -> str:
 
 
 def _law_of_curvature(table: Table, length: float, scale: float, name: str, smooth: bool) -> SampledLaw:
-    frames = frames_of(table, ("pitch", "yaw") if "pitch" in table.columns else ("yaw",))
-    assert frames.arc is not None  # the file has a column arc_length
-    arc: np.ndarray = scale * frames.arc
+    frames, places = frames_of(table, ("pitch", "yaw") if "pitch" in table.columns else ("yaw",))
+    assert places is not None  # the file has a column arc_length
+    arc: np.ndarray = scale * places
     if abs(arc[0]) > 0.05 * length or abs(arc[-1] - length) > 0.05 * length:
-        points = len(arc) - 1
-        raise table.error(
-            f"arc_length must reach from 0 to the body's length, {length:g} m, got {arc[0]:.4g} to {arc[-1]:.4g} m",
-            0,
-            points,
-        )
-    frames = frames._replace(arc=arc, fields=frames.fields / scale)
+        rule = f"arc_length must reach from 0 to the body's length, {length:g} m"
+        raise table.error(f"{rule}, got {arc[0]:.4g} to {arc[-1]:.4g} m", 0, len(arc) - 1)
+    frames = frames._replace(fields=frames.fields / scale)
     fitted = SmoothedFrames(frames, arc, smooth, "rad/m")
 
     def curvature(x: np.ndarray) -> np.ndarray:
@@ -165,7 +161,7 @@ def _law_of_joints(table: Table, length: float, name: str, smooth: bool) -> Samp
         sums = np.concatenate((np.zeros((1, len(time))), np.cumsum(each, axis=0)))  # at the ends of the segments
         ends = np.linspace(0.0, length, len(sums))
         splines[axis] = make_interp_spline(ends, sums, k=5 if len(each) >= 5 else 3)
-    frames = Frames(table, time - time[0], None, time[:, None, None])
+    frames = Frames(table, time - time[0], time[:, None, None])
 
     def curvature(x: np.ndarray) -> np.ndarray:
         flat = np.zeros((len(time), len(x)))
