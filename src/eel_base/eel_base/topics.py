@@ -33,12 +33,7 @@ OWN = {  # relative: below the swimmer's namespace
 DIAGNOSTICS = "/diagnostics"
 GLOBAL = {"/clock": "rosgraph_msgs/msg/Clock", DIAGNOSTICS: "diagnostic_msgs/msg/DiagnosticArray"}
 LATCHED = ("body", "curvature_law", "goal")  # transient local
-INPUTS = (
-    "curvature_samples",
-    "joint_commands",
-    "current",
-    "fin_command",
-)  # of a controller or a sensor, by its own clock
+INPUTS = ("curvature_samples", "joint_commands", "current", "fin_command")  # of a controller or sensor, by its clock
 SAMPLED = tuple(name for name in OWN if name not in (*LATCHED, *INPUTS))  # once a sample
 WHERE_ASKED_FOR = ("joint_states", "fin_states", "motor_states", "flow_vectors")  # of `SAMPLED`: with such parts
 SWIMMER = "head_pose"  # without publishers of this topic the swimmer has gone

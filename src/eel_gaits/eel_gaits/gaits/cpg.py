@@ -79,12 +79,8 @@ class Oscillators:
 
     def advance(self, time: float) -> None:
         """Move on to `time` [s] by steps of the classical Runge-Kutta method."""
-        p = self._parts[0]
-        fastest = max(
-            2.0 * math.pi * max(abs(self._state[p[0]]), 1.0 / self.numbers.period),
-            self.numbers.convergence,
-            self.numbers.following,
-        )
+        beat = 2.0 * math.pi * max(abs(self._state[0]), 1.0 / self.numbers.period)
+        fastest = max(beat, self.numbers.convergence, self.numbers.following)
         steps_per_second = max(fastest * STEPS_PER_PERIOD / (2.0 * math.pi), 4.0 * COUPLING)
         count = max(1, math.ceil((time - self.time) * steps_per_second))
         step = (time - self.time) / count
@@ -101,7 +97,9 @@ class Oscillators:
         p, _, theta, r, r_rate = (self._state[part] for part in self._parts)
         rates = self._rate(self._state)
         p_rate, _, theta_rate, _, r_second = (rates[part] for part in self._parts)
-        theta_second = 2.0 * math.pi * p_rate[0] + self._pull_rate(theta, theta_rate, p, p_rate)
+        between = np.diff(self.x)
+        apart_rate = np.cos(np.diff(theta) + p[1] * between) * (np.diff(theta_rate) + p_rate[1] * between)
+        theta_second = 2.0 * math.pi * p_rate[0] + _pull(apart_rate)
         sine, cosine = np.sin(theta), np.cos(theta)
         amplitude, amplitude_rate, amplitude_second = r[:-1], r_rate[:-1], r_second[:-1]
         return np.stack(
@@ -119,8 +117,7 @@ class Oscillators:
         p, p_rate, theta, r, r_rate = (state[part] for part in self._parts)
         g, a = self.numbers.following, self.numbers.convergence
         wanted = np.append(p[2] + self.x * (p[3] + self.x * p[4]), p[5])
-        apart = np.sin(np.diff(theta) + p[1] * np.diff(self.x))
-        pull = COUPLING * (np.append(apart, 0.0) - np.append(0.0, apart))
+        pull = _pull(np.sin(np.diff(theta) + p[1] * np.diff(self.x)))
         return np.concatenate(
             (
                 p_rate,
@@ -131,7 +128,7 @@ class Oscillators:
             )
         )
 
-    def _pull_rate(self, theta: np.ndarray, theta_rate: np.ndarray, p: np.ndarray, p_rate: np.ndarray) -> np.ndarray:
-        between = np.diff(self.x)
-        apart_rate = np.cos(np.diff(theta) + p[1] * between) * (np.diff(theta_rate) + p_rate[1] * between)
-        return np.asarray(COUPLING * (np.append(apart_rate, 0.0) - np.append(0.0, apart_rate)))
+
+def _pull(apart: np.ndarray) -> np.ndarray:
+    """What the neighbours `apart` (n - 1,) from one another do to each of n oscillators."""
+    return np.asarray(COUPLING * (np.append(apart, 0.0) - np.append(0.0, apart)))

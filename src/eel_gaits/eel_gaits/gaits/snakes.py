@@ -46,9 +46,9 @@ class JointWave(PeriodicBody):
 @register(Serpenoid)
 def serpenoid(numbers: Serpenoid) -> tuple[Term, ...]:
     """The serpenoid curve of Hirose, which travels from head to tail."""
+    amplitude = 2.0 * math.pi * numbers.waves / numbers.length * numbers.winding_angle
     wave = Term(
-        axis="yaw",
-        amplitude=(2.0 * math.pi * numbers.waves / numbers.length * numbers.winding_angle,),
+        amplitude=(amplitude,),
         wavelength=numbers.length / numbers.waves,
         period=numbers.period,
         phase=0.5 * math.pi,

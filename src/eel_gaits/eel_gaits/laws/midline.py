@@ -77,17 +77,9 @@ def lateral_wave(
     least = TOLERANCE * np.max(np.abs(curvature))
     terms = []
     for multiple in range(1, INSTANTS // 2, 2):
+        shared: Any = {"wavelength": wavelength / multiple, "period": period / multiple, "envelope": envelope}
         for row, phase in ((-spectrum[multiple].imag, 0.0), (spectrum[multiple].real, 0.5 * math.pi)):
             if np.max(np.abs(row)) >= least:
                 fit = np.polynomial.Polynomial.fit(x, row, DEGREE, domain=[0.0, length]).convert()
-                terms.append(
-                    Term(
-                        axis="yaw",
-                        amplitude=tuple(fit.coef),
-                        wavelength=wavelength / multiple,
-                        period=period / multiple,
-                        phase=phase,
-                        envelope=envelope,
-                    )
-                )
+                terms.append(Term(amplitude=tuple(fit.coef), phase=phase, **shared))
     return tuple(terms)
