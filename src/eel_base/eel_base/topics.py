@@ -3,8 +3,8 @@
 
 A new topic has its name here. `FIELDS` (eel_dynamics/runs/exchange/message_fields.py) says what its fields hold,
 `SampleMessages` (eel_dynamics/ros/messages.py) makes its message, and `PARTS` (eel_dynamics/ros/publishers.py) names
-what is costly to find for it. `READERS` (eel_viz/recording/dispatcher.py) and the method of its name in `Loggers` draw
-it.
+what is costly to find for it. `READERS` (eel_viz/recording/dispatcher.py) reads it, and the methods of its name in the
+classes of `Loggers` draw it.
 """
 
 OWN = {  # relative: below the swimmer's namespace

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """A Rerun stream that sends rows in batches: ten rows in one column cost little more than one row.
 
-Rows wait for at most `tick` seconds of wall time (`send_due`), or until there are `MAXIMUM_ROWS` of a kind. `flush`
-sends all, and must be called at the end. Every row has its own time, so the order of calls is free.
+Rows wait for at most a tick of wall time (`send_due`), or until there are `MAXIMUM_ROWS` of a kind. `flush` sends all,
+and must be called at the end. Every row has its own time, so the order of calls is free.
 """
 
 import time
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -17,16 +18,53 @@ from eel_viz.entities import TIMELINE
 
 MAXIMUM_ROWS = 256  # of one kind, then they are sent
 ARRAY_TICKS = 10  # ticks that arrays may wait: no view draws them
+ROUNDING = 1000  # ns: a stamp that is this little before a slot of time lies in it
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rates:
+    """How often numbers and drawings are logged [Hz of simulation time]; 0: with every message.
+
+    `tick` [s of wall time]: how long rows may wait for a batch.
+    """
+
+    numbers: float = 0.0
+    drawings: float = 25.0
+    tick: float = 0.2
 
 
 class BatchedStream:
-    """Batches rows for the recording `stream`; `tick` [s of wall time]: how long a row may wait."""
+    """Batches rows for the recording `stream`, and says what is due: a thing once in a slot of simulation time.
 
-    def __init__(self, stream: rr.RecordingStream, *, tick: float) -> None:
-        self._stream, self._tick = stream, tick
+    Attribute drawing_period: of drawings [ns].
+    """
+
+    def __init__(self, stream: rr.RecordingStream, rates: Rates) -> None:
+        self._stream, self._tick = stream, rates.tick
+        self._number_period, self.drawing_period = (
+            round(1e9 / rate) if rate else 0 for rate in (rates.numbers, rates.drawings)
+        )
+        self._slots: dict[str, int] = {}  # in which each thing was due last
         self._rows: dict[tuple[Any, ...], tuple[list[int], list[tuple[np.ndarray, ...]]]] = {}
         self._sent = time.monotonic()
         self._ticks = 0
+
+    def due(self, what: str, stamp: int, period: int) -> bool:
+        """Whether `stamp` [ns] lies in another slot of `period` [ns] than the last one that was due; 0: always."""
+        if period:
+            slot = (stamp + ROUNDING) // period
+            if self._slots.get(what) == slot:
+                return False
+            self._slots[what] = slot
+        return True
+
+    def number_due(self, what: str, stamp: int) -> bool:
+        """Whether the numbers `what` are due at `stamp` [ns]."""
+        return self.due(f"numbers of {what}", stamp, self._number_period)
+
+    def drawing_due(self, what: str, stamp: int) -> bool:
+        """Whether the drawing of `what` is due at `stamp` [ns]."""
+        return self.due(f"drawing of {what}", stamp, self.drawing_period)
 
     def log_static(self, path: str, archetype: rr.AsComponents) -> None:
         """Log data that are valid at all times."""
@@ -36,6 +74,14 @@ class BatchedStream:
         """Log at `stamp` [ns], sent at once: for texts, images and rare data."""
         self._stream.set_time(TIMELINE, duration=np.timedelta64(stamp, "ns"))
         self._stream.log(path, archetype)
+
+    def log_text(self, stamp: int, path: str, markdown: str) -> None:
+        """Log a text at `stamp` [ns], likewise."""
+        self.log(stamp, path, rr.TextDocument(markdown, media_type="text/markdown"))
+
+    def log_series_style(self, path: str, names: Any, colours: Any = None) -> None:
+        """Log the names, and where they are chosen the colours, of the curves at `path`, valid at all times."""
+        self.log_static(path, rr.SeriesLines(names=names, colors=colours, widths=[1.5] * len(names)))
 
     def log_line_style(self, path: str, colour: Any, width: ArrayLike) -> None:
         """Log colour (or colours) and width (or widths) [pixels] of the lines at `path`, valid at all times."""

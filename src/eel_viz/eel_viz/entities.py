@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The entity paths of a recording, shared by loggers and blueprints.
 
-A new curve begins here with its path. Then come its name and colour (`SERIES` in plots/series.py), its values (the
-method of its topic in recording/loggers.py), and its place in an arrangement (views/blueprint.py).
+A new curve begins here with its path. Then come its name, colour and values (`SERIES`, and the method of its topic, in
+plots/series.py), and its place in an arrangement (views/blueprint.py).
 
 Three trees: `/world` (three-dimensional, metres, the world frame of the messages, z up), `/profiles` and `/heat_map`
 (two-dimensional drawings against the abscissa X), `/plots` (scalars over time). `/numbers` holds the profiles of the

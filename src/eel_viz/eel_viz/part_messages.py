@@ -11,6 +11,7 @@ from eel_base.wording import shown
 from eel_viz.messages import BadMessage, Body, Fin, Joint, finite, read_body, sized
 
 MOST_PARTS = 256  # of a kind
+AT_LIMIT = 1.0 - 1e-9  # of the torque that a motor can give, from which it counts as at its limit
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -35,6 +36,13 @@ class Motors:
     torque: np.ndarray
     limit: np.ndarray
     power: np.ndarray
+
+    @property
+    def loads(self) -> np.ndarray:
+        """What each gives of what it can, (J,), 0 to 1; of motors without a limit NaN."""
+        torque, limited = np.abs(self.torque), np.isfinite(self.limit)
+        none = np.where(limited, (torque > 0.0).astype(float), np.nan)  # at a speed at which no torque is left
+        return np.asarray(np.divide(torque, self.limit, out=none, where=limited & (self.limit > 0.0)))
 
 
 def read_body_with_parts(message: Any) -> Body:

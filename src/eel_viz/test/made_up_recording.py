@@ -6,8 +6,8 @@ from pathlib import Path
 
 import made_up
 import numpy as np
+from eel_viz.batched_stream import Rates
 from eel_viz.recording.loggers import Loggers
-from eel_viz.recording.rates import Rates
 from eel_viz.recording.recording_file import FileDestination
 from eel_viz.settings import Settings
 

@@ -4,9 +4,9 @@
 import made_up
 import numpy as np
 import pytest
+from eel_viz.batched_stream import Rates
 from eel_viz.plots.pairs import Pairs, Stamped
 from eel_viz.recording.loggers import Loggers
-from eel_viz.recording.rates import Rates
 from eel_viz.recording.reading import read
 from eel_viz.recording.recording_file import FileDestination
 from eel_viz.settings import Settings

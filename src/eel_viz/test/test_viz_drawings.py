@@ -4,14 +4,13 @@
 import numpy as np
 import pytest
 import rerun as rr
-from eel_viz.batched_stream import BatchedStream
+from eel_viz.batched_stream import BatchedStream, Rates
+from eel_viz.limit import Limit
 from eel_viz.plots import heat_map, profile_plot
 from eel_viz.plots.heat_map import HeatMap
-from eel_viz.plots.limit import Limit
 from eel_viz.plots.profile_plot import ProfilePlot
-from eel_viz.plots.readable import number, quantity
 from eel_viz.plots.series import Attitude
-from eel_viz.plots.state_text import Summary
+from eel_viz.plots.state_text import Summary, number, quantity
 from eel_viz.recording.reading import read
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.lettering import strokes_of
@@ -32,7 +31,7 @@ class Drawn(BatchedStream):
         self.path, self.recording = path, rr.RecordingStream("eel_test")
         self.recording.set_log_time_enabled(False)
         self.recording.save(path)
-        super().__init__(self.recording, tick=1.0)
+        super().__init__(self.recording, Rates(tick=1.0))
 
     def disconnect(self):
         self.flush()
@@ -47,7 +46,7 @@ def stream(tmp_path):
 @given(limit=st.floats(1e-3, 1e3), value=st.floats(1e-6, 1e6))
 def test_a_limit_grows_to_a_round_value_that_holds(limit, value):
     scale = Limit(limit)
-    scale.include(0, value)
+    scale.recent.include(0, value)
     grown = scale.value
     assert grown >= value * (1 - 1e-9)
     if value <= limit:
@@ -61,7 +60,7 @@ def test_a_limit_grows_to_a_round_value_that_holds(limit, value):
 def test_a_limit_that_nobody_set_fits_the_first_values():
     scale = Limit(0.0)
     assert scale.value == 1.0  # all values so far are zero
-    scale.include(0, 3.2e-6)
+    scale.recent.include(0, 3.2e-6)
     assert scale.value == pytest.approx(4e-6)
 
 
@@ -71,7 +70,7 @@ def test_a_limit_fits_the_last_seconds_alone_and_a_set_one_may_stay():
     limits = {}
     for second, value in enumerate((0.0, 0.51, 0.2, 0.28, 0.21, 0.19, 0.0, 0.0, 0.0)):
         for scale in (recent, least, fixed):
-            scale.include(second * 10**9, value)
+            scale.recent.include(second * 10**9, value)
         limits[second] = recent.value
         assert least.value == max(0.5, recent.value if second else 0.0) and fixed.value == 0.25
     assert limits == pytest.approx({0: 1.0, 1: 0.6, 2: 0.6, 3: 0.6, 4: 0.6, 5: 0.3, 6: 0.3, 7: 0.3, 8: 0.2})
@@ -239,7 +238,6 @@ def test_contrast_is_that_of_the_web_s_guidelines():
 def test_no_words_have_the_theme_s_ground_but_ours(stream):
     """The viewer draws its own labels on plates of its theme: none may be shown. Each view has a ground of ours."""
     from eel_viz.recording.loggers import Loggers
-    from eel_viz.recording.rates import Rates
     from eel_viz.settings import Settings
     from eel_viz.views.blueprint import ARRANGEMENTS
     from eel_viz.views.views import PLAIN
@@ -248,10 +246,10 @@ def test_no_words_have_the_theme_s_ground_but_ours(stream):
     from rerun.chunk import RrdReader
 
     loggers = Loggers(stream.recording, Settings(compare="other"), Rates(), "this")
-    loggers.body(0, body())
+    loggers.log("body", 0, body())
     for k in range(10):
         for method, arguments in sample(Swimmer(), k * 10**8).items():
-            getattr(loggers, method)(k * 10**8, *arguments)
+            loggers.log(method, k * 10**8, *arguments)
     loggers.flush()
     stream.disconnect()
     texts = 0
@@ -301,7 +299,7 @@ def test_diverging_colours_are_ordered_and_differ_in_hue_from_the_middle():
 
 def test_the_summary_counts_path_speed_and_greatest_torque():
     summary = Summary()
-    summary.law = "falling"
+    summary.curvature_law(0, "falling")
     summary.add_status(9 * 10**9, "finished", {"accuracy": "fine"})  # later than the head is
     summary.add_status(
         10**9, "waiting", {"accuracy": "standard", "closure_torque_relative": "1.23456e-14", "real_time_factor": "0.0"}

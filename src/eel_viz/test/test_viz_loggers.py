@@ -9,12 +9,12 @@ import made_up
 import numpy as np
 import pytest
 from eel_base.attitude import attitude, world_from_body, world_from_section
+from eel_viz.batched_stream import Rates
+from eel_viz.limit import RECENT
 from eel_viz.messages import WRENCH_FIELDS, Pose
 from eel_viz.plots import heat_map
-from eel_viz.plots.limit import RECENT
 from eel_viz.recording.dispatcher import Dispatcher
 from eel_viz.recording.loggers import Loggers
-from eel_viz.recording.rates import Rates
 from eel_viz.recording.reading import read
 from eel_viz.recording.recording_file import FileDestination
 from eel_viz.recording.recordings import Recordings
@@ -108,8 +108,8 @@ def test_way_points_that_come_before_the_body_get_its_size(given, reach, tmp_pat
     destination = FileDestination(settings, said.append, said.append)
     stream = destination.open(1, "goal")
     loggers = Loggers(stream, settings, Rates())
-    loggers.goal(0, np.array([(4.0, 1.0, -0.5), (8.0, -1.0, 0.25)]))
-    loggers.body(0, replace(body(), length=0.4))
+    loggers.log("goal", 0, np.array([(4.0, 1.0, -0.5), (8.0, -1.0, 0.25)]))
+    loggers.log("body", 0, replace(body(), length=0.4))
     loggers.flush()
     destination.close_recording(stream)
     spheres = read(path, entities.WAY_POINTS, static=True)
@@ -496,10 +496,10 @@ def test_stations_may_change_in_mid_run(record_made_up, tmp_path):
     file = FileDestination(settings, print, print)
     stream = file.open(1, "changing")
     loggers = Loggers(stream, settings, Rates())
-    loggers.body(0, body())
+    loggers.log("body", 0, body())
     for k, stations in enumerate((51, 51, 21, 101)):
         for method, arguments in sample(made_up.Swimmer(stations), k * 10**9).items():
-            getattr(loggers, method)(k * 10**9, *arguments)
+            loggers.log(method, k * 10**9, *arguments)
     loggers.flush()
     file.close_recording(stream)
     numbers = read(tmp_path / "changing.rrd", entities.WRENCH_NUMBERS)
@@ -519,10 +519,10 @@ def test_the_order_of_topics_does_not_matter(tmp_path):
         file = FileDestination(settings, print, print)
         stream = file.open(1, name)
         loggers = Loggers(stream, settings, Rates())
-        loggers.body(0, body())
+        loggers.log("body", 0, body())
         for k in range(10):
             for method, arguments in list(sample(made_up.Swimmer(), k * 10**8).items())[::turn]:
-                getattr(loggers, method)(k * 10**8, *arguments)
+                loggers.log(method, k * 10**8, *arguments)
         loggers.flush()
         file.close_recording(stream)
         paths.append(tmp_path / f"{name}.rrd")
@@ -552,7 +552,7 @@ def test_a_lower_rate_for_a_live_viewer(tmp_path):
     loggers = Loggers(stream, settings, Rates(numbers=10.0, drawings=10.0))
     for k in range(101):
         for method, arguments in sample(made_up.Swimmer(), k * 10**7).items():
-            getattr(loggers, method)(k * 10**7, *arguments)
+            loggers.log(method, k * 10**7, *arguments)
     loggers.flush()
     file.close_recording(stream)
     for entity in (entities.SPEED, entities.WRENCH_NUMBERS, entities.BACKBONE, entities.POWER):

@@ -8,7 +8,7 @@ import pytest
 from eel_viz.messages import read_backbone, read_load
 from eel_viz.ros.marker_messages import WIDTHS
 from eel_viz.scene3d import colours
-from eel_viz.scene3d.load_vectors import ALONG, LoadVectors
+from eel_viz.scene3d.centre_line import ALONG, forces_along, forces_at_ends
 from eel_viz.scene3d.skin import RINGS, SIDES, Skin
 from eel_viz.settings import MarkerSettings
 from fake_swimmer import LATCHED, TOPICS, body_message, messages
@@ -84,14 +84,13 @@ def test_markers_are_the_swimmer(show, sample):
     )
 
     settings = MarkerSettings()
-    vectors = LoadVectors(load_scale=settings.load_scale, end_scale=settings.end_force_scale)
-    for space, count, (origins, arrows) in (
-        ("load", ALONG, vectors.along(backbone, load)),
-        ("end_force", 2, vectors.ends(backbone, load)),
+    for space, count, scale, (origins, forces) in (
+        ("load", ALONG, settings.load_scale, forces_along(backbone, load)),
+        ("end_force", 2, settings.end_force_scale, forces_at_ends(backbone, load)),
     ):
         drawn = [marker for marker in array.markers if marker.ns == space and marker.type == Marker.ARROW]
         assert len(drawn) == count and [marker.id for marker in drawn] == list(range(count))
-        for marker, origin, arrow in zip(drawn, origins, arrows, strict=True):
+        for marker, origin, arrow in zip(drawn, origins, scale * forces, strict=True):
             assert np.allclose(triples(marker.points), (origin, origin + arrow), rtol=0, atol=1e-12)
             assert marker.scale.x >= WIDTHS[0] and marker.color.a == 1.0
     assert node.interrupt() == 0, node.output()

@@ -14,9 +14,7 @@ from eel_viz.recording.dispatcher import Dispatcher
 from eel_viz.recording.reading import read
 from eel_viz.recording.recording_file import FileDestination
 from eel_viz.recording.recordings import Recordings
-from eel_viz.robots.fin_plates import EDGE, FinPlates
-from eel_viz.robots.joint_rings import AROUND, AXLE, JointRings
-from eel_viz.robots.loads import load_colours, loads_of
+from eel_viz.robots.part_shapes import AROUND, AXLE, EDGE, FinPlates, JointRings
 from eel_viz.ros.marker_messages import FinMarker, JointMarkers
 from eel_viz.scene3d import colours
 from eel_viz.settings import Settings
@@ -83,9 +81,9 @@ def test_loads_are_shares_of_the_limit_and_red_at_the_limit_alone():
         limit=np.array([1.0, 1.0, 1.0, 2.0, 0.0, np.inf]),
         power=np.zeros(6),
     )
-    loads = loads_of(motors)
+    loads = motors.loads
     np.testing.assert_allclose(loads, [0.0, 0.5, 0.999, 1.0, 1.0, np.nan])
-    assert load_colours(loads).tolist() == [0, 127, 254, 255, 255, 0]
+    assert colours.load_index(loads).tolist() == [0, 127, 254, 255, 255, 0]
     assert tuple(colours.LOADS[255]) == colours.ACTUATORS
 
 

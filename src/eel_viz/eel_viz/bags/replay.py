@@ -21,6 +21,7 @@ from eel_base.command.command_line import Parser, print_to_stderr
 from eel_base.command.progress import Progress
 from eel_base.quantity import limits
 
+from eel_viz import keep_pandas_out
 from eel_viz.bags.bag import Bag
 from eel_viz.bags.swimmer_messages import SwimmerMessages
 from eel_viz.recording.destination import LogFunction
@@ -28,7 +29,6 @@ from eel_viz.recording.merged_messages import record_messages
 from eel_viz.recording.sinks import destinations
 from eel_viz.settings import Settings
 from eel_viz.viewer import display, open_window
-from eel_viz.without_pandas import keep_pandas_out
 
 NAME = "eel replay"
 OPTIONS: tuple[str, ...] = ("blueprint", "rate", "skin_rate", "colour_limit", "torque_limit", "force_limit")

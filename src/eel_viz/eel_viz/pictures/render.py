@@ -22,10 +22,10 @@ from eel_base.command.progress import Progress
 from eel_base.files.output_file import NotWritten, check_output, replacing, written_as
 from eel_base.wording import shown
 
+from eel_viz import keep_pandas_out
 from eel_viz.pictures.drawing import SIZE, Drawing, SideBySide, check_recording, drawn_beside
 from eel_viz.pictures.film import ANIMATIONS, FILMS, PICTURE_NAME, QUALITY, check_quality, ffmpeg, film
 from eel_viz.viewer import CannotRender
-from eel_viz.without_pandas import keep_pandas_out
 
 NAME = "eel render"
 FILM = "film.mp4"

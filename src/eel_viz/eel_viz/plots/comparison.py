@@ -5,18 +5,14 @@ The other swimmer is drawn as hoops around this one, so that both can be seen wh
 run's value minus the other's, at this run's stamps and stations (see `pairs`).
 """
 
-from collections.abc import Callable
-
 import numpy as np
-import rerun as rr
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
-from eel_viz.messages import Backbone, Body, Pose, Profiles, Status, Twist
+from eel_viz.messages import Backbone, Body, Pose, Profiles, Twist
 from eel_viz.plots.pairs import Pairs, Stamped
 from eel_viz.plots.profile_plot import ProfilePlot
-from eel_viz.plots.readable import number, quantity
-from eel_viz.plots.state_text import Summary
+from eel_viz.plots.state_text import Summary, number, quantity
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.camera import FollowFrame
 from eel_viz.scene3d.skin import Skin
@@ -27,20 +23,17 @@ HOOPS, SIDES = 24, 16
 FIRST_HOOP = 3  # those before it, at the nose, are too dense
 SUMMARY_PERIOD = 200_000_000  # ns
 
-Due = Callable[[str, int, int], bool]
-
 
 class Comparison:
     """`this` and `other` take the messages of the two runs, by the methods of `Loggers`.
 
-    names: of this run and the other. limit: of the torque plot [N m]. due(what, stamp, period): whether `what` is to be
-    logged at `stamp` [ns]. drawings: the period of drawings [ns].
+    names: of this run and the other. limit: of the torque plot [N m].
     """
 
-    def __init__(self, stream: BatchedStream, *, names: tuple[str, str], limit: float, due: Due, drawings: int) -> None:
-        self._stream, self._due, self._drawings, self._names = stream, due, drawings, names
+    def __init__(self, stream: BatchedStream, *, names: tuple[str, str], limit: float) -> None:
+        self._stream, self._names = stream, names
         self._heads, self._torques = Pairs(), Pairs()
-        self.this, self.other = Side(self), OtherSide(self, stream)
+        self.this, self.other = Side(self, stream), OtherSide(self, stream)
         self._both = ProfilePlot(
             stream,
             entities.COMPARED_TORQUE,
@@ -49,9 +42,15 @@ class Comparison:
             limit=limit,
             palette=(colours.OTHER, colours.AXIS[2]),
             widths=(2.6, 1.2),
+            envelope_period=None,
         )
         self._difference = ProfilePlot(
-            stream, entities.TORQUE_DIFFERENCE, names=("C1", "C2", "C3"), unit="N m", limit=0.0
+            stream,
+            entities.TORQUE_DIFFERENCE,
+            names=("C1", "C2", "C3"),
+            unit="N m",
+            limit=0.0,
+            envelope_period=stream.drawing_period,
         )
         self._farthest = self._worst = self._greatest = 0.0  # m, N m, N m
         self._frame, self._water = FollowFrame(), WaterBox(stream, entities.BOTH_WATER)
@@ -60,19 +59,15 @@ class Comparison:
             (entities.DISTANCE, "distance [m]", colours.PLAIN),
             (entities.TORQUE_DIFFERENCE_MOST, "greatest over X [N m]", colours.PLAIN),
         ):
-            stream.log_static(path, rr.SeriesLines(names=[name], colors=[colour], widths=[1.5]))
-
-    def is_due(self, what: str, stamp: int) -> bool:
-        """Whether the drawing `what` is due at `stamp` [ns]."""
-        return self._due(what, stamp, self._drawings)
+            stream.log_series_style(path, [name], [colour])
 
     def add_head(self, side: "Side", stamp: int, position: np.ndarray) -> None:
         """Take a head's position (3,) [m]; log the distance between the two heads for each complete pair."""
         for pair in self._heads.add(Stamped(stamp, position), of_other=side is self.other):
             distance = float(np.linalg.norm(pair.this - pair.other))
             self._farthest = max(self._farthest, distance)
-            self.this.summary.add_position(pair.stamp, pair.this)
-            if self.other.summary.add_position(pair.stamp, pair.other):
+            self.this.add_position(pair.stamp, pair.this)
+            if self.other.add_position(pair.stamp, pair.other):
                 self._write(pair.stamp)
             self._stream.add_scalars(pair.stamp, entities.DISTANCE, [distance])
 
@@ -82,20 +77,15 @@ class Comparison:
         for at, x, this, other in self._torques.add(Stamped(stamp, torque, wrench.x), of_other=side is self.other):
             assert x is not None  # torques have stations
             difference = this - other
-            both = np.stack([other[:, 2], this[:, 2]], axis=1)
-            self._both.include(at, x, both)
-            self._difference.include(at, x, difference)
+            self._both.add(at, x, np.stack([other[:, 2], this[:, 2]], axis=1))
+            self._difference.add(at, x, difference)
             most = float(np.abs(difference).max())
             self._worst = max(self._worst, most)
             self._greatest = max(self._greatest, float(np.abs(this).max()))
-            self.this.summary.add_torque(at, x, this[:, 2])
-            if self.other.summary.add_torque(at, x, other[:, 2]):
+            self.this.add_torque(at, x, this[:, 2])
+            if self.other.add_torque(at, x, other[:, 2]):
                 self._write(at)
             self._stream.add_scalars(at, entities.TORQUE_DIFFERENCE_MOST, [most])
-            if self.is_due("compared torque", at):
-                self._both.draw(at, x, both)
-                self._difference.draw(at, x, difference)
-                self._difference.draw_envelope(at)
 
     def move_camera(self, stamp: int) -> None:
         """Keep both swimmers in the picture, at `stamp` [ns]; the other at its last place."""
@@ -107,13 +97,12 @@ class Comparison:
         self._water.draw(stamp, centre, radius)
 
     def _write(self, stamp: int) -> None:
-        if self._due("compared", stamp, SUMMARY_PERIOD):
-            text = rr.TextDocument(self._text(), media_type="text/markdown")
-            self._stream.log(stamp, entities.COMPARE_TEXT, text)
+        if self._stream.due("compared", stamp, SUMMARY_PERIOD):
+            self._stream.log_text(stamp, entities.COMPARE_TEXT, self._text())
 
     def _text(self) -> str:
         """Markdown: the greatest differences, and the figures of both runs side by side."""
-        columns = [side.summary.figures() for side in (self.this, self.other)]
+        columns = [side.figures() for side in (self.this, self.other)]
         lines = [f"heads apart by at most **{quantity(self._farthest, 'm')}** so far  "]
         if self._greatest:
             share = number(100.0 * self._worst / self._greatest)
@@ -124,26 +113,13 @@ class Comparison:
         return "\n".join(lines)
 
 
-class Side:
+class Side(Summary):
     """Takes the messages of one run: of the one that the rest of the recording shows."""
 
-    def __init__(self, comparison: Comparison) -> None:
-        self._comparison = comparison
-        self.summary = Summary()
+    def __init__(self, comparison: Comparison, stream: BatchedStream) -> None:
+        super().__init__()
+        self._comparison, self._stream = comparison, stream
         self.line: Backbone | None = None  # the last backbone
-
-    def body(self, stamp: int, body: Body) -> None:
-        """Take the body."""
-        self.summary.body = body
-
-    def curvature_law(self, stamp: int, name: str) -> None:
-        """Take the law's name."""
-        self.summary.law = name
-
-    def diagnostics(self, stamp: int, statuses: list[Status]) -> None:
-        """Take the values of the statuses."""
-        for status in statuses:
-            self.summary.add_status(stamp, status.message, status.values)
 
     def head_pose(self, stamp: int, pose: Pose) -> None:
         """Take the head's position."""
@@ -156,7 +132,7 @@ class Side:
     def backbone(self, stamp: int, backbone: Backbone) -> None:
         """Take the line, and move the camera."""
         self.line = backbone
-        if self._comparison.is_due("both", stamp):
+        if self._stream.drawing_due("both", stamp):
             self._comparison.move_camera(stamp)
 
 
@@ -164,8 +140,7 @@ class OtherSide(Side):
     """Takes the messages of the other run, which is drawn here."""
 
     def __init__(self, comparison: Comparison, stream: BatchedStream) -> None:
-        super().__init__(comparison)
-        self._stream = stream
+        super().__init__(comparison, stream)
         self._skin: Skin | None = None
         for path in (entities.OTHER_HOOPS, entities.OTHER_BACKBONE):
             stream.log_line_style(path, colours.OTHER, width=0.8)
@@ -182,7 +157,7 @@ class OtherSide(Side):
     def backbone(self, stamp: int, backbone: Backbone) -> None:
         """Log line and hoops."""
         self.line = backbone
-        if not self._comparison.is_due("other", stamp):
+        if not self._stream.drawing_due("other", stamp):
             return
         self._stream.add_lines(stamp, entities.OTHER_BACKBONE, backbone.position[None])
         if self._skin is not None:

@@ -12,13 +12,14 @@ import rerun as rr
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
-from eel_viz.plots.limit import Limit
+from eel_viz.limit import Limit
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.lettering import flat_texts
 
 COLUMNS = 200
 ROWS = 41
 STEP = 0.04  # s; the map is 8 s long
+PERIOD = 200_000_000  # ns: of the image
 NO_DATA = 0
 LABELS = "labels"
 LETTERS = 3.6  # height of a capital
@@ -51,6 +52,12 @@ class HeatMap:
         self._length = 0.0  # m
         self._labelled: tuple[float, float] | None = None
         self._draw_bar()
+
+    def add(self, stamp: int, x: np.ndarray, values: np.ndarray) -> None:
+        """Include `values` (M,) at stations `x` (M,) [m] and `stamp` [ns], and draw the image if it is due."""
+        self.include(stamp, x, values)
+        if self._stream.due(self._root, stamp, PERIOD):
+            self.draw(stamp)
 
     def include(self, stamp: int, x: np.ndarray, values: np.ndarray) -> None:
         """Put `values` (M,) at stations `x` (M,) [m] into the column of `stamp` [ns]."""

@@ -14,8 +14,8 @@ import rerun as rr
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
+from eel_viz.limit import RECENT, Limit
 from eel_viz.messages import same
-from eel_viz.plots.limit import RECENT, Limit
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.colours import Colour
 from eel_viz.scene3d.lettering import flat_texts
@@ -24,6 +24,7 @@ WIDTH = 5.2
 LETTERS = 0.092  # height of a capital
 IN_FRONT = 40.0  # draw order of letters: before the curves (30), their envelope (20) and the frame (10)
 SLOT = 500_000_000  # ns: the envelope forgets in such steps
+ENVELOPE_PERIOD = 500_000_000  # ns
 BOUNDS_X = (-0.62, WIDTH + 0.18)
 BOUNDS_Y = (-0.79, 0.79)
 
@@ -33,6 +34,7 @@ class ProfilePlot:
 
     names: of the curves (C1, C2, C3), from back to front. unit: of the values. limit: the value at the upper edge at
     first; 0: what fits the last values. palette: colours of the curves. widths: of the curves [pixels].
+    envelope_period: of drawing it [ns]; None: it is not drawn.
     """
 
     def __init__(
@@ -45,10 +47,11 @@ class ProfilePlot:
         limit: float,
         palette: tuple[Colour, ...] = colours.AXIS,
         widths: tuple[float, ...] = (1.4,),
+        envelope_period: int | None = ENVELOPE_PERIOD,
     ) -> None:
         self._stream, self._root, self._names, self._unit = stream, root, names, unit
         self._limit = Limit(limit)
-        self._palette, self._widths = palette, widths
+        self._palette, self._widths, self._envelope_period = palette, widths, envelope_period
         self._ticks: tuple[float, float] | None = None
         self._x: np.ndarray | None = None
         self._slots: deque[tuple[int, np.ndarray, np.ndarray]] = deque()  # number, least and greatest values
@@ -58,6 +61,14 @@ class ProfilePlot:
     def limit(self) -> float:
         """The value at the upper edge."""
         return self._limit.value
+
+    def add(self, stamp: int, x: np.ndarray, values: np.ndarray) -> None:
+        """Include `values`, (M, n) at stations `x` (M,) [m], at `stamp` [ns], and draw what is due."""
+        self.include(stamp, x, values)
+        if self._stream.drawing_due(self._root, stamp):
+            self.draw(stamp, x, values)
+        if self._envelope_period is not None and self._stream.due(self._root, stamp, self._envelope_period):
+            self.draw_envelope(stamp)
 
     def include(self, stamp: int, x: np.ndarray, values: np.ndarray) -> None:
         """Extend the envelope and the limit by `values`, (M, n) at stations `x` (M,) [m], at `stamp` [ns]."""
@@ -72,7 +83,7 @@ class ProfilePlot:
         np.maximum(high, values, out=high)
         while self._slots[0][0] <= slot - RECENT // SLOT:
             self._slots.popleft()
-        self._limit.include(stamp, float(np.max(np.abs(values))))
+        self._limit.recent.include(stamp, float(np.max(np.abs(values))))
 
     def draw(self, stamp: int, x: np.ndarray, values: np.ndarray) -> None:
         """Draw the curves of `values`, (M, n) at stations `x` (M,) [m], at `stamp` [ns]."""

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The time series: names and colours of each entity's values, in order; the attitude without jumps.
+"""The curves over time: names and colours of each entity's values, in order, and the values.
 
-Paths are those of entities.py; next come a new curve's values, in recording/loggers.py.
+Paths are those of entities.py.
 """
 
 import numpy as np
-import rerun as rr
+from eel_base.attitude import attitude
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
+from eel_viz.messages import Pose, Twist
 from eel_viz.scene3d import colours
 
 _ONE, _TWO, _THREE = colours.AXIS
@@ -34,11 +35,50 @@ SERIES = {  # entity: (name, colour) of each value
 }
 
 
-def log_styles(stream: BatchedStream) -> None:
-    """Log names, colours and widths of all lines, valid at all times."""
-    for path, lines in SERIES.items():
-        names, shades = zip(*lines, strict=True)
-        stream.log_static(path, rr.SeriesLines(names=names, colors=shades, widths=[1.5] * len(names)))
+BESIDES = {  # curves that begin with the first value that is not 0
+    entities.POWER_BESIDES: ("flow_power", "fins_power", "damping_power"),
+    entities.STORED: ("potential", "elastic"),
+}
+
+
+class Series:
+    """Logs what messages say of the head, and the ledger, by the methods of topics, in double precision."""
+
+    def __init__(self, stream: BatchedStream) -> None:
+        self._stream = stream
+        self._attitude = Attitude()
+        self._besides: set[str] = set()  # paths of `BESIDES` that have lines
+        for path, lines in SERIES.items():
+            stream.log_series_style(path, *zip(*lines, strict=True))
+
+    def head_pose(self, stamp: int, pose: Pose) -> None:
+        """Log position, attitude and depth of the head."""
+        if self._stream.number_due("head_pose", stamp):
+            scalars = self._stream.add_scalars
+            scalars(stamp, entities.POSITION, pose.position)
+            scalars(stamp, entities.ORIENTATION, pose.orientation)
+            scalars(stamp, entities.ATTITUDE, self._attitude.continued(attitude(pose.orientation.tolist())))
+            scalars(stamp, entities.DEPTH, -pose.position[2:])
+
+    def head_twist(self, stamp: int, twist: Twist) -> None:
+        """Log the head's speed, and its velocities in base_link."""
+        if self._stream.number_due("head_twist", stamp):
+            self._stream.add_scalars(stamp, entities.SPEED, [np.linalg.norm(twist.linear)])
+            self._stream.add_scalars(stamp, entities.LINEAR, twist.linear)
+            self._stream.add_scalars(stamp, entities.ANGULAR, twist.angular)
+
+    def energy(self, stamp: int, energy: dict[str, float]) -> None:
+        """Log the terms of the energy ledger [W], [J]."""
+        if self._stream.number_due("energy", stamp):
+            powers = [energy[f"{name}_power"] for name in ("actuator", "wake", "nose", "drag")]
+            self._stream.add_scalars(stamp, entities.POWER, powers)
+            self._stream.add_scalars(stamp, entities.KINETIC, [energy["kinetic_body"], energy["kinetic_fluid"]])
+            self._stream.add_scalars(stamp, entities.RESIDUAL, [energy["residual"]])
+            for path, names in BESIDES.items():
+                values = [energy[name] for name in names]
+                if any(values) or path in self._besides:  # a swim without fins has no line for them
+                    self._besides.add(path)
+                    self._stream.add_scalars(stamp, path, values)
 
 
 class Attitude:

@@ -5,16 +5,15 @@ The path comes from head_pose, the torque from internal_wrench, the rest from di
 what is written is always of one stamp, the last of which both have come.
 """
 
+import math
 import re
 from typing import NamedTuple
 
 import numpy as np
 
-from eel_viz.messages import Body
-from eel_viz.plots.limit import RecentPeak
-from eel_viz.plots.readable import number
+from eel_viz.limit import RecentPeak
+from eel_viz.messages import Body, Status
 from eel_viz.same_stamp import SameStamp
-from eel_viz.settings import Drawing
 
 MAXIMUM_AGE = 2_000_000_000  # ns: older diagnostics are not shown as the present state
 LABELS = {  # key of the diagnostics: its label
@@ -35,6 +34,8 @@ COMPARED = (
 )  # keys shown in the comparison of two runs
 LONGEST_NAME, LONGEST_TEXT = 60, 400  # characters
 MOST_WAITING = 100  # statuses, the earliest ones
+PREFIXES = (("", 1.0), ("m", 1e-3), ("µ", 1e-6))
+DIGITS = 3  # of a number
 VOLATILE = ("warnings", "real_time_factor")  # keys that are shown only while they are fresh
 
 
@@ -67,18 +68,18 @@ class Torques(NamedTuple):
 
 
 class Summary:
-    """Collects the state of a run, and writes it as Markdown.
+    """Collects the state of a run, in part by the methods of topics, and writes it as Markdown.
 
     Attributes:
-        stamp: of what is written [ns].
+        stamp: of what is written [ns]. values: of the diagnostics, by key.
     """
 
     def __init__(self) -> None:
-        self.law: str | None = None
-        self.body: Body | None = None
+        self._law: str | None = None
+        self._body: Body | None = None
         self._state: tuple[int, str] = (0, "")  # ns, message of the diagnostics
         self._statuses: list[tuple[int, str, dict[str, str]]] = []  # later than `stamp`
-        self.values: dict[str, str] = {}  # of the diagnostics
+        self.values: dict[str, str] = {}
         self.stamp = 0
         self._begin = 0  # ns: of the path
         self._head: np.ndarray | None = None  # its last position
@@ -88,6 +89,19 @@ class Summary:
         self._torques = Torques()
         self._has_torque = False
         self._sample = SameStamp(self._complete)
+
+    def body(self, stamp: int, body: Body) -> None:
+        """Take the body."""
+        self._body = body
+
+    def curvature_law(self, stamp: int, name: str) -> None:
+        """Take the law's name."""
+        self._law = name
+
+    def diagnostics(self, stamp: int, statuses: list[Status]) -> None:
+        """Take message and values of each status, which apply once a sample has reached its stamp."""
+        for status in statuses:
+            self.add_status(stamp, status.message, status.values)
 
     def add_position(self, stamp: int, position: np.ndarray) -> bool:
         """Add the head's `position`, (3,) [m] in the world, at `stamp` [ns]; whether that completes a sample."""
@@ -118,10 +132,7 @@ class Summary:
         self._take_statuses()
 
     def add_status(self, stamp: int, state: str, values: dict[str, str]) -> bool:
-        """Add message and values of the diagnostics at `stamp` [ns]; they apply once a sample has reached that stamp.
-
-        Returns whether they apply already.
-        """
+        """Add message and values of a status at `stamp` [ns]; whether they apply already."""
         self._statuses.append((stamp, state, values))
         self._statuses.sort(key=lambda status: status[0])
         del self._statuses[MOST_WAITING:]
@@ -138,9 +149,9 @@ class Summary:
 
     def text(self) -> str:
         """The state as Markdown, one line per item."""
-        law = "" if self.law is None else f"law **{plain(self.law)}**"
+        law = "" if self._law is None else f"law **{plain(self._law)}**"
         fresh = self.stamp - self._state[0] <= MAXIMUM_AGE
-        body = "" if self.body is None else f"body {self.body.length:.3g} m, {self.body.mass:.4g} kg"
+        body = "" if self._body is None else f"body {self._body.length:.3g} m, {self._body.mass:.4g} kg"
         lines = [", ".join(part for part in (law, plain(self._state[1], LONGEST_TEXT) if fresh else "", body) if part)]
         shown = [key for key in LABELS if self.values.get(key) and (fresh or key not in VOLATILE)]
         lines.append(", ".join(f"{LABELS[key]} {_shown(key, self.values[key])}" for key in shown))
@@ -167,7 +178,7 @@ class Summary:
 
     def figures(self) -> dict[str, str]:
         """The main figures by name, for the comparison of two runs."""
-        shown = {"law": plain(self.law or "")}
+        shown = {"law": plain(self._law or "")}
         shown |= {LABELS[key]: _shown(key, self.values[key]) for key in COMPARED if self.values.get(key)}
         if self._path is not None:
             shown["mean speed [m/s]"] = f"{self._path.speed:.4f}" if self._path.seconds > 0 else "0"
@@ -175,23 +186,6 @@ class Summary:
         shown["greatest C3 of the samples [N m]"] = f"{self._torques.peak.value:+.4f}"
         shown["warnings"] = str(len(self.values["warnings"].split("; "))) if self.values.get("warnings") else "none"
         return shown
-
-
-def look_text(scales: Drawing, body: Body | None = None) -> str:
-    """Markdown: what to look at, a sentence each, and the scales of the arrows; with what `body` has of parts."""
-    lines = [
-        "The eel swims towards its eyes, along the white arrow; bends run from nose to tail.",
-        "Red and blue on its flanks: the torque **C3** that bends it sideways, on the scale of the last 3 s below "
-        "the picture (C1 twists, C2 bends it up and down).",
-        f"Arrows: the **force of the water**, {scales.load_scale:g} m for 1 N/m; magenta at nose and tail, "
-        f"{scales.end_force_scale:g} m for 1 N. Violet ribbon: what the tail leaves in the **wake**.",
-    ]
-    parts = {
-        "Lime: **fins**.": body and body.fins,
-        "Rings: **joints**, the whiter, the more the motor gives (tab *robot*).": body and body.joints,
-    }
-    lines.append(" ".join(text for text, there in parts.items() if there))
-    return "  \n".join(line for line in lines if line)
 
 
 def plain(name: str, longest: int = LONGEST_NAME) -> str:
@@ -207,3 +201,19 @@ def _shown(key: str, value: str) -> str:
         return plain(value) if key == "accuracy" else number(float(value))
     except ValueError:
         return plain(value, LONGEST_TEXT)
+
+
+def number(value: float) -> str:
+    """`value` to three digits: 0.0123, 1,740, 130; with a power of ten only below 0.0001 and from a million on."""
+    if value == 0 or not 1e-4 <= abs(value) < 1e6:
+        return f"{value:.{DIGITS}g}"
+    decimals = max(0, DIGITS - 1 - math.floor(math.log10(abs(value))))
+    return f"{float(f'{value:.{DIGITS}g}'):,.{decimals}f}"
+
+
+def quantity(value: float, unit: str) -> str:
+    """`value` [unit] with the prefix (none, milli, micro) that makes the number at least 1, if there is one."""
+    prefix, size = next(
+        (each for each in PREFIXES if abs(value) >= each[1]), PREFIXES[0] if value == 0 else PREFIXES[-1]
+    )
+    return f"{number(value / size)} {prefix}{unit}"

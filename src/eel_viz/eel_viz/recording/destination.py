@@ -13,8 +13,8 @@ import pyarrow as pa
 import rerun as rr
 import rerun.blueprint as rrb
 
+from eel_viz.batched_stream import Rates
 from eel_viz.messages import Body
-from eel_viz.recording.rates import Rates
 from eel_viz.settings import Settings
 from eel_viz.views.blueprint import arrangement
 from eel_viz.views.views import Look

@@ -13,9 +13,9 @@ from typing import Any
 import rerun as rr
 from eel_base.files.output_file import appeared, written_as
 
+from eel_viz.batched_stream import Rates
 from eel_viz.recording.destination import Destination, LogFunction
 from eel_viz.recording.merged_messages import Messages, record_messages
-from eel_viz.recording.rates import Rates
 from eel_viz.recording.recording_file import FileDestination
 from eel_viz.settings import Settings
 

@@ -10,9 +10,9 @@ import rerun as rr
 from eel_base.files.output_file import Draft, NotWritten, appeared, numbered
 from eel_base.wording import shown
 
+from eel_viz.batched_stream import Rates
 from eel_viz.recording.delivery import space_error, write_error
 from eel_viz.recording.destination import Destination, LogFunction
-from eel_viz.recording.rates import Rates
 from eel_viz.recording.rrd_frames import cut_to_whole_messages, is_complete
 from eel_viz.settings import Settings
 

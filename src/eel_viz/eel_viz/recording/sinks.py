@@ -16,9 +16,9 @@ from urllib.parse import urlsplit
 import rerun as rr
 from eel_base.wording import shown
 
+from eel_viz.batched_stream import Rates
 from eel_viz.recording.delivery import detach_blocked
 from eel_viz.recording.destination import APPLICATION, Destination, LogFunction, close_stream
-from eel_viz.recording.rates import Rates
 from eel_viz.recording.recording_file import FileDestination
 from eel_viz.settings import Settings
 from eel_viz.viewer import display, end_process, free_port, listening, open_window, serve_to_browsers

@@ -1,20 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Motors over time: how hard each works, the one that is nearest to its limit, and the power and work of all."""
 
-from collections.abc import Callable
-
 import numpy as np
-import rerun as rr
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
-from eel_viz.part_messages import Motors
+from eel_viz.limit import Limit
+from eel_viz.part_messages import AT_LIMIT, Motors
 from eel_viz.plots.heat_map import ROWS, HeatMap
-from eel_viz.plots.limit import Limit
-from eel_viz.robots.loads import AT_LIMIT, load_colours, loads_of
 from eel_viz.scene3d import colours
 
-MAP_PERIOD = 200_000_000  # ns
 SERIES = {
     entities.HARDEST_MOTOR: (("torque", colours.ACTUATORS), ("limit", colours.OTHER)),
     entities.SATURATED: (("motors at their limits", colours.ACTUATORS),),
@@ -33,7 +28,8 @@ class LoadMap(HeatMap):
         super().__init__(stream, limit=limit, root=entities.LOAD_MAP, palette=colours.LOADS)
 
     def _indices(self, values: np.ndarray, limit: float) -> np.ndarray:
-        return load_colours(values / limit) if self._limited else np.minimum(load_colours(values / limit), 254)
+        shades = colours.load_index(values / limit)
+        return shades if self._limited else np.minimum(shades, 254)
 
     def _rows(self, x: np.ndarray, values: np.ndarray) -> np.ndarray:
         self._count = len(values)
@@ -45,29 +41,32 @@ class LoadMap(HeatMap):
 
 
 class MotorPlots:
-    """Draws the motors of a recording. due(what, stamp, period): whether `what` is to be logged at `stamp` [ns]."""
+    """Draws the motors of a recording."""
 
-    def __init__(self, stream: BatchedStream, due: Callable[[str, int, int], bool], period: int) -> None:
-        self._stream, self._due, self._period = stream, due, period
+    def __init__(self, stream: BatchedStream) -> None:
+        self._stream = stream
         self._map: LoadMap | None = None
         self._limit = Limit(0.0)
         self._last: tuple[int, float] | None = None  # ns, W
         self._work = 0.0  # J
         for path, lines in SERIES.items():
-            names, shades = zip(*lines, strict=True)
-            stream.log_static(path, rr.SeriesLines(names=names, colors=shades, widths=[1.5] * len(names)))
+            stream.log_series_style(path, *zip(*lines, strict=True))
 
     def draw(self, stamp: int, motors: Motors) -> None:
         """Continue with the `motors` at `stamp` [ns]."""
-        power, loads = float(motors.power.sum()), loads_of(motors)
+        power, loads = float(motors.power.sum()), motors.loads
         if self._last is not None:
             self._work += 0.5e-9 * (stamp - self._last[0]) * (power + self._last[1])
         self._last = stamp, power
         limited = bool(np.isfinite(loads).any())
         shown = np.nan_to_num(loads) if limited else np.abs(motors.torque)
         hardest = int(np.argmax(shown))
-        self._draw_map(stamp, shown, limited=limited)
-        if self._due("motors", stamp, self._period):
+        self._limit.recent.include(stamp, float(shown.max()))
+        if self._map is None:
+            limit = Limit(1.0, grows=False) if limited else self._limit
+            self._map = LoadMap(self._stream, limit, limited=limited)
+        self._map.add(stamp, np.arange(1.0, len(shown) + 1.0), shown)
+        if self._stream.number_due("motors", stamp):
             torque = [abs(float(motors.torque[hardest]))]
             self._stream.add_scalars(
                 stamp, entities.HARDEST_MOTOR, [*torque, float(motors.limit[hardest])] if limited else torque
@@ -76,11 +75,3 @@ class MotorPlots:
                 self._stream.add_scalars(stamp, entities.SATURATED, [float(np.sum(loads >= AT_LIMIT))])
             self._stream.add_scalars(stamp, entities.MOTOR_POWER, [power])
             self._stream.add_scalars(stamp, entities.MOTOR_WORK, [self._work])
-
-    def _draw_map(self, stamp: int, shown: np.ndarray, *, limited: bool) -> None:
-        if self._map is None:
-            self._map = LoadMap(self._stream, Limit(1.0, grows=False) if limited else self._limit, limited=limited)
-        self._limit.include(stamp, float(shown.max()))
-        self._map.include(stamp, np.arange(1.0, len(shown) + 1.0), shown)
-        if self._due("load map", stamp, MAP_PERIOD):
-            self._map.draw(stamp)

@@ -1,19 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws fins, joints and motors of one swimmer, by the methods of their topics; of a body without them nothing."""
 
-from collections.abc import Callable
-
 import numpy as np
 import rerun as rr
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import Backbone, Body
-from eel_viz.part_messages import JointStates, Motors
-from eel_viz.robots.fin_plates import FinPlates
-from eel_viz.robots.joint_rings import JointRings
-from eel_viz.robots.loads import AT_LIMIT, load_colours, loads_of
+from eel_viz.part_messages import AT_LIMIT, JointStates, Motors
 from eel_viz.robots.motor_plots import MotorPlots
+from eel_viz.robots.part_shapes import FinPlates, JointRings
 from eel_viz.same_stamp import SameStamp
 from eel_viz.scene3d import colours, legend
 
@@ -21,15 +17,10 @@ THIN, THICK = -1.5, -2.4  # pixels, as Rerun counts them: lines of a ring, and a
 
 
 class Parts:
-    """Draws into `stream`. due(what, stamp, period): whether `what` is to be logged at `stamp` [ns].
+    """Draws into `stream`."""
 
-    numbers, drawings: the periods of numbers and drawings [ns].
-    """
-
-    def __init__(
-        self, stream: BatchedStream, due: Callable[[str, int, int], bool], *, numbers: int, drawings: int
-    ) -> None:
-        self._stream, self._due, self._numbers, self._drawings = stream, due, numbers, drawings
+    def __init__(self, stream: BatchedStream) -> None:
+        self._stream = stream
         self._plates: FinPlates | None = None
         self._rings: JointRings | None = None
         self._motors: MotorPlots | None = None
@@ -47,18 +38,16 @@ class Parts:
             self._plates = FinPlates(body)
             plates = rr.Mesh3D.from_fields(triangle_indices=self._plates.triangles, albedo_factor=colours.FIN)
             self._stream.log_static(entities.FINS, plates)
-            self._stream.log_static(
-                entities.FIN_ANGLES, rr.SeriesLines(names=self._plates.names, widths=[1.5] * len(body.fins))
-            )
+            self._stream.log_series_style(entities.FIN_ANGLES, self._plates.names)
         if body.joints:
             self._rings = JointRings(body)
-            self._motors = self._motors or MotorPlots(self._stream, self._due, self._numbers)
+            self._motors = self._motors or MotorPlots(self._stream)
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
         """Take the line that fins and joints lie on."""
-        if self._plates is not None and self._due("fins", stamp, self._drawings):
+        if self._plates is not None and self._stream.drawing_due("fins", stamp):
             self._turned.first(stamp, backbone)
-        if self._rings is not None and self._due("rings", stamp, self._drawings):
+        if self._rings is not None and self._stream.drawing_due("rings", stamp):
             self._driven.first(stamp, backbone)
 
     def fin_states(self, stamp: int, states: JointStates) -> None:
@@ -66,7 +55,7 @@ class Parts:
         self._log_states(stamp, entities.FIN_NUMBERS, states)
         if self._plates is not None and set(self._plates.names) <= set(states.names):
             self._turned.second(stamp, states)
-            if self._due("fin angles", stamp, self._numbers):
+            if self._stream.number_due("fin angles", stamp):
                 angles = np.degrees(states.angles_of(self._plates.names))
                 self._stream.add_scalars(stamp, entities.FIN_ANGLES, angles)
 
@@ -76,7 +65,7 @@ class Parts:
 
     def motor_states(self, stamp: int, motors: Motors) -> None:
         """Log and draw torques, limits and powers of the motors, if there are any."""
-        if len(motors.torque) and self._due("motor numbers", stamp, self._numbers):
+        if len(motors.torque) and self._stream.number_due(entities.MOTOR_NUMBERS, stamp):
             values = {name: getattr(motors, name) for name in ("torque", "limit", "power")}
             self._stream.add_arrays(stamp, entities.MOTOR_NUMBERS, "MotorStates", values)
         if self._motors is not None and len(motors.torque) == self._joints:
@@ -90,7 +79,7 @@ class Parts:
             self._names[path] = states.names
             names = rr.DynamicArchetype("JointState", components={"name": list(states.names)})
             self._stream.log(stamp, path, names)
-        if self._due(path, stamp, self._numbers):
+        if self._stream.number_due(path, stamp):
             rows = {"position": states.angle, "velocity": states.rate, "effort": states.torque}
             known = {name: row for name, row in rows.items() if row is not None}
             self._stream.add_arrays(stamp, path, "JointState", known)
@@ -102,12 +91,12 @@ class Parts:
 
     def _draw_rings(self, stamp: int, backbone: Backbone, motors: Motors) -> None:
         assert self._rings is not None
-        loads = loads_of(motors)
+        loads = motors.loads
         self._stream.add_row(
             stamp,
             entities.JOINTS,
             rr.LineStrips3D,
             strips=self._rings.place(backbone).astype(np.float32),
-            colors=colours.LOADS[load_colours(loads)],
+            colors=colours.LOADS[colours.load_index(loads)],
             radii=np.where(loads >= AT_LIMIT, THICK, THIN).astype(np.float32),
         )

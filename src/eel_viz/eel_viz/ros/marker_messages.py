@@ -11,11 +11,9 @@ from visualization_msgs.msg import Marker
 
 from eel_viz.messages import Backbone, Body, Load, Profiles
 from eel_viz.part_messages import JointStates, Motors
-from eel_viz.robots.fin_plates import FinPlates
-from eel_viz.robots.joint_rings import JointRings
-from eel_viz.robots.loads import load_colours, loads_of
+from eel_viz.robots.part_shapes import FinPlates, JointRings
 from eel_viz.scene3d import colours
-from eel_viz.scene3d.load_vectors import ALONG, LoadVectors
+from eel_viz.scene3d.centre_line import ALONG, forces_along, forces_at_ends
 from eel_viz.scene3d.skin import Skin
 from eel_viz.settings import MarkerSettings
 
@@ -29,35 +27,41 @@ class SkinMarker:
 
     def __init__(self, body: Body, colour_limit: float) -> None:
         self._skin, self._colour_limit = Skin(body.x, body.half_width, body.half_height), colour_limit
-        self._corners = self._skin.triangles.ravel()
         self._palette = [_colour(entry) for entry in colours.DIVERGING]
 
-    def marker(self, header: Header, backbone: Backbone, wrench: Profiles | None) -> Marker:
-        """The marker of a shape; grey without a wrench."""
+    def markers(self, header: Header, backbone: Backbone, wrench: Profiles | None) -> list[Marker]:
+        """One marker; grey without a wrench."""
         vertices, _ = self._skin.place(backbone.x, backbone.position, backbone.orientation)
-        points = [_point(each) for each in vertices.tolist()]
-        marker = Marker(header=header, ns="skin", type=Marker.TRIANGLE_LIST, scale=Vector3(x=1.0, y=1.0, z=1.0))
-        marker.pose.orientation.w, marker.color = 1.0, _colour(colours.GREY)
-        marker.points = [points[corner] for corner in self._corners]
+        corners = self._skin.triangles.ravel()
+        marker = _triangles(header, "skin", vertices, corners, colours.GREY)
         if wrench is not None:
             torque = self._skin.at_vertices(wrench.x, wrench.values["torque_3"])
             shades = [self._palette[k] for k in colours.diverging_index(torque, self._colour_limit)]
-            marker.colors = [shades[corner] for corner in self._corners]
-        return marker
+            marker.colors = [shades[corner] for corner in corners]
+        return [marker]
 
 
 class ForceMarkers:
     """The fluid's force on the body as arrows: per length along it in yellow, at nose and tail in magenta."""
 
     def __init__(self, settings: MarkerSettings) -> None:
-        self._vectors = LoadVectors(load_scale=settings.load_scale, end_scale=settings.end_force_scale)
+        self._settings = settings
 
     def markers(self, header: Header, backbone: Backbone, load: Load) -> list[Marker]:
         """One marker for each arrow; those that a shape with more stations had are deleted."""
-        along = _arrows(header, "load", self._vectors.along(backbone, load), colours.FORCE, WIDTHS)
-        ends = _arrows(header, "end_force", self._vectors.ends(backbone, load), colours.ENDS, END_WIDTHS)
-        gone = [Marker(header=header, ns="load", id=k, action=Marker.DELETE) for k in range(len(along), ALONG)]
-        return [*along, *gone, *ends]
+        markers = []
+        for space, (places, forces), scale, colour, (shaft, tip) in (
+            ("load", forces_along(backbone, load), self._settings.load_scale, colours.FORCE, WIDTHS),
+            ("end_force", forces_at_ends(backbone, load), self._settings.end_force_scale, colours.ENDS, END_WIDTHS),
+        ):
+            arrows, size = np.stack([places, places + scale * forces], axis=1), Vector3(x=shaft, y=tip)
+            markers += [
+                _marker(header, space, Marker.ARROW, ends, _colour(colour), size, k) for k, ends in enumerate(arrows)
+            ]
+            if space == "load":
+                deleted = range(len(arrows), ALONG)
+                markers += [Marker(header=header, ns=space, id=k, action=Marker.DELETE) for k in deleted]
+        return markers
 
 
 class FinMarker:
@@ -73,11 +77,7 @@ class FinMarker:
         if not set(self._plates.names) <= set(states.names):
             return []
         vertices, _ = self._plates.place(backbone, states.angles_of(self._plates.names))
-        points = [_point(each) for each in vertices.tolist()]
-        marker = Marker(header=header, ns="fins", type=Marker.TRIANGLE_LIST, scale=Vector3(x=1.0, y=1.0, z=1.0))
-        marker.pose.orientation.w, marker.color = 1.0, _colour(colours.FIN)
-        marker.points = [points[corner] for corner in self._corners]
-        return [marker]
+        return [_triangles(header, "fins", vertices, self._corners, colours.FIN)]
 
 
 class JointMarkers:
@@ -85,49 +85,48 @@ class JointMarkers:
 
     def __init__(self, body: Body) -> None:
         self._rings, self._count = JointRings(body), len(body.joints)
-        self._palette = [_colour(entry) for entry in colours.LOADS]
 
     def markers(self, header: Header, backbone: Backbone, motors: Motors) -> list[Marker]:
         """One marker for each joint; none where the `motors` are not as many."""
         if len(motors.torque) != self._count:
             return []
-        markers, shades = [], load_colours(loads_of(motors)).tolist()
-        for k, (ring, shade) in enumerate(zip(self._rings.place(backbone), shades, strict=True)):
-            marker = Marker(header=header, ns="joints", id=k, type=Marker.LINE_STRIP, scale=Vector3(x=RING_WIDTH))
-            marker.pose.orientation.w, marker.color = 1.0, self._palette[shade]
-            marker.points = [_point(each) for each in ring.tolist()]
-            markers.append(marker)
-        return markers
+        shades, size = colours.LOADS[colours.load_index(motors.loads)], Vector3(x=RING_WIDTH)
+        return [
+            _marker(header, "joints", Marker.LINE_STRIP, ring, _colour(shade), size, k)
+            for k, (ring, shade) in enumerate(zip(self._rings.place(backbone), shades, strict=True))
+        ]
 
 
 def midline(header: Header, backbone: Backbone) -> Path:
     """The backbone as a path: one pose, in REP-103 axes, for each station."""
     path = Path(header=header)
-    for position, orientation in zip(backbone.position.tolist(), backbone.orientation.tolist(), strict=True):
+    for position, orientation in zip(_points(backbone.position), backbone.orientation.tolist(), strict=True):
         pose = PoseStamped(header=header)
-        pose.pose.position = _point(position)
+        pose.pose.position = position
         turn = pose.pose.orientation
         turn.x, turn.y, turn.z, turn.w = orientation
         path.poses.append(pose)
     return path
 
 
-def _arrows(
-    header: Header, space: str, arrows: tuple[np.ndarray, np.ndarray], colour: colours.Colour, size: tuple[float, float]
-) -> list[Marker]:
-    origins, vectors = arrows
-    shaft, head = size
-    markers = []
-    for k, (begin, end) in enumerate(zip(origins.tolist(), (origins + vectors).tolist(), strict=True)):
-        marker = Marker(header=header, ns=space, id=k, type=Marker.ARROW, scale=Vector3(x=shaft, y=head))
-        marker.pose.orientation.w, marker.color = 1.0, _colour(colour)
-        marker.points = [_point(begin), _point(end)]
-        markers.append(marker)
-    return markers
+def _triangles(header: Header, space: str, vertices: np.ndarray, corners: np.ndarray, colour: colours.Colour) -> Marker:
+    size = Vector3(x=1.0, y=1.0, z=1.0)
+    points = _points(vertices)
+    marker = _marker(header, space, Marker.TRIANGLE_LIST, vertices[:0], _colour(colour), size)
+    marker.points = [points[corner] for corner in corners]
+    return marker
 
 
-def _point(values: list[float]) -> Point:
-    return Point(x=values[0], y=values[1], z=values[2])
+def _marker(
+    header: Header, space: str, kind: int, points: np.ndarray, colour: ColorRGBA, size: Vector3, number: int = 0
+) -> Marker:
+    marker = Marker(header=header, ns=space, id=number, type=kind, scale=size, color=colour, points=_points(points))
+    marker.pose.orientation.w = 1.0
+    return marker
+
+
+def _points(places: np.ndarray) -> list[Point]:
+    return [Point(x=x, y=y, z=z) for x, y, z in places.tolist()]
 
 
 def _colour(values: Sequence[int] | np.ndarray) -> ColorRGBA:

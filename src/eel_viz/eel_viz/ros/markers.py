@@ -44,10 +44,7 @@ class Markers(ParameterNode):
     def __init__(self) -> None:
         super().__init__(NAME)
         (self._settings,) = declare_all(self, MarkerSettings)
-        self._skin: SkinMarker | None = None
-        self._fins: FinMarker | None = None
-        self._joints: JointMarkers | None = None
-        self._forces = ForceMarkers(self._settings)
+        self._makers: dict[str, Any] = {"hydrodynamic_load": ForceMarkers(self._settings)}  # of markers, by topic
         self._waiting: OrderedDict[int, dict[str, Any]] = OrderedDict()  # stamp [ns]: messages by topic
         self._expected: set[str] = set(TOPICS)
         self._newest: dict[str, Any] | None = None  # the last complete sample that has not been drawn
@@ -70,11 +67,15 @@ class Markers(ParameterNode):
     def _receive_body(self, message: BodyGeometry) -> None:
         try:
             body = read_body_with_parts(message)
-            self._skin = SkinMarker(body, self._settings.colour_limit)
-            self._fins = FinMarker(body) if body.fins else None
-            self._joints = JointMarkers(body) if body.joints else None
         except BadMessage as problem:
             self._warn_once("body", problem)
+            return
+        self._makers = {
+            "internal_wrench": SkinMarker(body, self._settings.colour_limit),
+            "hydrodynamic_load": self._makers["hydrodynamic_load"],
+            **({"fin_states": FinMarker(body)} if body.fins else {}),
+            **({"motor_states": JointMarkers(body)} if body.joints else {}),
+        }
 
     def _receive(self, topic: str, message: Any) -> None:
         try:
@@ -105,19 +106,14 @@ class Markers(ParameterNode):
                 values[topic] = TOPICS[topic][1](message)
             except BadMessage as problem:
                 self._warn_once(topic, problem)
-        backbone, load = values.get("backbone"), values.get("hydrodynamic_load")
+        backbone = values.get("backbone")
         if backbone is None:
             return
         header, markers = sample["backbone"].header, []
         if self._markers.get_subscription_count():
-            if self._skin is not None:
-                markers.append(self._skin.marker(header, backbone, values.get("internal_wrench")))
-            if load is not None:
-                markers.extend(self._forces.markers(header, backbone, load))
-            if self._fins is not None and "fin_states" in values:
-                markers.extend(self._fins.markers(header, backbone, values["fin_states"]))
-            if self._joints is not None and "motor_states" in values:
-                markers.extend(self._joints.markers(header, backbone, values["motor_states"]))
+            for topic, maker in self._makers.items():
+                if topic in values or topic == "internal_wrench":  # without it, the skin is grey
+                    markers.extend(maker.markers(header, backbone, values.get(topic)))
             self._markers.publish(MarkerArray(markers=markers))
         if self._midline.get_subscription_count():
             self._midline.publish(midline(header, backbone))

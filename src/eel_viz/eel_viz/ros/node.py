@@ -19,13 +19,13 @@ from eel_ros.process_end import exit_immediately
 from eel_ros.qos import keep_all
 from eel_ros.run_node import run_node
 
+from eel_viz import keep_pandas_out
 from eel_viz.bags.definitions import message_class
 from eel_viz.recording.dispatcher import READERS, Dispatcher
 from eel_viz.recording.recordings import Recordings
 from eel_viz.recording.sinks import destinations
 from eel_viz.ros.polled_subscriptions import PolledSubscriptions, SwimmerPresence
 from eel_viz.settings import Settings
-from eel_viz.without_pandas import keep_pandas_out
 
 NAME = "visualiser"
 ABOUT = "Shows and records every topic of a swimmer in Rerun."

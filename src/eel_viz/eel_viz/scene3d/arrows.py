@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws the fluid's force on the body as arrows in the world, along the body, and at nose and tail; and the wake.
+"""Draws arrows in the world: the fluid's force along the body and at nose and tail, and how the water moves.
 
 A load is in section axes, so it needs the backbone of the same stamp.
 """
@@ -12,32 +12,51 @@ from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import Backbone, Load
 from eel_viz.same_stamp import SameStamp
-from eel_viz.scene3d import colours
-from eel_viz.scene3d.load_vectors import LoadVectors
+from eel_viz.scene3d import colours, legend
+from eel_viz.scene3d.centre_line import forces_along, forces_at_ends
 from eel_viz.scene3d.track import Wake
+from eel_viz.settings import Settings
+
+LONGEST = 0.16  # m: arrow of the water's velocity
+RADII = {entities.LOAD: 0.0022, entities.LOAD_ENDS: 0.004, entities.FLOW: 0.0018}  # m
+COLOURS = {entities.LOAD: colours.FORCE, entities.LOAD_ENDS: colours.ENDS, entities.FLOW: colours.FLOW}
 
 
 class Arrows:
-    """Draws arrows, `load_scale` [m per N/m] and `end_scale` [m per N] long, and the wake, `wake_scale` [m per N]."""
+    """Draws arrows, and the wake, by the methods of topics; the scales are those of the `settings`."""
 
-    def __init__(self, stream: BatchedStream, *, load_scale: float, end_scale: float, wake_scale: float) -> None:
-        self._stream, self._vectors = stream, LoadVectors(load_scale=load_scale, end_scale=end_scale)
+    def __init__(self, stream: BatchedStream, settings: Settings) -> None:
+        self._stream, self._settings = stream, settings
         self._both = SameStamp(self._draw)
-        self._wake = Wake(stream, wake_scale)
-        stream.log_static(entities.LOAD, rr.Arrows3D.from_fields(colors=[colours.FORCE], radii=[0.0022]))
-        stream.log_static(entities.LOAD_ENDS, rr.Arrows3D.from_fields(colors=[colours.ENDS], radii=[0.004]))
+        self._wake = Wake(stream, settings.wake_scale)
+        self._explained, self._fastest = False, 0.0  # m/s: of the water so far
+        for path, colour in COLOURS.items():
+            stream.log_static(path, rr.Arrows3D.from_fields(colors=[colour], radii=[RADII[path]]))
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
-        """Take the backbone at `stamp` [ns]."""
-        self._both.first(stamp, backbone)
+        """Take the line that the load acts on."""
+        if self._stream.drawing_due("line with load", stamp):
+            self._both.first(stamp, backbone)
 
-    def load(self, stamp: int, load: Load) -> None:
-        """Take the load at `stamp` [ns]."""
-        self._both.second(stamp, load)
+    def hydrodynamic_load(self, stamp: int, load: Load) -> None:
+        """Draw the force of the water."""
+        if self._stream.drawing_due("load", stamp):
+            if not self._explained:
+                self._explained = True
+                legend.log_words(self._stream, stamp)
+            self._both.second(stamp, load)
+
+    def flow_vectors(self, stamp: int, position: np.ndarray, velocity: np.ndarray) -> None:
+        """Draw the water's velocities (n, 3) [m/s] at points (n, 3) [m] as arrows; the longest so far is `LONGEST`."""
+        if self._stream.drawing_due("flow", stamp):
+            self._fastest = max(self._fastest, float(np.linalg.norm(velocity, axis=1).max(initial=0.0)))
+            self._log(stamp, entities.FLOW, position, LONGEST / max(self._fastest, 1e-9) * velocity)
 
     def _draw(self, stamp: int, backbone: Backbone, load: Load) -> None:
-        self._log(stamp, entities.LOAD, *self._vectors.along(backbone, load))
-        self._log(stamp, entities.LOAD_ENDS, *self._vectors.ends(backbone, load))
+        places, forces = forces_along(backbone, load)
+        self._log(stamp, entities.LOAD, places, forces * self._settings.load_scale)
+        places, forces = forces_at_ends(backbone, load)
+        self._log(stamp, entities.LOAD_ENDS, places, forces * self._settings.end_force_scale)
         if load.wake is not None:
             momentum_rate = world_from_section(backbone.orientation[-1], load.wake)
             self._wake.draw(stamp, backbone.position[-1], momentum_rate)

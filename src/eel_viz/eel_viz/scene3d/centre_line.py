@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Interpolates the backbone between its stations: cubic Hermite in position, with the exact slope dr/dX = t1.
+"""The backbone between its stations, cubic Hermite in position with the exact slope dr/dX = t1; loads on it.
 
 So the skin has its own abscissae, finer at the nose, and keeps its mesh when the number of stations changes.
 """
 
 import numpy as np
-from eel_base.attitude import section_axes
+from eel_base.attitude import section_axes, world_from_section
 
-from eel_viz.messages import same
+from eel_viz.messages import Backbone, Load, same
+
+ALONG = 24  # forces that are shown between nose and tail, at most
 
 
 class Resampling:
@@ -47,6 +49,22 @@ class Resampling:
         t1 = _unit(blended[:, :, 0])
         t2 = _unit(blended[:, :, 1] - t1 * np.sum(t1 * blended[:, :, 1], axis=1, keepdims=True))
         return points, np.stack([t1, t2, np.cross(t1, t2)], axis=2)
+
+
+def forces_along(backbone: Backbone, load: Load) -> tuple[np.ndarray, np.ndarray]:
+    """Places [m] and forces per length [N/m] at stations as even as may be between the ends, each (n, 3), world."""
+    wanted = np.linspace(backbone.x[0], backbone.x[-1], ALONG + 2)[1:-1]
+    chosen = np.unique(np.searchsorted(backbone.x, wanted - 1e-9))
+    force = load.profiles.together("force_1", "force_2", "force_3")
+    alike = same(load.profiles.x, backbone.x)
+    force = force[chosen] if alike else Resampling(load.profiles.x, backbone.x[chosen]).linear(force)
+    return backbone.position[chosen], world_from_section(backbone.orientation[chosen], force)
+
+
+def forces_at_ends(backbone: Backbone, load: Load) -> tuple[np.ndarray, np.ndarray]:
+    """Places [m] and forces [N] at nose and tail, each (2, 3), world."""
+    ends = [0, -1]
+    return backbone.position[ends], world_from_section(backbone.orientation[ends], np.stack([load.nose, load.tail]))
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:

@@ -8,6 +8,8 @@ without torque looks as it is.
 
 import numpy as np
 
+from eel_viz.part_messages import AT_LIMIT
+
 Colour = tuple[int, int, int]  # red, green, blue: 0 to 255
 
 AXIS = ((230, 134, 40), (0, 170, 130), (86, 180, 233))  # section axes 1, 2, 3; also x, y, z
@@ -79,3 +81,9 @@ def diverging(values: np.ndarray, limit: float) -> np.ndarray:
 def diverging_index(values: np.ndarray, limit: float) -> np.ndarray:
     """Rows of `DIVERGING` that show `values`, uint8, same shape."""
     return np.clip((np.asarray(values) / limit + 1.0) * 127.5 + 0.5, 0, 255).astype(np.uint8)
+
+
+def load_index(loads: np.ndarray) -> np.ndarray:
+    """Rows of `LOADS` that show shares `loads` (...,) of what a motor can give, uint8: the last, red, at the limit."""
+    below = np.clip(np.nan_to_num(loads) * 254.0, 0.0, 254.0).round()
+    return np.where(loads >= AT_LIMIT, 255, below).astype(np.uint8)

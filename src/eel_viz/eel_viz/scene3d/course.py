@@ -8,8 +8,8 @@ import rerun as rr
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
+from eel_viz.messages import Body
 from eel_viz.scene3d import colours
-from eel_viz.scene3d.shapes import turns_of_up_into
 
 
 class Course:
@@ -23,13 +23,13 @@ class Course:
         self._stream, self._reach, self._length = stream, reach, 1.0  # m, of the body
         self._points: np.ndarray | None = None  # (n, 3) m
 
-    def resize(self, length: float) -> None:
-        """Take the body's `length` [m]; a course that is there already is drawn again."""
-        self._length = length
+    def body(self, stamp: int, body: Body) -> None:
+        """Take the body's length; a course that is there already is drawn again."""
+        self._length = body.length
         if self._points is not None:
-            self.draw(self._points)
+            self.goal(stamp, self._points)
 
-    def draw(self, points: np.ndarray) -> None:
+    def goal(self, stamp: int, points: np.ndarray) -> None:
         """Draw the way `points` (n, 3) [m] in the world."""
         self._points, reach = points, self._reach * self._length
         thin: Any = rr.Radius.ui_points(0.8)
@@ -51,3 +51,11 @@ class Course:
             fill_mode="majorwireframe",
         )
         self._stream.log_static(entities.TUBE, tube)
+
+
+def turns_of_up_into(directions: np.ndarray) -> np.ndarray:
+    """Quaternions (n, 4) x y z w that turn the world's axis 3 into unit vectors (n, 3), by the shortest way."""
+    x, y, z = directions.T
+    turns = np.stack((-y, x, np.zeros_like(x), 1.0 + z), axis=1)
+    turns[z < -1.0 + 1e-9] = (1.0, 0.0, 0.0, 0.0)  # straight down, every way is as short
+    return np.asarray(turns / np.linalg.norm(turns, axis=1)[:, None])

@@ -14,7 +14,7 @@ from eel_viz.batched_stream import BatchedStream
 from eel_viz.scene3d import camera, colours
 from eel_viz.scene3d.colours import Colour
 from eel_viz.scene3d.lettering import standing_texts
-from eel_viz.scene3d.shapes import tiles
+from eel_viz.scene3d.skin import tiles
 
 DISTANCE = 1.0  # radii, from the eye: so a tangent in the picture is a length in radii
 BAR_AT = (-0.50, -0.425)  # tangents: the middle of the bar

@@ -116,3 +116,9 @@ def _triangles(rings: int, sides: int) -> np.ndarray:
     here, beside = ring + side, ring + (side + 1) % sides
     quads = np.stack([here, beside, here + sides, beside, beside + sides, here + sides], axis=-1)
     return quads.reshape(-1, 3).astype(np.uint32)
+
+
+def tiles(along: int, across: int) -> np.ndarray:
+    """Indices of the triangles, (T, 3), between `along` rows of `across` vertices of an open surface."""
+    here = (np.arange(along - 1)[:, None] * across + np.arange(across - 1)).reshape(-1, 1)
+    return np.asarray(here + np.array((0, across, across + 1, 0, across + 1, 1))).reshape(-1, 3)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws where the swimmer was: the path of the head in short pieces and strobes of the midline, both shown up to the
-cursor; and the last seconds of two things, which fade out: the path of the head, and what the tail left in the wake.
+"""Draws where the swimmer is and was: frames of head and tail, and the midline; the path of the head in short pieces
+and strobes of the midline, both shown up to the cursor; and the last seconds of two things, which fade out: the path of
+the head, and what the tail left in the wake.
 """
 
 import numpy as np
@@ -8,14 +9,16 @@ import rerun as rr
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
+from eel_viz.messages import Backbone, Pose
 from eel_viz.scene3d import colours
-from eel_viz.scene3d.shapes import tiles
+from eel_viz.scene3d.skin import tiles
 
 LENGTH = 3.0  # s: duration of the trail
 PIECES, POINTS = 10, 6  # pieces of one brightness each, and points of a piece
 EDGES = 91  # across the wake
 SHEER = 110  # of 255: opacity of the wake
 STROBE_PERIOD = 1_000_000_000  # ns
+AXES_LENGTH = 0.12  # m
 ROOM = 64  # positions, at least, between two reallocations of the history
 
 
@@ -50,7 +53,7 @@ class RecentRows:
 
 
 class Track:
-    """Draws path and trail."""
+    """Draws midline, strobes, path, trail, and the frames of head and tail, by the methods of topics."""
 
     def __init__(self, stream: BatchedStream) -> None:
         self._stream = stream
@@ -59,13 +62,33 @@ class Track:
         stream.log_line_style(entities.TRACK, colours.dim(colours.PATH, 0.8), width=1.0)
         left = 1.0 - np.arange(PIECES) / PIECES  # of the colour
         stream.log_line_style(entities.TRAIL, colours.faded(colours.PATH, left), width=0.5 + 1.1 * left)
+        stream.log_line_style(entities.STROBES, colours.dim(colours.LABEL, 0.65), width=0.8)
+        stream.log_static(entities.BACKBONE, rr.LineStrips3D.from_fields(colors=[colours.LABEL], radii=[0.0004]))
+        world = rr.Transform3D(parent_frame=f"tf#{entities.WORLD}", child_frame=entities.WORLD_FRAME)
+        stream.log_static(f"{entities.WORLD}/frames", world)
+        head = rr.Transform3D(parent_frame=f"tf#{entities.HEAD}", child_frame=entities.HEAD_FRAME)
+        stream.log_static(f"{entities.HEAD}/frame", head)
+        for path in (entities.HEAD, entities.TAIL):
+            stream.log_static(path, rr.TransformAxes3D(AXES_LENGTH))
 
-    def draw(self, stamp: int, position: np.ndarray) -> None:
-        """Continue to `position`, (3,) [m] in the world, at `stamp` [ns]."""
-        previous = self._places.add(stamp, position)
-        if previous is not None:
-            self._stream.add_lines(stamp, entities.TRACK, np.array([[previous, position]]))
-        self._stream.add_lines(stamp, entities.TRAIL, self._places.at(stamp - self._ages))
+    def head_pose(self, stamp: int, pose: Pose) -> None:
+        """Continue path and trail to the head."""
+        if self._stream.drawing_due("track", stamp):
+            previous = self._places.add(stamp, pose.position)
+            if previous is not None:
+                self._stream.add_lines(stamp, entities.TRACK, np.array([[previous, pose.position]]))
+            self._stream.add_lines(stamp, entities.TRAIL, self._places.at(stamp - self._ages))
+            self._stream.add_pose(stamp, entities.HEAD, pose.position, pose.orientation)
+
+    def backbone(self, stamp: int, backbone: Backbone) -> None:
+        """Draw the midline; it stays where it is the first of a `STROBE_PERIOD`."""
+        midline = backbone.position[None]
+        if self._stream.number_due("backbone", stamp):
+            if self._stream.due("strobe", stamp, STROBE_PERIOD):
+                self._stream.add_lines(stamp, entities.STROBES, midline)
+            self._stream.add_lines(stamp, entities.BACKBONE, midline)
+        if self._stream.drawing_due("tail", stamp):
+            self._stream.add_pose(stamp, entities.TAIL, backbone.position[-1], backbone.orientation[-1])
 
 
 class Wake:
@@ -90,22 +113,6 @@ class Wake:
         self._stream.add_row(
             stamp, entities.WAKE, rr.Mesh3D, vertex_positions=self._ends.at(stamp - self._ages).reshape(-1, 3)
         )
-
-
-class Strobes:
-    """Draws the midline at each `STROBE_PERIOD`."""
-
-    def __init__(self, stream: BatchedStream) -> None:
-        self._stream = stream
-        self._last: int | None = None  # number of the last strobe
-        stream.log_line_style(entities.STROBES, colours.dim(colours.LABEL, 0.65), width=0.8)
-
-    def draw(self, stamp: int, midline: np.ndarray) -> None:
-        """Draw `midline`, (M, 3) [m] in the world, if it is the first at or after a strobe's time; stamp [ns]."""
-        number = stamp // STROBE_PERIOD
-        if number != self._last:
-            self._last = number
-            self._stream.add_lines(stamp, entities.STROBES, midline[None])
 
 
 def _ages() -> np.ndarray:

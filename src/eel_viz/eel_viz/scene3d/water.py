@@ -16,7 +16,7 @@ import rerun as rr
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.scene3d import camera, colours
 from eel_viz.scene3d.lettering import standing_texts
-from eel_viz.scene3d.shapes import tiles
+from eel_viz.scene3d.skin import tiles
 
 MESHES = (1.0, 2.5, 5.0, 10.0)  # possible widths of a mesh, times a power of ten
 MESHES_IN_RADIUS = 1.4  # at least, where the mesh is chosen

@@ -3,7 +3,7 @@
 
 A recording carries all of them as tabs: those of `ARRANGEMENTS`, `robot` where the body has joints, and `compare` where
 another run is laid over this one.
-What a view shows is logged by recording/loggers.py under a path of entities.py.
+What a view shows is logged by the classes of recording/loggers.py under a path of entities.py.
 """
 
 from collections.abc import Callable

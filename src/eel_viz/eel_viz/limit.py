@@ -39,6 +39,8 @@ class Limit:
     """`value` > 0 of a scale from -value to +value: a round number that fits the values of the last `RECENT`.
 
     least: what it does not fall below [any unit]. grows: whether greater values make it grow.
+
+    Attribute recent: their peak, which takes them.
     """
 
     def __init__(self, least: float, *, grows: bool = True) -> None:
@@ -50,10 +52,6 @@ class Limit:
         """The present limit; 1 while all values have been zero."""
         greatest = self.recent.value if self._grows else 0.0
         return (self._least if greatest <= self._least else rounded_up(greatest)) or 1.0
-
-    def include(self, stamp: int, value: float, place: float = 0.0) -> None:
-        """Take the `value` >= 0 at `stamp` [ns] and `place` [m]."""
-        self.recent.include(stamp, value, place)
 
 
 def rounded_up(value: float) -> float:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fins as half ellipses of their own area and span, turned about the hinge line at half chord.
+"""Fins as half ellipses of their own area and span, turned about the hinge line at half chord; joints as rings.
 
 With the angle a, the root's normal n at rest and the section's axis E1 (towards the tail), the chord's direction
 towards the leading edge is sin(a) n - cos(a) E1, as in eel_core/fins.hpp.
@@ -10,7 +10,9 @@ import numpy as np
 from eel_viz.messages import Backbone, Body
 from eel_viz.scene3d.centre_line import Resampling
 
-EDGE = 13  # vertices of the round edge; one more is the middle of the root
+EDGE = 13  # vertices of a fin's round edge; one more is the middle of the root
+HALF_RING = 12  # points of half a joint's ring
+AROUND, AXLE = 1.12, 1.6  # half axes of the ring, and ends of the axle [half axes of the body]
 
 
 class FinPlates:
@@ -43,3 +45,24 @@ class FinPlates:
         vertices = middle[:, None] + np.einsum("fij,fkj->fki", axes, local)
         normals = np.repeat(np.einsum("fij,fj->fi", axes, normal), EDGE + 1, axis=0)
         return vertices.reshape(-1, 3).astype(np.float32), normals.astype(np.float32)
+
+
+class JointRings:
+    """Places the rings of the joints of a `body`, about it, each with the ends of its axle."""
+
+    def __init__(self, body: Body) -> None:
+        self._stations = np.array([joint.station for joint in body.joints])
+        half = np.stack([np.interp(self._stations, body.x, row) for row in (body.half_width, body.half_height)], axis=1)
+        begin = np.array([np.pi / 2 if joint.axis == 3 else 0.0 for joint in body.joints])
+        turns = begin[:, None] + np.concatenate([np.linspace(k * np.pi, (k + 1) * np.pi, HALF_RING) for k in range(2)])
+        out = np.full(turns.shape, AROUND)
+        for place in (2 * HALF_RING, HALF_RING, 0):  # the ends of the axle, from behind
+            turns = np.insert(turns, place, turns[:, min(place, 2 * HALF_RING - 1)], axis=1)
+            out = np.insert(out, place, AXLE, axis=1)
+        ring = (out[:, :, None] * np.stack([np.cos(turns), np.sin(turns)], axis=2)) * half[:, None]
+        self._offset = np.concatenate([np.zeros((*ring.shape[:2], 1)), ring], axis=2)  # (J, P, 3) m, section axes
+
+    def place(self, backbone: Backbone) -> np.ndarray:
+        """One strip for each joint, (J, P, 3) [m], in the world."""
+        middle, axes = Resampling(backbone.x, self._stations).centre_line(backbone.position, backbone.orientation)
+        return np.asarray(middle[:, None] + np.einsum("jik,jpk->jpi", axes, self._offset))

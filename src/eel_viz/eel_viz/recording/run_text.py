@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The texts of a recording: what to look at, the run's summary, its log; and the properties of the recording."""
+
+import reprlib
+
+import rerun as rr
+
+from eel_viz import entities
+from eel_viz.batched_stream import BatchedStream
+from eel_viz.messages import Body, Pose, Profiles, Status
+from eel_viz.plots.state_text import Summary
+from eel_viz.recording.destination import send_properties
+from eel_viz.settings import Drawing
+
+SHORT = reprlib.Repr()
+SHORT.maxstring = 220  # characters of a law's name, which is not checked before
+LEVELS = ("INFO", "WARN", "ERROR", "WARN")  # of a DiagnosticStatus: OK, WARN, ERROR, STALE
+
+
+class RunText(Summary):
+    """Logs to `stream`, by the methods of topics, and sends properties to its `recording`."""
+
+    def __init__(self, recording: rr.RecordingStream, stream: BatchedStream, scales: Drawing) -> None:
+        super().__init__()
+        self._recording, self._stream, self._scales = recording, stream, scales
+        self._statuses_said: dict[str, tuple[int, str]] = {}  # level and message, by name
+        self._log_look(None)
+
+    def body(self, stamp: int, body: Body) -> None:
+        """Say what it has of parts, and its size."""
+        super().body(stamp, body)
+        if body.fins or body.joints:
+            self._log_look(body)
+        send_properties(self._recording, "body", {"length": float(body.length), "mass": float(body.mass)})
+
+    def head_pose(self, stamp: int, pose: Pose) -> None:
+        """Continue the path."""
+        if self.add_position(stamp, pose.position):
+            self._write_if_due(stamp)
+
+    def internal_wrench(self, stamp: int, wrench: Profiles) -> None:
+        """Take the torque C3."""
+        if self.add_torque(stamp, wrench.x, wrench.values["torque_3"]):
+            self._write_if_due(stamp)
+
+    def curvature_law(self, stamp: int, name: str) -> None:
+        """Log the name of the published law."""
+        super().curvature_law(stamp, name)
+        send_properties(self._recording, "swim", {"gait": SHORT.repr(name).strip("'")})
+        self._log_event(stamp, f"law {SHORT.repr(name)} published", "INFO")
+
+    def diagnostics(self, stamp: int, statuses: list[Status]) -> None:
+        """Log each status whose level or message has changed; the values go into the summary."""
+        for status in statuses:
+            if self.add_status(stamp, status.message, status.values):
+                self._write()
+            if self._statuses_said.get(status.name) != (status.level, status.message):
+                self._statuses_said[status.name] = (status.level, status.message)
+                self._log_event(stamp, f"{status.name}: {status.message}", LEVELS[min(status.level, len(LEVELS) - 1)])
+
+    def finish(self) -> None:
+        """Send what the diagnostics said last, before the recording is closed."""
+        if self.values:
+            send_properties(self._recording, "diagnostics", self.numbers())
+
+    def _log_look(self, body: Body | None) -> None:
+        self._stream.log_static(
+            entities.LOOK, rr.TextDocument(look_text(self._scales, body), media_type="text/markdown")
+        )
+
+    def _log_event(self, stamp: int, text: str, level: str) -> None:
+        self._stream.log(stamp, entities.LOG, rr.TextLog(text, level=level))
+
+    def _write_if_due(self, stamp: int) -> None:
+        if self._stream.drawing_due("summary", stamp):
+            self._write()
+
+    def _write(self) -> None:
+        self._stream.log_text(self.stamp, entities.RUN, self.text())
+
+
+def look_text(scales: Drawing, body: Body | None = None) -> str:
+    """Markdown: what to look at, a sentence each, and the scales of the arrows; with what `body` has of parts."""
+    lines = [
+        "The eel swims towards its eyes, along the white arrow; bends run from nose to tail.",
+        "Red and blue on its flanks: the torque **C3** that bends it sideways, on the scale of the last 3 s below "
+        "the picture (C1 twists, C2 bends it up and down).",
+        f"Arrows: the **force of the water**, {scales.load_scale:g} m for 1 N/m; magenta at nose and tail, "
+        f"{scales.end_force_scale:g} m for 1 N. Violet ribbon: what the tail leaves in the **wake**.",
+    ]
+    parts = {
+        "Lime: **fins**.": body and body.fins,
+        "Rings: **joints**, the whiter, the more the motor gives (tab *robot*).": body and body.joints,
+    }
+    lines.append(" ".join(text for text, there in parts.items() if there))
+    return "  \n".join(line for line in lines if line)
