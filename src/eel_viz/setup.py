@@ -34,7 +34,7 @@ setup(
         "eel_dynamics.drawing": ["rerun = eel_viz.recording.library:to_rerun"],
         "eel_dynamics.bags": [
             "messages = eel_viz.bags.swimmer_messages:swimmer_messages",
-            "joints = eel_viz.bags.joint_states:joint_states",
+            "joints = eel_viz.bags.swimmer_messages:joint_states",
         ],
     },
 )

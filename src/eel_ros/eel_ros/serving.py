@@ -65,15 +65,7 @@ class PolledGroup(CallbackGroup):
     """A callback group that the executor neither waits for nor runs; the node polls its subscriptions."""
 
     def can_execute(self, entity: Any) -> bool:
-        """Return False: the executor runs none of them."""
         return False
-
-    def beginning_execution(self, entity: Any) -> bool:
-        """Return False: the executor runs none of them."""
-        return False
-
-    def ending_execution(self, entity: Any) -> None:
-        """Do nothing: none has begun."""
 
 
 def serve_once(executor: Executor, node: Node, timeout: float | None = None) -> None:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Second deliveries of a message, by two subscriptions of one node."""
 
-from eel_ros.deliveries import Deliveries
+from eel_ros.qos import Deliveries
 
-from eel_ros import deliveries
+from eel_ros import qos
 
 
 def info(sent, count):
@@ -22,7 +22,7 @@ def test_messages_without_a_time_of_sending_are_never_repetitions():
 
 
 def test_it_remembers_a_bounded_number_of_messages(monkeypatch):
-    monkeypatch.setattr(deliveries, "REMEMBERED", 3)
+    monkeypatch.setattr(qos, "REMEMBERED", 3)
     received = Deliveries()
     for count in range(1, 5):
         assert not received.repeats(info(1000, count))

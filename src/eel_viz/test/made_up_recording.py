@@ -56,8 +56,8 @@ def record(
     chosen = Settings(recording=str(path), **settings)
     said: list[str] = []
     destination = FileDestination(chosen, said.append, said.append)
-    stream = destination.open(1, "made up")
-    loggers = Loggers(stream, chosen, Rates(numbers=0.0, drawings=chosen.skin_rate))
+    delivery = destination.open(1, "made up")
+    loggers = Loggers(delivery.stream, chosen, Rates(numbers=0.0, drawings=chosen.skin_rate))
     loggers.log("curvature_law", 0, "made up")
     sides = [False, True] if chosen.compare else [False]  # the same again, as the compared run
     for compared in sides:
@@ -76,5 +76,5 @@ def record(
             for compared in sides:
                 loggers.log(method, stamp, *arguments, compared=compared)
     loggers.flush()
-    destination.close_recording(stream)
+    delivery.close()
     return logged

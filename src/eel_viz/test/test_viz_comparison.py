@@ -23,8 +23,8 @@ def record(path, *, other_first=False):
     """Two swimmers beside each other, the other with other stations and half the torque; their samples."""
     settings = Settings(recording=str(path), compare="/draft", blueprint="compare")
     file = FileDestination(settings, print, print)
-    stream = file.open(1, "made up")
-    loggers = Loggers(stream, settings, Rates(), "standard")
+    delivery = file.open(1, "made up")
+    loggers = Loggers(delivery.stream, settings, Rates(), "standard")
     for compared, law in ((False, "made up"), (True, "another")):
         loggers.log("body", 0, body(), compared=compared)
         loggers.log("curvature_law", 0, law, compared=compared)
@@ -42,7 +42,7 @@ def record(path, *, other_first=False):
         for method, arguments in messages.items():
             loggers.log(method, stamp, *arguments, compared=compared)
     loggers.flush()
-    file.close_recording(stream)
+    delivery.close()
     return logged
 
 

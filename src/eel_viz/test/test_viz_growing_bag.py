@@ -14,15 +14,15 @@ import zstandard
 from eel_viz.bags.bag import Bag, DamagedBag
 from eel_viz.bags.definitions import definition, type_hash
 from eel_viz.bags.growing_bag import GrowingBag
-from eel_viz.bags.mcap_file import damage_of
+from eel_viz.bags.unvouched_files import damage_of
 from mcap.reader import make_reader
 from rosbags.rosbag2 import Reader
 
-KIND = "geometry_msgs/msg/Vector3"
+JOINTS = "geometry_msgs/msg/Vector3"
 
 
 def connect(bag, topic="/extra"):
-    return bag.add_connection(topic, KIND, msgdef=definition(KIND), rihs01=type_hash(KIND))
+    return bag.add_connection(topic, JOINTS, msgdef=definition(JOINTS), rihs01=type_hash(JOINTS))
 
 
 def stamps(folder):

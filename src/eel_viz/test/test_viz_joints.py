@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from builtin_interfaces.msg import Time
 from eel_viz.bags.definitions import definition, type_hash
-from eel_viz.bags.joint_states import KIND, joint_states
+from eel_viz.bags.swimmer_messages import JOINTS, joint_states
 from rclpy.serialization import serialize_message
 from rosbags.rosbag2 import StoragePlugin, Writer
 from sensor_msgs.msg import JointState
@@ -18,7 +18,7 @@ ANGLES = 0.3 * np.sin(6.0 * TIMES[:, None] - np.arange(3))
 def write_bag(folder, *topics, storage=StoragePlugin.MCAP):
     with Writer(folder, version=9, storage_plugin=storage) as writer:
         for topic in topics:
-            connection = writer.add_connection(topic, KIND, msgdef=definition(KIND), rihs01=type_hash(KIND))
+            connection = writer.add_connection(topic, JOINTS, msgdef=definition(JOINTS), rihs01=type_hash(JOINTS))
             for index, (t, angles) in enumerate(zip(TIMES, ANGLES, strict=True)):
                 names = [f"joint_{place}" for place in range(3)]
                 if index % 2:  # a message may list them in another order

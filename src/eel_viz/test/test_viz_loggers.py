@@ -106,12 +106,12 @@ def test_way_points_that_come_before_the_body_get_its_size(given, reach, tmp_pat
     path, said = tmp_path / "goal.rrd", []
     settings = Settings(recording=str(path), **given)
     destination = FileDestination(settings, said.append, said.append)
-    stream = destination.open(1, "goal")
-    loggers = Loggers(stream, settings, Rates())
+    delivery = destination.open(1, "goal")
+    loggers = Loggers(delivery.stream, settings, Rates())
     loggers.log("goal", 0, np.array([(4.0, 1.0, -0.5), (8.0, -1.0, 0.25)]))
     loggers.log("body", 0, replace(body(), length=0.4))
     loggers.flush()
-    destination.close_recording(stream)
+    delivery.close()
     spheres = read(path, entities.WAY_POINTS, static=True)
     np.testing.assert_allclose(spheres["half_sizes"][-1], np.full((2, 3), 0.4 * reach), rtol=1e-6)
 
@@ -411,8 +411,8 @@ def test_notes_say_how_fast_the_head_is_and_where_the_greatest_torque_was(long_s
 def test_the_run_panel_is_true_at_its_time_whatever_comes_first(lag, tmp_path):
     path, said = tmp_path / "panel.rrd", []
     destination = FileDestination(Settings(recording=str(path)), said.append, said.append)
-    stream = destination.open(1, "panel")
-    loggers, swimmer = Loggers(stream, Settings(), Rates()), made_up.Swimmer(21)
+    delivery = destination.open(1, "panel")
+    loggers, swimmer = Loggers(delivery.stream, Settings(), Rates()), made_up.Swimmer(21)
     times = [round(k * 20e6) for k in range(201)]
     given = {
         "head_pose": lambda t: Pose(**{name: swimmer.head(t)[name] for name in ("position", "orientation")}),
@@ -423,7 +423,7 @@ def test_the_run_panel_is_true_at_its_time_whatever_comes_first(lag, tmp_path):
             if 0 <= at < len(times):
                 loggers.log(topic, times[at], given[topic](times[at] / 1e9))
     loggers.flush()
-    destination.close_recording(stream)
+    delivery.close()
     texts, wrench = read(path, entities.RUN), read(path, entities.WRENCH_NUMBERS)
     assert set(texts.stamps.tolist()) == set(drawn_stamps(times))
     at, torque = wrench.stamps, wrench["torque_3"]
@@ -494,14 +494,14 @@ def test_stations_may_change_in_mid_run(record_made_up, tmp_path):
 
     settings = Settings(recording=str(tmp_path / "changing.rrd"))
     file = FileDestination(settings, print, print)
-    stream = file.open(1, "changing")
-    loggers = Loggers(stream, settings, Rates())
+    delivery = file.open(1, "changing")
+    loggers = Loggers(delivery.stream, settings, Rates())
     loggers.log("body", 0, body())
     for k, stations in enumerate((51, 51, 21, 101)):
         for method, arguments in sample(made_up.Swimmer(stations), k * 10**9).items():
             loggers.log(method, k * 10**9, *arguments)
     loggers.flush()
-    file.close_recording(stream)
+    delivery.close()
     numbers = read(tmp_path / "changing.rrd", entities.WRENCH_NUMBERS)
     assert [len(row) for row in numbers.values["x"]] == [51, 21, 101]
     assert [len(row) for row in numbers.values["torque_3"]] == [51, 51, 21, 101]
@@ -517,14 +517,14 @@ def test_the_order_of_topics_does_not_matter(tmp_path):
     for name, turn in (("forwards", 1), ("backwards", -1)):
         settings = Settings(recording=str(tmp_path / f"{name}.rrd"))
         file = FileDestination(settings, print, print)
-        stream = file.open(1, name)
-        loggers = Loggers(stream, settings, Rates())
+        delivery = file.open(1, name)
+        loggers = Loggers(delivery.stream, settings, Rates())
         loggers.log("body", 0, body())
         for k in range(10):
             for method, arguments in list(sample(made_up.Swimmer(), k * 10**8).items())[::turn]:
                 loggers.log(method, k * 10**8, *arguments)
         loggers.flush()
-        file.close_recording(stream)
+        delivery.close()
         paths.append(tmp_path / f"{name}.rrd")
     for entity, component in (
         (entities.LOAD, "vectors"),
@@ -548,13 +548,13 @@ def test_a_lower_rate_for_a_live_viewer(tmp_path):
 
     settings = Settings(recording=str(tmp_path / "live.rrd"))
     file = FileDestination(settings, print, print)
-    stream = file.open(1, "live")
-    loggers = Loggers(stream, settings, Rates(numbers=10.0, drawings=10.0))
+    delivery = file.open(1, "live")
+    loggers = Loggers(delivery.stream, settings, Rates(numbers=10.0, drawings=10.0))
     for k in range(101):
         for method, arguments in sample(made_up.Swimmer(), k * 10**7).items():
             loggers.log(method, k * 10**7, *arguments)
     loggers.flush()
-    file.close_recording(stream)
+    delivery.close()
     for entity in (entities.SPEED, entities.WRENCH_NUMBERS, entities.BACKBONE, entities.POWER):
         assert len(read(tmp_path / "live.rrd", entity).stamps) == 11, entity
 
@@ -578,9 +578,8 @@ def test_a_recording_gets_another_blueprint_for_its_end_unless_it_is_short(tmp_p
 
     said = []
     file = FileDestination(Settings(recording=str(tmp_path / "run.rrd")), said.append, said.append)
-    stream = file.open(1, "made up")
-    file.fit(stream, end)
-    file.close_recording(stream)
+    delivery = file.open(1, "made up")
+    delivery.close(end)
     assert len(RrdReader(str(tmp_path / "run.rrd")).blueprints()) == blueprints
 
 

@@ -5,7 +5,7 @@ import time
 
 import numpy as np
 import pytest
-from eel_viz.messages import read_backbone, read_load
+from eel_viz.message_readers import read_backbone, read_load
 from eel_viz.ros.marker_messages import WIDTHS
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.centre_line import ALONG, forces_along, forces_at_ends

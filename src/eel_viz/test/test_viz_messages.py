@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from builtin_interfaces.msg import Time
 from eel_base.topics import ENERGY_FIELDS, LATER_ENERGY_FIELDS
-from eel_viz.messages import BadMessage
+from eel_viz.messages import CURVATURE_FIELDS, WRENCH_FIELDS, BadMessage
 from fake_swimmer import body_message, messages
 from geometry_msgs.msg import PoseStamped
 from std_msgs.msg import Header
 
-from eel_viz import messages as reading
+from eel_viz import message_readers as reading
 
 STAMP = 1_230_000_000
 
@@ -56,8 +56,8 @@ def test_arrays_come_through_unchanged(sent):
     for name in ("x", "position", "orientation"):
         np.testing.assert_array_equal(getattr(backbone, name), expected[name])
     for topic, fields, names in (
-        ("internal_wrench", swimmer.wrench(STAMP * 1e-9), reading.WRENCH_FIELDS),
-        ("curvature", swimmer.curvature(STAMP * 1e-9), reading.CURVATURE_FIELDS),
+        ("internal_wrench", swimmer.wrench(STAMP * 1e-9), WRENCH_FIELDS),
+        ("curvature", swimmer.curvature(STAMP * 1e-9), CURVATURE_FIELDS),
     ):
         profiles = READERS[topic](sent[topic])
         assert tuple(profiles.values) == names

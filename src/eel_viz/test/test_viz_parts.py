@@ -8,8 +8,8 @@ import made_up
 import numpy as np
 import pytest
 from eel_base.attitude import section_axes
-from eel_viz.messages import Backbone, BadMessage, Fin, Joint
-from eel_viz.part_messages import Motors, read_body_with_parts, read_joints, read_motors
+from eel_viz.message_readers import read_body, read_joints, read_motors
+from eel_viz.messages import Backbone, BadMessage, Fin, Joint, Motors
 from eel_viz.recording.dispatcher import Dispatcher
 from eel_viz.recording.reading import read
 from eel_viz.recording.recording_file import FileDestination
@@ -201,13 +201,13 @@ def test_joints_are_markers_in_the_colours_of_their_loads(backbone):
 
 
 BAD = [
-    (lambda: read_body_with_parts(message_of_parts(fins=[replace(FINS[0], station=1.5)])), "fins", "station"),
-    (lambda: read_body_with_parts(message_of_parts(fins=[replace(FINS[0], area=-1.0)])), "fins", "area"),
-    (lambda: read_body_with_parts(message_of_parts(fins=[replace(FINS[0], dihedral=np.nan)])), "fins", "dihedral"),
-    (lambda: read_body_with_parts(message_of_parts(fins=[replace(FINS[0], side=0)])), "fins", "side"),
-    (lambda: read_body_with_parts(message_of_parts(joints=[replace(JOINTS[0], axis=1)])), "joints", "axis 1"),
-    (lambda: read_body_with_parts(message_of_parts(joints=[replace(JOINTS[0], station=np.nan)])), "joints", "nan"),
-    (lambda: read_body_with_parts(message_of_parts(joints=JOINTS * 200)), "joints", "at most 256"),
+    (lambda: read_body(message_of_parts(fins=[replace(FINS[0], station=1.5)])), "fins", "station"),
+    (lambda: read_body(message_of_parts(fins=[replace(FINS[0], area=-1.0)])), "fins", "area"),
+    (lambda: read_body(message_of_parts(fins=[replace(FINS[0], dihedral=np.nan)])), "fins", "dihedral"),
+    (lambda: read_body(message_of_parts(fins=[replace(FINS[0], side=0)])), "fins", "side"),
+    (lambda: read_body(message_of_parts(joints=[replace(JOINTS[0], axis=1)])), "joints", "axis 1"),
+    (lambda: read_body(message_of_parts(joints=[replace(JOINTS[0], station=np.nan)])), "joints", "nan"),
+    (lambda: read_body(message_of_parts(joints=JOINTS * 200)), "joints", "at most 256"),
     (lambda: read_joints(NS(name=["a"], position=[])), "position", "1 numbers to fit name"),
     (lambda: read_joints(NS(name=["a"], position=[np.inf])), "position", "not finite"),
     (lambda: read_joints(NS(name=["a"], position=[0.1], velocity=[1, 2])), "velocity", "got 2"),

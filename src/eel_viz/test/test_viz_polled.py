@@ -24,7 +24,7 @@ class Waiting(nullcontext):
 
 
 class Node:
-    def create_subscription(self, kind, topic, *quality, callback_group):
+    def create_subscription(self, kind, topic, *quality, **options):
         return Waiting(topic)
 
     def get_publishers_info_by_topic(self, topic):
@@ -41,6 +41,6 @@ def test_a_turn_of_slow_messages_ends_and_all_topics_get_their_turns(monkeypatch
 
     polled = PolledSubscriptions(Node())
     for topic in ("pose", "twist", "wrench"):
-        polled.subscribe(String, topic, show, QoSProfile(depth=1))
+        polled.show(String, topic, show, QoSProfile(depth=1))
     assert [polled.take() for _ in range(4)] == [2] * 4
     assert shown == ["pose"] * 2 + ["twist"] * 2 + ["wrench"] * 2 + ["pose"] * 2

@@ -35,8 +35,8 @@ def test_every_view_is_shown_without_a_complaint(can_draw, tmp_path):
             drawing.arrange(name)
             drawing.png(1.5)
             views = drawing.views()
-            assert [(view.name, view.complaints) for view in views if view.complaints] == []
-            assert dict(Counter(view.kind for view in views)) == VIEWS[name], name
+            assert [(view.name, view.reports) for view in views if view.reports] == []
+            assert dict(Counter(view.view_class for view in views)) == VIEWS[name], name
 
 
 def test_a_picture_shows_the_swimmer_and_changes_with_time(can_draw, tmp_path):

@@ -15,7 +15,7 @@ import rerun as rr
 from eel_base.wording import shown
 from eel_viz.messages import Status
 from eel_viz.recording import recordings, sinks
-from eel_viz.recording.delivery import CHECK_PERIOD
+from eel_viz.recording.destination import CHECK_PERIOD
 from eel_viz.recording.reading import read
 from eel_viz.recording.recording_file import REMINDER, FileDestination
 from eel_viz.recording.recordings import Recordings
@@ -225,13 +225,14 @@ def test_a_recording_that_cannot_be_completed_stays_a_part(console, tmp_path, li
     file = FileDestination(
         Settings(recording=str(tmp_path / "run.rrd")), console.said.append, console.warned.append, retry_from=2
     )
-    stream, part = file.open(1, "eel"), tmp_path / "run.part.rrd"
+    delivery, part = file.open(1, "eel"), tmp_path / "run.part.rrd"
+    stream = delivery.stream
     for k in range(3):
         stream.set_time(entities.TIMELINE, duration=float(k))
         stream.log(entities.SPEED, rr.Scalars([1.0]))
     stream.flush()
     with limit_of_files(part.stat().st_size + 100):  # the index does not fit any more
-        file.close_recording(stream)
+        delivery.close()
     assert file.incomplete and (tmp_path / "run.rrd").read_bytes() == b"RRF2 of yesterday"
     (told,) = (line for line in console.warned if "cannot be written any more" in line)
     assert f"recording {shown(str(part))} cannot be written any more: File too large; it ends here" in told
@@ -344,7 +345,7 @@ def test_a_successor_begins_a_new_recording_whatever_its_stamps(file, console, t
 
 
 def test_succession_is_told_by_counts_pauses_and_who_is_there():
-    from eel_viz.ros.publisher_change import PublisherChange
+    from eel_viz.ros.polled_subscriptions import PublisherChange
 
     there, looks = {"one"}, []
 

@@ -12,9 +12,8 @@ from functools import partial
 from typing import Any
 
 from eel_gaits.laws.law_message import law_from_message
-from eel_ros.deliveries import Deliveries
 from eel_ros.loop.diagnostics import ERROR, Report
-from eel_ros.qos import latched
+from eel_ros.qos import Deliveries, latched
 from eel_ros.serving import ServedNode
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.qos import QoSProfile

@@ -21,9 +21,8 @@ from eel_gaits.ros.messages import ROWS
 from eel_model.axes import with_section_axes
 from eel_model.flow.flow import lattice_around, velocities_at
 from eel_model.robot.actuators import most_torque
-from eel_ros.headers import seconds_of
+from eel_ros.headers import Beginning, seconds_of
 from eel_ros.loop.serialised_message import SerialisedMessage
-from eel_ros.serialised import Beginning
 from eel_ros.serving import read_message
 from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped, Vector3Stamped
 from nav_msgs.msg import Odometry

@@ -4,7 +4,7 @@
 import numpy as np
 from eel_base.attitude import unit_quaternion
 from eel_base.wording import shown
-from eel_ros.serialised import Beginning
+from eel_ros.headers import Beginning
 from eel_ros.serving import read_message
 from geometry_msgs.msg import Point, Pose, PoseStamped
 from nav_msgs.msg import Odometry, Path

@@ -23,8 +23,7 @@ from rosbags.rosbag2 import Reader
 from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_types_from_msg, get_typestore
 
-from eel_viz.bags.mcap_file import RecordReader, damage_of
-from eel_viz.bags.metadata import NAME, check_metadata
+from eel_viz.bags.unvouched_files import METADATA, RecordReader, check_metadata, damage_of
 
 SUFFIXES = (".mcap", ".db3")
 PADDED = "sensor_msgs/msg/JointState", "eel_msgs/msg/MotorStates"  # their last fields are sequences of doubles
@@ -122,7 +121,7 @@ class Bag:
             raise
 
     def _open(self) -> None:
-        if self._path.is_file() or (self._path / NAME).exists():
+        if self._path.is_file() or (self._path / METADATA).exists():
             try:
                 self.damage = "; ".join(filter(None, map(damage_of, _mcap_files(self._path))))
                 self._readers = [self._stack.enter_context(_checked_reader(self._path))]
@@ -130,7 +129,7 @@ class Bag:
             except Exception as error:  # on damaged files rosbags raises struct.error, KeyError, sqlite's and others
                 self.damage = _line(error)
         else:
-            self.damage = f"no {NAME}"
+            self.damage = f"no {METADATA}"
         files = [self._path] if self._path.is_file() else sorted(self._path.iterdir())
         files = [each for each in files if each.suffix in SUFFIXES and each.is_file()]
         if not files:

@@ -1,17 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The messages of one swimmer in a bag; also for `Run.from_bag` of the library."""
+"""The messages of one swimmer in a bag, and joint angles in one; also for the library."""
 
 import os
 import warnings
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 from eel_base.topics import DIAGNOSTICS, GLOBAL, OWN, SAMPLED
 from eel_base.wording import shown
 
 from eel_viz.bags.bag import Bag, DamagedBag
 from eel_viz.recording.destination import LogFunction
 from eel_viz.recording.dispatcher import READERS
+
+JOINTS = "sensor_msgs/msg/JointState"
 
 
 class SwimmerMessages:
@@ -100,3 +103,32 @@ def swimmer_messages(path: str | os.PathLike[str], namespace: str | None = None)
         if bag.damage:
             log_warning(f"{path} is unfinished or damaged ({bag.damage}): read as far as it goes")
         yield from SwimmerMessages(bag, namespace, log_warning, ("fin_states",))
+
+
+def joint_states(path: str | os.PathLike[str], topic: str | None = None) -> tuple[np.ndarray, np.ndarray, list[str]]:
+    """Time (N,) [s], angles (N, n) [rad] and names of the joints in the bag at `path`.
+
+    topic: None: the only one of this type. Joints stand in the order of the first message; messages that lack one are
+    left out. Time is that of the header, or of reception where no header has one. `ValueError` in one line if there is
+    no such topic.
+    """
+    with Bag(path) as bag:
+        there = sorted(name for name, about in bag.topics.items() if about.type == JOINTS)
+        chosen = there if topic is None else [name for name in there if name == f"/{topic.lstrip('/')}"]
+        if len(chosen) != 1:
+            what = "several topics, choose one" if len(chosen) > 1 else "no such topic"
+            raise ValueError(f"bag {shown(str(path))} has {what} of {JOINTS}; it has: {', '.join(there) or 'none'}")
+        names: list[str] = []
+        stamps, received, rows = [], [], []
+        message: Any
+        for _, at, message in bag.messages(*chosen):
+            angles = dict(zip(message.name, message.position, strict=False))
+            names = names or list(angles)
+            if set(names) <= set(angles):
+                stamp = message.header.stamp
+                stamps.append(stamp.sec + 1e-9 * stamp.nanosec)
+                received.append(1e-9 * at)
+                rows.append([float(angles[name]) for name in names])
+    if not rows:
+        raise ValueError(f"bag {shown(str(path))} has no message with joints on {chosen[0]}")
+    return np.array(stamps if any(stamps) else received), np.array(rows), names

@@ -12,9 +12,7 @@ import pathlib
 import subprocess
 import tempfile
 import time
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from functools import partial
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from eel_base.wording import shown
@@ -38,16 +36,6 @@ ALONE = "swimmer"  # the arrangement of a bare picture
 LEAST_SIDE, MOST_SIDE = 64, 8192  # pixels of a window's side
 
 
-@dataclass(frozen=True, kw_only=True)
-class View:
-    """One view of a picture: its `name`, its `kind` such as "3D", what it complains of; `png()` is its picture."""
-
-    name: str
-    kind: str
-    complaints: list[Any]
-    png: Callable[[], bytes]
-
-
 class Drawing:
     """A recording that a viewer shows; `start` and `end` [s] are its first and last simulation time.
 
@@ -69,7 +57,7 @@ class Drawing:
                 f"time must lie in the recording, {self.start:g} to {self.end:g} s ({self._path.name}), got {at:g}"
             )
         self._client.set_time(TIMELINE, duration=at, play_state="paused")
-        picture = self._screenshot() if self._last else b""
+        picture = self.screenshot(self._view) if self._last else b""
         if picture == self._last:  # the first, or perhaps not up to date
             picture = self._stable_picture()
         self._last = picture
@@ -81,11 +69,8 @@ class Drawing:
         bare: from now on, pictures show its first view alone, without the viewer's frame.
         """
         blueprint = self._client.get_blueprint(of="recording").blueprint
-        boxes = {
-            path.strip("/"): part["ContainerBlueprint"]
-            for path, part in blueprint.items()
-            if "ContainerBlueprint" in part
-        }
+        found = ((path.strip("/"), part.get("ContainerBlueprint")) for path, part in blueprint.items())
+        boxes = {path: box for path, box in found if box is not None}
         root = boxes.get(f"container/{blueprint['/viewport']['ViewportBlueprint'].get('root_container')}", {})
         tabs = {boxes.get(path.strip("/"), {}).get("display_name"): path for path in root.get("contents", [])}
         tabs.pop(None, None)
@@ -101,22 +86,14 @@ class Drawing:
         self._client.set_blueprint(blueprint, of="recording")
         self._last = b""
 
-    def views(self) -> list[View]:
-        """The views of the arrangement in front, after a picture of it, those in three dimensions first."""
-        found = [
-            View(
-                name=view.name,
-                kind=view.view_class,
-                complaints=view.reports,
-                png=partial(self._client.take_screenshot, view.view_id),
-            )
-            for view in self._client.get_state().views
-            if view.view_id in self._shown
-        ]
-        return sorted(found, key=lambda view: view.kind != "3D")
+    def views(self) -> list[Any]:
+        """The viewer's views of the arrangement in front, after a picture of it, those in three dimensions first."""
+        found = [view for view in self._client.get_state().views if view.view_id in self._shown]
+        return sorted(found, key=lambda view: view.view_class != "3D")
 
-    def _screenshot(self) -> bytes:
-        png: bytes = self._client.take_screenshot(self._view)
+    def screenshot(self, view: str | None) -> bytes:
+        """What is shown now, as PNG: the `view` with this id, or the whole window."""
+        png: bytes = self._client.take_screenshot(view)
         return png
 
     def _load(self) -> tuple[float, float]:
@@ -129,10 +106,8 @@ class Drawing:
                 start, end = times[0].start, times[0].end
                 if start is not None and end is not None:
                     return start / 1e9, end / 1e9
-            loaded = (
-                bool(state.recordings) and not state.loading
-            )  # at first there is no recording, and nothing is loading
-            loaded_checks = loaded_checks + 1 if loaded else 0
+            # at first there is no recording, and nothing is loading
+            loaded_checks = loaded_checks + 1 if state.recordings and not state.loading else 0
             if time.monotonic() > limit or loaded_checks == LOADED_CHECKS:
                 raise ValueError(f"{self._path.name} is no recording of a swimmer, it has no timeline {TIMELINE}")
             time.sleep(0.1)
@@ -142,7 +117,7 @@ class Drawing:
         before = b""
         while time.monotonic() < limit:
             time.sleep(0.2)
-            png = self._screenshot()
+            png = self.screenshot(self._view)
             noticed = time.monotonic() - self._started < NOTICE
             if png and png == before and not noticed and not self._client.get_state().loading:
                 return png

@@ -6,7 +6,6 @@ import os
 import pathlib
 import shutil
 import subprocess
-from typing import Any
 
 from eel_base.files.output_file import replacing
 from eel_base.wording import shown
@@ -30,22 +29,25 @@ def check_quality(quality: int) -> None:
         raise ValueError(f"quality must be 1 to 100, got {quality}")
 
 
+def check_film(path: pathlib.Path) -> None:
+    """`ValueError` for a suffix that is none of a film, or that needs ffmpeg where it is missing."""
+    if path.suffix not in FILMS:
+        raise ValueError(f"film must end in one of {', '.join(FILMS)}, got {shown(str(path))}")
+    if path.suffix not in ANIMATIONS and ffmpeg() is None:
+        raise ValueError(f"ffmpeg is not installed, which {path.suffix} needs; {' and '.join(ANIMATIONS)} do without")
+
+
 def film(
     folder: str | os.PathLike[str], count: int, output: str | os.PathLike[str], *, fps: float, quality: int = QUALITY
 ) -> None:
     """Write the film `output` of the first `count` pictures in `folder`, of equal size, with `fps` per second.
 
     Their names are `PICTURE_NAME`. quality: of a .webp, 1 (smallest file) to 100.
-    `ValueError` for an unknown suffix or a quality outside that range,
-    or if ffmpeg is needed and missing; `OSError` if writing fails.
+    `ValueError` as of `check_quality` and `check_film`; `OSError` if writing fails.
     """
+    path, program = pathlib.Path(output), ffmpeg() or ""
     check_quality(quality)
-    path = pathlib.Path(output)
-    if path.suffix not in FILMS:
-        raise ValueError(f"film must end in one of {', '.join(FILMS)}, got {shown(str(output))}")
-    program: Any = ffmpeg()
-    if path.suffix not in ANIMATIONS and program is None:
-        raise ValueError(f"ffmpeg is not installed, which {path.suffix} needs; {' and '.join(ANIMATIONS)} do without")
+    check_film(path)
     with replacing(path) as draft:
         if path.suffix in ANIMATIONS:
             _animate([pathlib.Path(folder) / (PICTURE_NAME % k) for k in range(count)], draft, fps, quality)

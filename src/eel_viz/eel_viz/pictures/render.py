@@ -24,7 +24,7 @@ from eel_base.wording import shown
 
 from eel_viz import keep_pandas_out
 from eel_viz.pictures.drawing import SIZE, Drawing, SideBySide, check_recording, drawn_beside
-from eel_viz.pictures.film import ANIMATIONS, FILMS, PICTURE_NAME, QUALITY, check_quality, ffmpeg, film
+from eel_viz.pictures.film import FILMS, PICTURE_NAME, QUALITY, check_film, check_quality, ffmpeg, film
 from eel_viz.viewer import CannotRender
 
 NAME = "eel render"
@@ -138,13 +138,13 @@ def main(chosen: argparse.Namespace) -> None:
 
 def _draw(chosen: argparse.Namespace, output: pathlib.Path, size: tuple[int, int]) -> None:
     many = chosen.fps is not None
+    alone = many and output.suffix in FILMS
     if many:
         _check_positive(fps=chosen.fps, speed=chosen.speed)
         check_quality(chosen.quality)
-    alone = many and output.suffix in FILMS
-    if alone and output.suffix not in ANIMATIONS and ffmpeg() is None:
-        raise ValueError(f"ffmpeg is not installed, which {output.suffix} needs; {' and '.join(ANIMATIONS)} do without")
-    if not many and output.suffix != ".png":
+        if alone:
+            check_film(output)
+    elif output.suffix != ".png":
         raise ValueError(f"a picture must end in .png, got {shown(str(output))}; --fps N makes many in a folder")
     _check_writable(output, folder=many and not alone)
     with contextlib.ExitStack() as stack:

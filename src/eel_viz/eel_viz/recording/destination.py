@@ -1,9 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Base class of the destinations of recordings: each opens one Rerun stream per recording and sends the blueprint."""
+"""Where recordings go: base classes of the destinations, and of the streams that they open for each recording.
+
+Rerun does not report whether what is logged arrives: a disk may be full, a viewer may have stopped reading. After one
+failed write a file silently drops everything that follows. Logging to a viewer that does not read blocks for ever after
+some 300 MB, and so does closing that stream. Both faults show when the stream is flushed: it fails, or it times out.
+"""
 
 import contextlib
-import pathlib
 import threading
+import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any
@@ -22,6 +27,10 @@ from eel_viz.views.views import Look
 APPLICATION = "eel"  # Rerun's application id
 SHORT = 5.0  # s: recordings that end before have not settled; a second blueprint would take 0.4 MB of the file
 CLOSE_TIMEOUT = 3.0  # s for the last flush of a stream
+CHECK_PERIOD = 0.5  # s between two checks of a stream; a process that is killed loses no more of its file
+STALL_TIMEOUT = 2.0  # s without progress, after which a viewer is reported and a file is given up
+
+_detached: list[rr.RecordingStream | threading.Thread] = []
 
 LogFunction = Callable[[str], None]
 
@@ -49,12 +58,8 @@ class Destination(ABC):
         self._blueprint_sent = False  # sent once: later recordings keep the user's changes in the viewer
 
     @abstractmethod
-    def open(self, number: int, name: str) -> rr.RecordingStream | None:
+    def open(self, number: int, name: str) -> "Delivery | None":
         """The stream of recording `number` (1, 2, ...), called `name`; None if it cannot be opened now."""
-
-    def file(self, number: int) -> pathlib.Path | None:
-        """The file that recording `number` is written to; None if it is not a file."""
-        return None
 
     def make_stream(
         self, sink: rr.FileSink | rr.GrpcSink, name: str, batches: rr.ChunkBatcherConfig | None = None
@@ -95,18 +100,6 @@ class Destination(ABC):
         if not self.live and (end >= SHORT or has_parts):
             stream.send_blueprint(self.blueprint(end), make_active=False, make_default=True)
 
-    def close_recording(self, stream: rr.RecordingStream) -> None:
-        """Close a recording's stream."""
-        close_stream(stream)
-
-    def abort(self, stream: rr.RecordingStream) -> None:
-        """Handle a stream whose file can no longer be written."""
-        return
-
-    def discard(self) -> None:
-        """After an error: discard the recordings that are not complete."""
-        return
-
     def disconnected(self) -> bool:
         """Whether the receiver of open streams has gone, so that they must be given up."""
         return False
@@ -114,6 +107,55 @@ class Destination(ABC):
     def close(self) -> None:
         """Close what outlives the recordings, such as a server."""
         return
+
+
+class Delivery:
+    """An open `stream` of a `destination`. This one, which its caller owns, is not watched, and stays open.
+
+    Attributes:
+        failed: the file can no longer be written.
+        disconnected: the viewer has ended.
+    """
+
+    def __init__(self, destination: Destination, stream: rr.RecordingStream) -> None:
+        self.destination, self.stream = destination, stream
+        self.failed = self.disconnected = False
+        self._last_check = time.monotonic()
+
+    @property
+    def accepts_data(self) -> bool:
+        """Whether data may be logged to the stream now."""
+        return not self.failed and not self.disconnected
+
+    def check(self) -> None:
+        """Look for faults, at most once in `CHECK_PERIOD`."""
+        now = time.monotonic()
+        if not self.failed and not self.disconnected and now - self._last_check >= CHECK_PERIOD:
+            self.find_faults(now)
+            self._last_check = time.monotonic()
+
+    def find_faults(self, now: float) -> None:
+        """Flush the stream at `now` [s, steady clock], and take note of its state."""
+        return
+
+    def close(self, end: float = 0.0) -> None:
+        """Flush and close the stream of a run that ends at `end` [s], which completes a file."""
+        self.destination.fit(self.stream, end)
+        self.stream.flush()
+
+    def discard(self) -> None:
+        """After an error: discard what is not complete."""
+        return
+
+    def flushed(self, timeout: float) -> bool:
+        """Whether all data arrive within a `timeout` [s]. `RuntimeError` where they never will."""
+        try:
+            self.stream.flush(timeout_sec=timeout)
+        except RuntimeError as error:
+            if "timed out" in str(error):
+                return False
+            raise
+        return True
 
 
 def send_properties(stream: rr.RecordingStream, group: str, values: dict[str, Any]) -> None:
@@ -148,3 +190,8 @@ def close_stream(stream: rr.RecordingStream) -> None:
     closing.join(CLOSE_TIMEOUT)
     if closing.is_alive():
         rr.unregister_shutdown()
+
+
+def detach_blocked(blocked: rr.RecordingStream | threading.Thread) -> None:
+    """Keep a reference to a blocked stream or thread: its destructor would block this process."""
+    _detached.append(blocked)

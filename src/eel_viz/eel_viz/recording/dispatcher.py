@@ -9,37 +9,36 @@ A message is any object with the fields of its type. A message that cannot be sh
 import time
 from collections import Counter
 from collections.abc import Callable, Hashable
+from operator import attrgetter
 from typing import Any
 
 from eel_base.topics import SAMPLED
 
-from eel_viz import messages, part_messages
-from eel_viz.messages import BadMessage, stamp_of
+from eel_viz import message_readers as readers
+from eel_viz.messages import BadMessage
 from eel_viz.recording.destination import LogFunction
 from eel_viz.recording.recordings import Recordings
 
 COARSE = 4  # stations, below which a backbone says little about the shape
 BODY_LIMIT = 2.0  # s after the first backbone within which the body is expected
 
-# What is shown: each topic is also the method of `Loggers` or `Parts` that draws it; here are its arguments after the
-# stamp.
-READERS: dict[str, Callable[[Any], tuple[Any, ...]]] = {
-    "body": lambda message: (part_messages.read_body_with_parts(message),),
-    "curvature_law": lambda message: (message.name,),
-    "goal": lambda message: (messages.read_path(message),),
-    "head_pose": lambda message: (messages.read_pose(message.pose),),
-    "head_twist": lambda message: (messages.read_twist(message.twist),),
-    "odom": lambda message: (messages.read_pose(message.pose.pose), messages.read_twist(message.twist.twist)),
-    "backbone": lambda message: (messages.read_backbone(message),),
-    "curvature": lambda message: (messages.read_curvature(message),),
-    "internal_wrench": lambda message: (messages.read_wrench(message),),
-    "hydrodynamic_load": lambda message: (messages.read_load(message),),
-    "flow_vectors": lambda message: messages.read_flow(message),
-    "fin_states": lambda message: (part_messages.read_joints(message),),
-    "joint_states": lambda message: (part_messages.read_joints(message),),
-    "motor_states": lambda message: (part_messages.read_motors(message),),
-    "energy": lambda message: (messages.read_energy(message),),
-    "diagnostics": lambda message: (messages.read_diagnostics(message),),
+READERS: dict[str, Callable[[Any], Any]] = {  # what is shown: what methods of the topic's name are given of a message
+    "body": readers.read_body,
+    "curvature_law": attrgetter("name"),
+    "goal": readers.read_path,
+    "head_pose": lambda message: readers.read_pose(message.pose),
+    "head_twist": lambda message: readers.read_twist(message.twist),
+    "odom": lambda message: (readers.read_pose(message.pose.pose), readers.read_twist(message.twist.twist)),
+    "backbone": readers.read_backbone,
+    "curvature": readers.read_curvature,
+    "internal_wrench": readers.read_wrench,
+    "hydrodynamic_load": readers.read_load,
+    "flow_vectors": readers.read_flow,
+    "fin_states": readers.read_joints,
+    "joint_states": readers.read_joints,
+    "motor_states": readers.read_motors,
+    "energy": readers.read_energy,
+    "diagnostics": readers.read_diagnostics,
 }
 
 
@@ -66,7 +65,7 @@ class Dispatcher:
 
     def dispatch(self, topic: str, message: Any, *, new_publisher: bool = False) -> None:
         """Log one message of `topic`, a name in `READERS`; `new_publisher`: the first one from another publisher."""
-        if topic in SAMPLED and messages.is_at_start(message):
+        if topic in SAMPLED and readers.is_at_start(message):
             _, before = self._start.get(topic, (None, False))
             self._start[topic] = message, new_publisher or before
             return
@@ -97,20 +96,20 @@ class Dispatcher:
         self.received[topic] += 1
         try:
             try:
-                stamp = stamp_of(message) if topic in SAMPLED or topic == "diagnostics" else None
-                values = READERS[topic](message)
+                stamp: Any = readers.stamp_of(message) if topic in SAMPLED or topic == "diagnostics" else None
+                value = READERS[topic](message)
             except AttributeError as error:  # from a bag of an older version
                 raise BadMessage("type", f"is another version's: {error}") from error
-            if topic in SAMPLED and stamp is not None:
+            values = value if isinstance(value, tuple) else (value,)
+            if topic in SAMPLED:
                 if hasattr(message, "x"):
                     self._check_stations(topic, len(message.x))
                 self._recordings.log_sample(topic, stamp, values, compared=self._compared, new_publisher=new_publisher)
             else:
                 if topic == "diagnostics":
-                    values = ([each for each in values[0] if each.name.rpartition("/")[0] == self._namespace],)
-                    if not values[0]:
-                        return
-                self._recordings.log_lasting(topic, *values, stamp=stamp, compared=self._compared is not None)
+                    values = ([each for each in value if each.name.rpartition("/")[0] == self._namespace],)
+                if topic != "diagnostics" or values[0]:
+                    self._recordings.log_lasting(topic, *values, stamp=stamp, compared=self._compared is not None)
         except BadMessage as problem:
             self._warn_once((topic, problem.field), f"{topic}: {problem}: left out, and those like it")
 

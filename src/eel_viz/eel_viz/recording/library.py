@@ -14,7 +14,7 @@ import rerun as rr
 from eel_base.files.output_file import appeared, written_as
 
 from eel_viz.batched_stream import Rates
-from eel_viz.recording.destination import Destination, LogFunction
+from eel_viz.recording.destination import Delivery, Destination, LogFunction
 from eel_viz.recording.merged_messages import Messages, record_messages
 from eel_viz.recording.recording_file import FileDestination
 from eel_viz.settings import Settings
@@ -30,15 +30,11 @@ class CallerStream(Destination):
         super().__init__(settings, rates, lambda text: None, log_warning, live=False)
         self._stream = stream
 
-    def open(self, number: int, name: str) -> rr.RecordingStream:
+    def open(self, number: int, name: str) -> Delivery:
         """Send blueprint and name, and return the stream."""
         self._stream.send_blueprint(self.blueprint())
         self.describe(self._stream, name)
-        return self._stream
-
-    def close_recording(self, stream: rr.RecordingStream) -> None:
-        """Flush the stream."""
-        stream.flush()
+        return Delivery(self, self._stream)
 
 
 def to_rerun(

@@ -1,17 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Records messages that do not come from the network: of one swimmer, or of two that are compared."""
 
+import heapq
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from operator import itemgetter
 from typing import Any
 
 from eel_base.topics import SAMPLED
 
-from eel_viz.messages import stamp_of
+from eel_viz.message_readers import stamp_of
 from eel_viz.recording.destination import Destination, LogFunction
 from eel_viz.recording.dispatcher import Dispatcher
 from eel_viz.recording.recordings import Recordings
 
-Messages = Iterable[tuple[str, Any]]  # topic, a name of `Dispatcher.topics`, and message
+Messages = Iterable[tuple[str, Any]]  # topic, a name of `READERS`, and message
 MESSAGES_PER_POLL = 100
 
 
@@ -48,8 +50,7 @@ def record_messages(
             if k % MESSAGES_PER_POLL == 0:
                 recordings.poll()
     except Exception:
-        for destination in destinations:
-            destination.discard()
+        recordings.discard()
         raise
     finally:
         received = dispatchers[0].close()
@@ -58,20 +59,12 @@ def record_messages(
 
 def merged_by_time(sources: Sequence[Messages]) -> Iterator[tuple[int, str, Any]]:
     """All messages, merged by simulation time; each source keeps its order. Yields source index, topic, message."""
-    waiting = {index: iter(source) for index, source in enumerate(sources)}
-    times = dict.fromkeys(waiting, -1)  # ns
-    heads: dict[int, tuple[str, Any]] = {}
-    while waiting:
-        for index in list(waiting):
-            if index in heads:
-                continue
-            head = next(waiting[index], None)
-            if head is None:
-                del waiting[index]
-                continue
-            heads[index] = head
-            if head[0] in SAMPLED:
-                times[index] = stamp_of(head[1])
-        if heads:
-            index = min(heads, key=lambda each: (times[each], each))
-            yield index, *heads.pop(index)
+
+    def timed(index: int, source: Messages) -> Iterator[tuple[int, int, str, Any]]:
+        time = -1  # ns
+        for topic, message in source:
+            time = stamp_of(message) if topic in SAMPLED else time
+            yield time, index, topic, message
+
+    merged = heapq.merge(*(timed(index, source) for index, source in enumerate(sources)), key=itemgetter(0))
+    return ((index, topic, message) for _, index, topic, message in merged)

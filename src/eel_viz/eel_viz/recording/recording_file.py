@@ -11,8 +11,14 @@ from eel_base.files.output_file import Draft, NotWritten, appeared, numbered
 from eel_base.wording import shown
 
 from eel_viz.batched_stream import Rates
-from eel_viz.recording.delivery import space_error, write_error
-from eel_viz.recording.destination import Destination, LogFunction
+from eel_viz.recording.destination import (
+    STALL_TIMEOUT,
+    Delivery,
+    Destination,
+    LogFunction,
+    close_stream,
+    detach_blocked,
+)
 from eel_viz.recording.rrd_frames import cut_to_whole_messages, is_complete
 from eel_viz.settings import Settings
 
@@ -20,6 +26,7 @@ FILE_TICK = 0.6  # s: a process that is killed loses no more; each batch of an e
 AGAIN_TICK = 60.0  # s: where the data can be recorded again; few large batches make a catalogue of files open fast
 ROOM = 2**18  # bytes that must be free: Rerun writes 170 kB at once, and may block for ever if that fails
 REMINDER = 30.0  # s between two warnings that nothing is saved
+FLUSH_TIMEOUT = 1.0  # s for one flush to a file during a run
 
 
 class FileDestination(Destination):
@@ -42,22 +49,14 @@ class FileDestination(Destination):
         self._began = time.time_ns()
         self._first = pathlib.Path(settings.recording) if settings.recording else new_file()
         self._retry_from = retry_from
-        self._keeps_partial = retry_from is not None
-        self._drafts: dict[int, Draft] = {}  # by number of the recording
-        self._streams: dict[int, rr.RecordingStream] = {}
-        self._discarded = False
+        self.keeps_partial = retry_from is not None
         self._reminded = (0, 0.0)  # number of the recording, and when [s] the last warning was logged
 
     def path(self, number: int) -> pathlib.Path:
         """The final path of recording `number`."""
         return self._first if number == 1 else numbered(self._first, number)
 
-    def file(self, number: int) -> pathlib.Path | None:
-        """The file that recording `number` is written to now."""
-        draft = self._drafts.get(number)
-        return draft.path if draft else None
-
-    def open(self, number: int, name: str) -> rr.RecordingStream | None:
+    def open(self, number: int, name: str) -> Delivery | None:
         """The stream of recording `number`; None if it cannot be written now."""
         path = self.path(number)
         try:
@@ -73,65 +72,14 @@ class FileDestination(Destination):
             sink = rr.FileSink(str(draft.path), write_footer=self.settings.index)
             try:
                 stream = self.make_stream(sink, name, rr.ChunkBatcherConfig(flush_tick=self._tick))
+                return FileDelivery(self, stream, draft)
             except RuntimeError:  # no room for the sink's first bytes
                 reason = write_error(draft.path)
-            else:
-                self._drafts[number], self._streams[number] = draft, stream
-                return stream
         draft.discard()
-        if not self._keeps_partial:
+        if not self.keeps_partial:
             raise NotWritten(_problem(draft.name, reason))
         self._refuse(number, draft.name, reason)
         return None
-
-    def close_recording(self, stream: rr.RecordingStream) -> None:
-        """Close the stream and rename its file. A write error of the sink at the end shows only now."""
-        super().close_recording(stream)
-        if self._discarded:
-            return
-        draft = self._pop_draft(stream)
-        if self.settings.index and not is_complete(draft.path):
-            self._keep_partial(draft, write_error(draft.path))
-            return
-        try:
-            path = draft.complete()
-        except OSError as error:
-            self._keep_partial(draft, error.strerror or str(error))
-            return
-        if path != draft.name:
-            self.log_warning(appeared(draft.name, path))
-
-    def abort(self, stream: rr.RecordingStream) -> None:
-        """Handle a file that can no longer be written: keep its readable part, or remove it."""
-        if not self._discarded:
-            draft = self._pop_draft(stream)
-            self._keep_partial(draft, write_error(draft.path))
-
-    def _keep_partial(self, draft: Draft, reason: str) -> None:
-        path = draft.path
-        if not self._keeps_partial:
-            draft.discard()
-            self.discard()
-            raise NotWritten(_problem(draft.name, reason))
-        self.incomplete = True
-        size = cut_to_whole_messages(path) if path.exists() else 0
-        self.log_warning(
-            f"recording {shown(str(path))} cannot be written any more: {reason}; it ends here, and what there is "
-            f"({size / 1e6:.1f} MB) can be opened"
-        )
-
-    def discard(self) -> None:
-        """After an error: remove the incomplete files, unless partial ones are kept."""
-        self._discarded = not self._keeps_partial
-        for draft in self._drafts.values():
-            if self._discarded:
-                draft.discard()
-
-    def _pop_draft(self, stream: rr.RecordingStream) -> Draft:
-        """Forget the stream, and return its draft."""
-        number = next(number for number, each in self._streams.items() if each is stream)
-        del self._streams[number]
-        return self._drafts.pop(number)
 
     def _refuse(self, number: int, path: pathlib.Path, reason: str) -> None:
         """Raise, or warn that nothing is saved: once per recording, then every `REMINDER` seconds."""
@@ -145,6 +93,81 @@ class FileDestination(Destination):
             self.log_warning(f"{problem}: nothing of this run is saved; it is tried again while running")
 
 
+class FileDelivery(Delivery):
+    """A stream to the file of a `draft`, which is given up where it can no longer be written: what there is can be read
+    where partial files are kept, else it is removed."""
+
+    destination: FileDestination
+
+    def __init__(self, destination: FileDestination, stream: rr.RecordingStream, draft: Draft) -> None:
+        super().__init__(destination, stream)
+        self._draft, self._discarded = draft, False
+        self._last_growth = (0, self._last_check)  # bytes, s: size of the file, and when it was first seen
+
+    def find_faults(self, now: float) -> None:
+        """Give the file up if it has not grown for `STALL_TIMEOUT`: a slow disk still grows it."""
+        if self._arrived() or self.failed:
+            return
+        size = self._draft.path.stat().st_size if self._draft.path.exists() else 0
+        if size != self._last_growth[0]:
+            self._last_growth = (size, now)
+        elif now - self._last_growth[1] > STALL_TIMEOUT:
+            self._fail()
+
+    def close(self, end: float = 0.0) -> None:
+        """Close the stream and rename its file. A write error of the sink at the end shows only now."""
+        if not self.failed:
+            self.destination.fit(self.stream, end)
+            self._arrived()
+        if self.failed:
+            return
+        close_stream(self.stream)
+        if self._discarded:
+            return
+        if self.destination.settings.index and not is_complete(self._draft.path):
+            self._keep_part(write_error(self._draft.path))
+            return
+        try:
+            path = self._draft.complete()
+        except OSError as error:
+            self._keep_part(error.strerror or str(error))
+            return
+        if path != self._draft.name:
+            self.destination.log_warning(appeared(self._draft.name, path))
+
+    def discard(self) -> None:
+        """Remove the file, unless partial ones are kept."""
+        self._discarded = not self.destination.keeps_partial
+        if self._discarded:
+            self._draft.discard()
+
+    def _arrived(self) -> bool:
+        try:
+            return self.flushed(FLUSH_TIMEOUT)
+        except RuntimeError:
+            self._fail()
+            return False
+
+    def _fail(self) -> None:
+        self.failed = True
+        detach_blocked(self.stream)
+        if not self._discarded:
+            self._keep_part(write_error(self._draft.path))
+
+    def _keep_part(self, reason: str) -> None:
+        """Keep the readable part of the file, or remove it, with the error `NotWritten`."""
+        path = self._draft.path
+        if not self.destination.keeps_partial:
+            self.discard()
+            raise NotWritten(_problem(self._draft.name, reason))
+        self.destination.incomplete = True
+        size = cut_to_whole_messages(path) if path.exists() else 0
+        self.destination.log_warning(
+            f"recording {shown(str(path))} cannot be written any more: {reason}; it ends here, and what there is "
+            f"({size / 1e6:.1f} MB) can be opened"
+        )
+
+
 def _problem(path: pathlib.Path, reason: str) -> str:
     return f"recording {shown(str(path))} cannot be written: {reason}"
 
@@ -152,3 +175,25 @@ def _problem(path: pathlib.Path, reason: str) -> str:
 def new_file() -> pathlib.Path:
     """A path in the working folder, named after the time and this process, so that it is unique."""
     return pathlib.Path(f"eel-{datetime.datetime.now():%Y%m%d-%H%M%S}-{os.getpid()}.rrd")
+
+
+def space_error(path: pathlib.Path, size: int) -> str:
+    """The error when `size` more bytes are allocated at the file's end; empty if there is room.
+
+    The allocated bytes are removed again.
+    """
+    try:
+        before = path.stat().st_size
+        with path.open("r+b") as file:
+            try:
+                os.posix_fallocate(file.fileno(), before, size)
+            finally:
+                file.truncate(before)
+    except OSError as error:
+        return error.strerror or str(error)
+    return ""
+
+
+def write_error(path: pathlib.Path) -> str:
+    """Why the last write to the file failed."""
+    return space_error(path, 65536) or "an earlier attempt failed"

@@ -11,8 +11,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
-from eel_viz.recording.delivery import DeliveryMonitor
-from eel_viz.recording.destination import Destination, LogFunction
+from eel_viz.recording.destination import Delivery, Destination, LogFunction
 from eel_viz.recording.loggers import Loggers
 
 RETRY = 2.0  # s of wall time between two attempts to open a destination
@@ -22,11 +21,11 @@ RESETS, SPAN = 3, 10.0  # so many resets within so many seconds, with several pu
 
 
 class Recording:
-    """One recording: loggers and delivery monitor of each destination that is open, by its index."""
+    """One recording: loggers and stream of each destination that is open, by its index."""
 
     def __init__(self, number: int) -> None:
         self.number = number
-        self.opened: dict[int, tuple[Loggers, DeliveryMonitor]] = {}
+        self.opened: dict[int, tuple[Loggers, Delivery]] = {}
         self.latest = 0  # ns: newest stamp
 
     @property
@@ -133,13 +132,20 @@ class Recordings:
 
     def close(self) -> None:
         """Close all recordings, then the destinations."""
-        for recording in self._recordings.values():
-            recording.close()
-            self.incomplete |= recording.failed
-        self._recordings.clear()
+        try:
+            self._close_before(self._newest.number + 1)
+        except Exception:
+            self.discard()
+            raise
         for destination in self._destinations:
             self.incomplete |= destination.incomplete
             destination.close()
+
+    def discard(self) -> None:
+        """After an error: discard what is not complete."""
+        for recording in self._recordings.values():
+            for _, delivery in recording.opened.values():
+                delivery.discard()
 
     def _loggers_for(self, topic: str, stamp: int, new_publisher: bool) -> list[Loggers]:
         """The loggers for a message of `topic` with `stamp` [ns]; `new_publisher`: its first from another publisher."""
@@ -191,17 +197,18 @@ class Recordings:
             if index in recording.opened:
                 continue
             number = recording.number
-            stream = destination.open(number, self._name if number == 1 else f"{self._name} {number}")
-            if stream is None:
+            delivery = destination.open(number, self._name if number == 1 else f"{self._name} {number}")
+            if delivery is None:
                 continue
-            loggers = Loggers(stream, destination.settings, destination.rates, self._name)
-            recording.opened[index] = loggers, DeliveryMonitor(stream, destination, destination.file(number))
+            loggers = Loggers(delivery.stream, destination.settings, destination.rates, self._name)
+            recording.opened[index] = loggers, delivery
             for (topic, compared), values in self._lasting.items():
                 loggers.log(topic, recording.latest, *values, compared=compared)
 
     def _close_before(self, number: int) -> None:
         for each in [each for each in self._recordings if each < number]:
-            self._recordings.pop(each).close()
+            self._recordings[each].close()
+            self.incomplete |= self._recordings.pop(each).failed
 
     def _is_disorder(self, topic: str) -> bool:
         """Whether stamps go back because several publishers send on `topic`, not because of a reset."""

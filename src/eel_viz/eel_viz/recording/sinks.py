@@ -17,14 +17,22 @@ import rerun as rr
 from eel_base.wording import shown
 
 from eel_viz.batched_stream import Rates
-from eel_viz.recording.delivery import detach_blocked
-from eel_viz.recording.destination import APPLICATION, Destination, LogFunction, close_stream
+from eel_viz.recording.destination import (
+    APPLICATION,
+    STALL_TIMEOUT,
+    Delivery,
+    Destination,
+    LogFunction,
+    close_stream,
+    detach_blocked,
+)
 from eel_viz.recording.recording_file import FileDestination
 from eel_viz.settings import Settings
 from eel_viz.viewer import display, end_process, free_port, listening, open_window, serve_to_browsers
 
 LIVE_TICK = 0.16  # s: short enough for smooth motion in a viewer
 ANSWER_LIMIT = 1.0  # s until a listening viewer must answer
+FLUSH_TIMEOUT = 0.1  # s for one flush to a viewer
 
 
 class LiveDestination(Destination):
@@ -33,6 +41,48 @@ class LiveDestination(Destination):
     def __init__(self, settings: Settings, log_info: LogFunction, log_warning: LogFunction) -> None:
         rates = Rates(numbers=settings.rate, drawings=settings.rate, tick=LIVE_TICK)
         super().__init__(settings, rates, log_info, log_warning, live=True)
+
+
+class ViewerDelivery(Delivery):
+    """A stream to a viewer, which is given nothing while it does not read."""
+
+    def __init__(self, destination: Destination, stream: rr.RecordingStream) -> None:
+        super().__init__(destination, stream)
+        self._stalled_since: float | None = None  # s: since when the viewer has not read
+        self._stall_reported = False
+
+    @property
+    def accepts_data(self) -> bool:
+        """Whether the viewer is there, and reads."""
+        return super().accepts_data and self._stalled_since is None
+
+    def find_faults(self, now: float) -> None:
+        """Find out whether the viewer reads, and say so where that has changed."""
+        if self._arrived():
+            if self._stall_reported:
+                self.destination.log_info("the viewer reads again")
+            self._stalled_since, self._stall_reported = None, False
+            return
+        self._stalled_since = now if self._stalled_since is None else self._stalled_since
+        if now - self._stalled_since > STALL_TIMEOUT and not self._stall_reported:
+            self._stall_reported = True
+            self.destination.log_warning(
+                f"the viewer has not read for {STALL_TIMEOUT:g} s: it misses what comes until it does"
+            )
+
+    def close(self, end: float = 0.0) -> None:
+        """Flush and close the stream; one that blocks is detached instead."""
+        if self.disconnected or self._arrived() or self.disconnected:
+            close_stream(self.stream)
+        else:
+            detach_blocked(self.stream)
+
+    def _arrived(self) -> bool:
+        try:
+            return self.flushed(FLUSH_TIMEOUT)
+        except RuntimeError:
+            self.disconnected = True
+            return False
 
 
 class ServerDestination(LiveDestination):
@@ -64,9 +114,9 @@ class ServerDestination(LiveDestination):
                 f"anybody who reaches {self._name} can read what is served, and add to it (address is {address})"
             )
 
-    def open(self, number: int, name: str) -> rr.RecordingStream:
+    def open(self, number: int, name: str) -> Delivery:
         """A stream to the server."""
-        return self.make_stream(rr.GrpcSink(self.uri), name)
+        return ViewerDelivery(self, self.make_stream(rr.GrpcSink(self.uri), name))
 
     def close(self) -> None:
         """Close the servers, after the streams of the recordings."""
@@ -108,7 +158,7 @@ class ViewerDestination(LiveDestination):
         self._missing_reported = False
         self._attempts: list[threading.Thread] = []  # to connect, without an answer so far
 
-    def open(self, number: int, name: str) -> rr.RecordingStream | None:
+    def open(self, number: int, name: str) -> Delivery | None:
         """A stream to the viewer. Connects in a thread: one that listens but does not answer would block for ever."""
         host, port = self._address
         self._attempts = [attempt for attempt in self._attempts if attempt.is_alive()]
@@ -129,7 +179,7 @@ class ViewerDestination(LiveDestination):
             return None
         self.log_info(f"connected to the viewer at {self.settings.viewer}")
         self._missing_reported = False
-        return made[0]
+        return ViewerDelivery(self, made[0])
 
     def disconnected(self) -> bool:
         """Whether the viewer has been closed: a stream does not reconnect to one that is opened again."""

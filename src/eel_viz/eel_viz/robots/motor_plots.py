@@ -6,7 +6,7 @@ import numpy as np
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.limit import Limit
-from eel_viz.part_messages import AT_LIMIT, Motors
+from eel_viz.messages import AT_LIMIT, Motors
 from eel_viz.plots.heat_map import ROWS, HeatMap
 from eel_viz.scene3d import colours
 

@@ -6,8 +6,7 @@ import rerun as rr
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
-from eel_viz.messages import Backbone, Body
-from eel_viz.part_messages import AT_LIMIT, JointStates, Motors
+from eel_viz.messages import AT_LIMIT, Backbone, Body, JointStates, Motors
 from eel_viz.robots.motor_plots import MotorPlots
 from eel_viz.robots.part_shapes import FinPlates, JointRings
 from eel_viz.same_stamp import SameStamp

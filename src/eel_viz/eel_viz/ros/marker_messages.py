@@ -9,8 +9,7 @@ from nav_msgs.msg import Path
 from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker
 
-from eel_viz.messages import Backbone, Body, Load, Profiles
-from eel_viz.part_messages import JointStates, Motors
+from eel_viz.messages import Backbone, Body, JointStates, Load, Motors, Profiles
 from eel_viz.robots.part_shapes import FinPlates, JointRings
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.centre_line import ALONG, forces_along, forces_at_ends

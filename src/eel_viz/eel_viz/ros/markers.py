@@ -19,8 +19,8 @@ from sensor_msgs.msg import JointState
 from visualization_msgs.msg import MarkerArray
 
 from eel_msgs.msg import Backbone, BodyGeometry, HydrodynamicLoad, InternalWrench, MotorStates
-from eel_viz.messages import BadMessage, read_backbone, read_load, read_wrench, stamp_of
-from eel_viz.part_messages import read_body_with_parts, read_joints, read_motors
+from eel_viz.message_readers import read_backbone, read_body, read_joints, read_load, read_motors, read_wrench, stamp_of
+from eel_viz.messages import BadMessage
 from eel_viz.ros.marker_messages import FinMarker, ForceMarkers, JointMarkers, SkinMarker, midline
 from eel_viz.settings import MarkerSettings
 
@@ -66,7 +66,7 @@ class Markers(ParameterNode):
 
     def _receive_body(self, message: BodyGeometry) -> None:
         try:
-            body = read_body_with_parts(message)
+            body = read_body(message)
         except BadMessage as problem:
             self._warn_once("body", problem)
             return

@@ -102,7 +102,7 @@ class Visualiser(ParameterNode):
                         return
                 dispatcher.dispatch(name, message, new_publisher=new_publisher)
 
-            self._polled.subscribe(kind, topic, show, *qualities)
+            self._polled.show(kind, topic, show, *qualities)
 
     def _log_info(self, text: str) -> None:
         self.get_logger().info(text)

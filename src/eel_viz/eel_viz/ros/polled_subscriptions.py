@@ -5,69 +5,50 @@ An executor collects and waits on all entities of a node before each message. Wi
 logging them. A `PolledGroup` is never executed, so messages stay in the KEEP_ALL histories until they are taken.
 """
 
-import math
 import time
 from collections.abc import Callable, Hashable, Mapping
 from functools import partial
 from typing import Any
 
 from eel_base.topics import SWIMMER
-from eel_ros.deliveries import Deliveries
+from eel_ros.qos import Deliveries
 from eel_ros.run_node import is_from_before
 from eel_ros.serving import PolledGroup, log_dropped, read_message
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
-from eel_viz.ros.publisher_change import PublisherChange
-
 BATCH = 64  # messages taken from one subscription before the next one
 TAKE_LIMIT = 0.2  # s after which `take` returns, so that the node hears calls and signals
 PROCESS = 12  # bytes of an endpoint's identifier that all endpoints of a process share (RTPS: the GUID's prefix)
+PAUSE = 0.3  # s between two messages, after which the publishers are looked up: no node starts faster
 GONE = 0.5  # s without publishers and messages, after which a swimmer has gone
 
 Receive = Callable[[bytes, Mapping[str, Any]], None]  # the serialised message, and the message info
 Show = Callable[[Any, bool], None]  # the message, and whether it is the first of another publisher
 
 
-def take_waiting(
-    node: Node, subscription: Subscription, receive: Receive, before: int = 0, end: float = math.inf
-) -> int:
-    """Pass the waiting messages of a subscription to `receive`, at most `BATCH`, until `end` [s, steady clock].
-
-    Returns the number of those from `before` [ns]; 0: all. A message that raises an error is logged and left out.
-    Messages are taken as bytes: otherwise rclpy would build a message object even if none has come.
-    """
-    count = 0
-    with subscription.handle:  # keeps it from being destroyed meanwhile
-        for _ in range(BATCH):
-            taken = subscription.handle.take_message(subscription.msg_type, True)
-            if taken is None:
-                break
-            data, about = taken
-            count += not before or is_from_before(about, before)
-            try:
-                receive(data, about)
-            except Exception as error:
-                log_dropped(node, error, f"a message of {subscription.topic_name}")
-            if time.monotonic() > end:
-                break
-    return count
-
-
 class PolledSubscriptions:
-    """The subscriptions of `node`."""
+    """The subscriptions of `node`. Messages are taken as bytes: else rclpy would build one even if none has come."""
 
     def __init__(self, node: Node) -> None:
         self._node, self._group = node, PolledGroup()
-        self._subscriptions: list[tuple[Subscription, Receive]] = []
+        self._receivers: dict[Subscription, Receive] = {}
         self._changes: list[PublisherChange] = []
 
-    def subscribe(self, kind: type[Any], topic: str, show: Show, *qualities: QoSProfile) -> None:
-        """Subscribe to messages of `kind` on `topic`; `take` passes them to `show`.
+    def add(self, kind: type[Any], topic: str, quality: QoSProfile, receive: Receive) -> Subscription:
+        """Subscribe to messages of `kind` on `topic`; `take` passes them to `receive`."""
+        made = self._node.create_subscription(kind, topic, unused, quality, raw=True, callback_group=self._group)
+        self._receivers[made] = receive
+        return made
 
-        There is one subscription for each of the `qualities`; a message that several of them receive is passed once.
-        """
+    def remove(self, subscription: Subscription) -> None:
+        """End a subscription."""
+        del self._receivers[subscription]
+        self._node.destroy_subscription(subscription)
+
+    def show(self, kind: type[Any], topic: str, show: Show, *qualities: QoSProfile) -> None:
+        """Subscribe likewise, once for each of the `qualities`; `show` gets a message that several receive once."""
         deliveries = Deliveries()
 
         def receive(change: PublisherChange, data: bytes, about: Mapping[str, Any]) -> None:
@@ -78,10 +59,8 @@ class PolledSubscriptions:
                 show(read_message(data, kind), new_publisher)
 
         for quality in qualities:
-            change = PublisherChange(lambda: self._publishers(topic))
-            made = self._node.create_subscription(kind, topic, unused, quality, callback_group=self._group)
-            self._subscriptions.append((made, partial(receive, change)))
-            self._changes.append(change)
+            self._changes.append(PublisherChange(lambda: self._publishers(topic)))
+            self.add(kind, topic, quality, partial(receive, self._changes[-1]))
 
     def note_publishers(self) -> None:
         """Note the present publishers of all topics, for messages that are not yet taken."""
@@ -89,21 +68,75 @@ class PolledSubscriptions:
             change.note_publishers()
 
     def take(self, before: int = 0) -> int:
-        """Take the waiting messages of all subscriptions, and pass them on; returns as `take_waiting`.
+        """Pass on the waiting messages, some of each subscription; the number of those from `before` [ns]; 0: all.
 
         After a `TAKE_LIMIT` it returns, and the next call begins with the next subscription.
         """
         count, end = 0, time.monotonic() + TAKE_LIMIT
-        for place, (subscription, receive) in enumerate(self._subscriptions, start=1):
-            count += take_waiting(self._node, subscription, receive, before, end)
+        for subscription, receive in list(self._receivers.items()):
+            self._receivers[subscription] = self._receivers.pop(subscription)  # to the end of the row
+            count += self._take_from(subscription, receive, before, end)
             if time.monotonic() > end:
-                self._subscriptions = [*self._subscriptions[place:], *self._subscriptions[:place]]
                 break
+        return count
+
+    def _take_from(self, subscription: Subscription, receive: Receive, before: int, end: float) -> int:
+        """Take at most `BATCH`, until `end` [s, steady clock]. What raises an error is logged and left out."""
+        count = 0
+        with subscription.handle:  # keeps it from being destroyed meanwhile
+            for _ in range(BATCH):
+                taken = subscription.handle.take_message(subscription.msg_type, True)
+                if taken is None:
+                    break
+                data, about = taken
+                count += not before or is_from_before(about, before)
+                try:
+                    receive(data, about)
+                except Exception as error:
+                    log_dropped(self._node, error, f"a message of {subscription.topic_name}")
+                if time.monotonic() > end:
+                    break
         return count
 
     def _publishers(self, topic: str) -> set[Hashable]:
         """Identifiers of the processes that publish on `topic`. A node may replace one of its publishers."""
         return {tuple(info.endpoint_gid[:PROCESS]) for info in self._node.get_publishers_info_by_topic(topic)}
+
+
+class PublisherChange:
+    """Detects that a message comes from another publisher than the one before, such as a restarted node.
+
+    Stamps are not enough: the new node's may already lie beyond the last stamp of the old one. A message does not name
+    its publisher, but each publisher counts its messages, and discovery lists the publishers of a topic: `publishers()`
+    returns the present ones. So after a gap in the count or a pause they are looked up: a new one has taken over.
+    Messages may wait until their publisher has gone; so `note_publishers` must be called regularly.
+    """
+
+    def __init__(self, publishers: Callable[[], set[Hashable]]) -> None:
+        self._publishers = publishers
+        self._seen: set[Hashable] = set()
+        self._known: set[Hashable] = set()  # those seen when messages came
+        self._last: tuple[int | None, int] | None = None  # count of the last message, and its time of sending [ns]
+
+    def note_publishers(self) -> None:
+        """Note the present publishers."""
+        self._seen |= self._publishers()
+
+    def changes(self, count: int | None, sent: int) -> bool:
+        """Whether a message is the first of another publisher; `count`: its number there, `sent`: wall time [ns]."""
+        last, self._last = self._last, (count, sent)
+        if last is None:
+            self.note_publishers()
+            self._known = set(self._seen)
+            return False
+        # None: the middleware does not count
+        follows = count is None or (last[0] is not None and count == last[0] + 1)
+        if follows and 0 <= sent - last[1] < PAUSE * 1e9:
+            return False
+        self.note_publishers()
+        newcomers = self._seen - self._known
+        self._known |= newcomers
+        return bool(newcomers)
 
 
 class SwimmerPresence:

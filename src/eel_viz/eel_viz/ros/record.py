@@ -19,7 +19,6 @@ from eel_base.command.command_line import Parser, check_seconds
 from eel_base.topics import GLOBAL, LATCHED, OWN, SAMPLED
 from eel_ros.qos import fitting, keep_all, matches
 from eel_ros.run_node import run_node
-from eel_ros.serving import PolledGroup
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
@@ -29,7 +28,7 @@ from rosbags.interfaces import Connection, Qos, QosDurability, QosHistory, QosLi
 
 from eel_viz.bags.definitions import definition, message_class, type_hash
 from eel_viz.bags.growing_bag import GrowingBag
-from eel_viz.ros.polled_subscriptions import Receive, SwimmerPresence, take_waiting, unused
+from eel_viz.ros.polled_subscriptions import PolledSubscriptions, SwimmerPresence
 
 NAME, COMMAND = "record", "eel record"
 LOOK_PERIOD = 0.2  # s between two look-ups of the topics
@@ -56,8 +55,8 @@ class Recorder(Node):
         self.failure = ""
         self.counts: Counter[str] = Counter()
         self._saved_messages = 0
-        self._group = PolledGroup()
-        self._subscribed: dict[str, tuple[Subscription, QoSProfile, Receive]] = {}
+        self._polled = PolledSubscriptions(self)
+        self._subscribed: dict[str, tuple[Subscription, QoSProfile]] = {}
         self._offers: dict[str, list[QoSProfile]] = {}
         self._connections: dict[str, Connection] = {}
         self._start: dict[str, bytes] = {}  # topic: the last sample 0 of a run that stands at it
@@ -96,8 +95,7 @@ class Recorder(Node):
 
     def take_messages(self, before: int) -> int:
         """Record messages that have come; the number of those from `before` [ns]; 0: all. Save where it is time."""
-        waiting = list(self._subscribed.values())
-        count = sum(take_waiting(self, subscription, receive, before) for subscription, _, receive in waiting)
+        count = self._polled.take(before)
         self._save_if_due(time.monotonic())
         return count
 
@@ -130,8 +128,7 @@ class Recorder(Node):
             if topic not in self._subscribed:
                 self._subscribe(topic, kinds[0], fitting(offers))
             elif not all(matches(self._subscribed[topic][1], offer) for offer in offers):
-                subscription, *_ = self._subscribed.pop(topic)
-                self.destroy_subscription(subscription)
+                self._polled.remove(self._subscribed.pop(topic)[0])
                 self._subscribe(topic, kinds[0], fitting(offers))
 
     def _wanted(self, topic: str) -> bool:
@@ -155,14 +152,10 @@ class Recorder(Node):
             self._bag.write(self._connections[topic], about.get("received_timestamp") or time.time_ns(), data)
 
         try:
-            subscription = self.create_subscription(
-                message_class(kind), topic, unused, quality, raw=True, callback_group=self._group
-            )
+            self._subscribed[topic] = self._polled.add(message_class(kind), topic, quality, receive), quality
         except ValueError as error:
             self._refused.add(topic)
             self.get_logger().warning(f"{topic} is left out: {error}")
-            return
-        self._subscribed[topic] = (subscription, quality, receive)
 
     def _connect(self, topic: str, kind: str) -> None:
         offers = self._offers.get(topic) or [info.qos_profile for info in self.get_publishers_info_by_topic(topic)]

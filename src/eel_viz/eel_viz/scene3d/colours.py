@@ -8,7 +8,7 @@ without torque looks as it is.
 
 import numpy as np
 
-from eel_viz.part_messages import AT_LIMIT
+from eel_viz.messages import AT_LIMIT
 
 Colour = tuple[int, int, int]  # red, green, blue: 0 to 255
 

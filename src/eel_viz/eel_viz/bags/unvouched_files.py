@@ -1,25 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-"""MCAP files that nobody vouches for: their checksums (CRC-32), the bound on their chunks, and their readable part.
+"""Files of bags that nobody vouches for: their checksums (CRC-32), the bounds on what they hold, their readable part.
 
-rosbags reads by the index at a file's end, without a bound on what a chunk inflates to. So `damage_of` goes through
-each file before, record by record. What it finds damaged is read by `RecordReader`, as far as it goes.
+rosbags reads an MCAP file by the index at its end, without a bound on what a chunk inflates to. So `damage_of` goes
+through each file before, record by record. What it finds damaged is read by `RecordReader`, as far as it goes. Nor has
+rosbags' parser of metadata.yaml bounds.
 """
 
 import os
 import pathlib
 import struct
 from collections.abc import Iterator
-from typing import BinaryIO, Self
+from typing import Any, BinaryIO, Self
 from zlib import crc32
 
 import lz4.frame
 import zstandard
+from eel_base.files.input_file import InputFile, reading
+from eel_base.files.yaml_tree import MOST_BYTES, from_yaml, read_yaml
 from mcap.exceptions import McapError
 from mcap.records import Channel, Chunk, DataEnd, Footer, McapRecord, Message, Schema
 from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk, get_chunk_data_stream
 from rosbags.interfaces import Connection, ConnectionExtRosbag2, MessageDefinition, MessageDefinitionFormat
 
 MOST_CHUNK_BYTES = 64_000_000  # of an inflated chunk; writers take 1 to 4 MB, or one message
+METADATA = "metadata.yaml"
+MOST_VALUES = 10_000  # of it; a publisher takes 20, a file 10
 AFTER_CHECKSUM = 12  # bytes of a file behind the checksum of its index: the checksum itself, and the last magic bytes
 # What mcap's reader raises on damaged files; lz4 raises RuntimeError.
 DAMAGE_ERRORS = (McapError, struct.error, zstandard.ZstdError, ValueError, RuntimeError, OSError)
@@ -151,3 +156,30 @@ def _records(file: BinaryIO) -> Iterator[McapRecord]:
         if isinstance(record, Chunk):
             check_chunk(record)
         yield record
+
+
+def check_metadata(folder: pathlib.Path) -> None:
+    """`ValueError` where metadata.yaml has too much, or names what is no regular file in the folder."""
+    with reading(METADATA):
+        tree = read_yaml(folder / METADATA)
+        about = tree["rosbag2_bagfile_information"]
+        profiles = [topic["topic_metadata"].get("offered_qos_profiles") for topic in about["topics_with_message_count"]]
+        texts = [each for each in profiles if isinstance(each, str)]  # of YAML, before ROS 2 Jazzy
+        if (size := sum(map(len, texts))) > MOST_BYTES:
+            raise ValueError(f"its profiles must have at most {MOST_BYTES} characters, got {size}")
+        left = MOST_VALUES - _count(tree)
+        for text in texts:
+            left -= _count(from_yaml(text, left))
+        if left < 0:
+            raise ValueError(f"it must have at most {MOST_VALUES} values")
+        names = [pathlib.PurePath(name).name for name in about["relative_file_paths"]]
+        if len(set(names)) < len(names) or not isinstance(about.get("files", []), list):
+            raise ValueError("it must list files, each with a name of its own")
+        for name in names:
+            InputFile(folder / name).close()
+
+
+def _count(tree: Any) -> int:
+    """The number of values in a tree of mappings and lists."""
+    inner = tree.values() if isinstance(tree, dict) else tree if isinstance(tree, list) else ()
+    return 1 + sum(map(_count, inner))
