@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whether the mean over a period of the gait has settled: what it has changed by lately, and is still to change by."""
 
+import math
 import warnings
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,7 +24,7 @@ def tell_unsettled(settled: ArrayLike, what: str, stacklevel: int = 3) -> None:
         warnings.warn(f"{many} of {array.size} {what} have not settled", Unsettled, stacklevel=stacklevel)
 
 
-def change_of(means: np.ndarray, scale: float | None = None) -> float:
+def change_of(means: Sequence[float] | np.ndarray, scale: float | None = None) -> float:
     """The change of the `means` (n,) over successive periods, relative to `scale` (None: the last of them).
 
     The greater of two: from the first mean to the last, and what is left to come. The latter follows from the last two
@@ -30,15 +32,16 @@ def change_of(means: np.ndarray, scale: float | None = None) -> float:
     have one sign and do not fall it has no bound. So a slow change is not taken for none. Infinite for fewer than three
     means, and for a scale of 0.
     """
-    scale = abs(means[-1]) if scale is None else scale
-    if len(means) < FEWEST or not scale > 0.0:
-        return np.inf
-    spread = float(np.ptp(means)) / scale
-    before, last = np.diff(means[-3:]) / scale
+    if len(means) < FEWEST:
+        return math.inf
+    values = [float(each) for each in means]
+    scale = abs(values[-1]) if scale is None else scale
+    if not scale > 0.0:
+        return math.inf
+    spread = (max(values) - min(values)) / scale
+    before, last = (values[-2] - values[-3]) / scale, (values[-1] - values[-2]) / scale
     if spread <= STEADY:
         return spread
     if before * last <= 0.0:
-        left = abs(last)
-    else:
-        left = last**2 / (abs(before) - abs(last)) if abs(last) < abs(before) else np.inf
-    return float(max(spread, left))
+        return max(spread, abs(last))
+    return max(spread, last * last / (abs(before) - abs(last))) if abs(last) < abs(before) else math.inf

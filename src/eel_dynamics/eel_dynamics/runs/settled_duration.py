@@ -47,28 +47,31 @@ def settling_time(law: Any, setup: SimulationSetup) -> float:
     period, last_ramp = period_of(law, setup.body.length), _last_ramp(law)
     others = {"accuracy": _coarse(setup.accuracy), "stations": 2}
     simulation = Simulation(**setup.arguments | others, law=law)
-    current, energy = simulation.setup.current, 0.0
-    centre: list[np.ndarray] = []
-    work: list[Any] = []
+    current, before, energy, work = simulation.setup.current, np.zeros(3), 0.0, 0.0
+    ways: list[float] = []  # m, of the centre of mass in each period
+    works: list[float] = []  # J, of the actuators
     for count in range(MOST_PERIODS + 1):
         try:
             simulation.advance(count * period)
         except SimulationStopped:
             break
         seen = simulation.observe(wrench=False, load=False)
-        centre.append(seen.center_of_mass - current * simulation.time)
-        if simulation.scene.ledger:
-            work.append(seen.actuator_work)
-            energy = sum(seen.energies[:2])
+        centre = seen.center_of_mass - current * simulation.time
+        if count:
+            ways.append(float(np.linalg.norm(centre - before)))
+        before = centre
+        if (total := seen.actuator_work) is not None:
+            if count:
+                works.append(total - work)
+            work, energy = total, float(sum(seen.energies[:2]))
         window = (count + 1) // 2
         if window < FEWEST or (count - window) * period < last_ramp * (1.0 - 1e-9):
             continue
-        speeds = np.linalg.norm(np.diff(centre[-window - 1 :], axis=0), axis=1)
-        moves = np.max(speeds) > STILL * setup.body.length
-        if moves and change_of(speeds) > MARGIN * SETTLED:
+        moves = max(ways[-window:]) > STILL * setup.body.length
+        if moves and change_of(ways[-window:]) > MARGIN * SETTLED:
             continue
-        works = np.diff(work[-window - 1 :])
-        if not len(works) or np.max(np.abs(works)) <= NO_WORK * energy or change_of(works) <= MARGIN * SETTLED:
+        lately = works[-window:]
+        if not lately or max(map(abs, lately)) <= NO_WORK * energy or change_of(lately) <= MARGIN * SETTLED:
             return count * period
     return MOST_PERIODS * period
 
