@@ -73,6 +73,18 @@ def test_an_interrupted_march_goes_on_as_if_nothing_had_been(monkeypatch):
     assert cut.evaluations == whole.evaluations
 
 
+def test_a_march_in_a_thread_of_a_batch_is_not_cut(monkeypatch):
+    """Nobody looks there, no signal arrives, and each return would wait for Python's lock."""
+    calls, record = [], eel_core.March.record
+    monkeypatch.setattr(eel_core.March, "record", lambda *given: calls.append(given) or record(*given))
+    counts = []
+    for threads in (1, 2):
+        calls.clear()
+        simulate_batch([straight(), straight(period=1.2)], 10.0, stations=51, estimate=False, threads=threads)
+        counts.append(len(calls))
+    assert counts[0] > 4 and counts[1] == 2
+
+
 def test_another_law_can_be_adopted_where_a_march_was_interrupted(monkeypatch):
     step_by_step(monkeypatch)
     swimmer = Simulation(law=falling())
