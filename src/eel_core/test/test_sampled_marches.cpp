@@ -61,3 +61,20 @@ TEST(SampledMarches, NumberOfThreadsChangesNoBit)
     for (std::size_t i = 0; i < swimmers; ++i) moved = std::max(moved, std::abs(one[one.size() - 13 * swimmers + i]));
     EXPECT_GT(moved, 1e-3);  // [m]
 }
+
+TEST(SampledMarches, ThreadsDoEachItemOnceWhetherTheyAreAwakeOrNot)
+{
+    for (const std::size_t count : {1u, 2u, 3u, 7u}) {
+        Threads threads(count);
+        std::vector<int> done(40, 0);  // not atomic: two threads at one item would be found
+        for (std::size_t round = 0; round < 200; ++round) {
+            if (round % 50 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));  // helpers fall asleep
+            threads.run(round % 41, [&](std::size_t item) { ++done[item]; });
+        }
+        for (std::size_t item = 0; item < done.size(); ++item) {
+            int expected = 0;
+            for (std::size_t round = 0; round < 200; ++round) expected += item < round % 41;
+            EXPECT_EQ(done[item], expected);
+        }
+    }
+}

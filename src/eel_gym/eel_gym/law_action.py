@@ -52,8 +52,7 @@ class LawAction:
             raise ValueError("numbers must hold one or more, got none")
         positive("response", response, "s")
         self.law, self.names, self._rate = law, tuple(numbers), 1.0 / response
-        low, high = np.array(list(numbers.values()), dtype=float).T
-        self._middle, self._half = 0.5 * (low + high), 0.5 * (high - low)
+        self._span = [(0.5 * (low + high), 0.5 * (high - low)) for low, high in numbers.values()]  # middle, half
         self._steered = SteeredLaw(law, response=response, length=length, points=points)
         self.x = self._steered.x
         self.waves = max(1.0, check_law(_largest(law, numbers), length))
@@ -70,10 +69,9 @@ class LawAction:
 
     def described(self) -> list[str]:
         """One line for each value of an action: name, unit, bounds, meaning."""
-        bounds = zip(self._middle - self._half, self._middle + self._half, strict=True)
         return [
-            f"{name} [{NUMBERS[name].unit or '1'}], {low:g} to {high:g}: {NUMBERS[name].description}"
-            for name, (low, high) in zip(self.names, bounds, strict=True)
+            f"{name} [{NUMBERS[name].unit or '1'}], {middle - half:g} to {middle + half:g}: {NUMBERS[name].description}"
+            for name, (middle, half) in zip(self.names, self._span, strict=True)
         ]
 
     def begin(self, own_time: Any = 0.0) -> Array:
@@ -91,15 +89,15 @@ class LawAction:
         Returns (6, points), or (N, 6, points): pitch, its rate and its acceleration, then yaw: rad/m, rad/m/s,
         rad/m/s^2.
         """
-        targets = self._middle + self._half * action
-        by_name = targets.tolist() if targets.ndim == 1 else targets.T
-        return self._steered.advance(dict(zip(self.names, by_name, strict=True)), step)
+        values = action.tolist() if action.ndim == 1 else action.T
+        spans = zip(self.names, self._span, values, strict=True)
+        return self._steered.advance({name: middle + half * value for name, (middle, half), value in spans}, step)
 
     @property
     def names_of_state(self) -> list[tuple[str, str, float]]:
         """Name, unit and greatest size of what `state` holds."""
         named = []
-        for name, middle, half in zip(self.names, self._middle.tolist(), self._half.tolist(), strict=True):
+        for name, (middle, half) in zip(self.names, self._span, strict=True):
             unit = NUMBERS[name].unit
             size = max(abs(middle) + half, abs(NUMBERS[name].rest))
             named += [

@@ -3,7 +3,7 @@
 
 import copy
 from collections.abc import Callable
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 import gymnasium
 import numpy as np
@@ -20,18 +20,8 @@ from numpy.typing import NDArray
 
 from eel_gym.episode_recording import EpisodeRecording
 from eel_gym.joint_action import JointAction
-from eel_gym.mean_heading import MeanHeading
 from eel_gym.picture import picture
-from eel_gym.task import Action, Start, Task
-
-
-class Judged(NamedTuple):
-    """How a control step has ended, of one swimmer or of N."""
-
-    reward: Any  # float or (N,)
-    terminated: Any  # bool or (N,)
-    truncated: Any  # bool or (N,)
-    stopped: dict[int, str]  # why swimmers could not go on, by their index
+from eel_gym.task import Action, MeanHeading, Start, Task
 
 
 class SwimmerEnv(Task):
@@ -88,14 +78,12 @@ class SwimmerEnv(Task):
             self.swimmers = CommandedRobots(count, self.action.robot, joints, kind, **swims)
         else:
             self.swimmers = SampledSwimmers(count, self.action.x, self.action.waves, **swims)
-        recorded = count if render_mode == "rerun" else 0
-        self._recordings = [EpisodeRecording(recordings, self.name) for _ in range(recorded)]
+        self._recordings = [EpisodeRecording(recordings, self.name) for _ in range(count * (render_mode == "rerun"))]
         self._mean_heading = MeanHeading(max(1, round(self.action.period / self.numbers.control_period)), self.shape)
         self.ticks: np.ndarray = np.zeros(count, dtype=int)  #: (N,) control steps of the present episodes
-        self._elapsed: Array = np.zeros(count)  # s, of the present episodes
-        self._trim: Array = np.zeros((count, 1))  # rad/m
+        self._trim: Array = np.zeros((*self.shape, 1))  # rad/m
+        self._heads = self.swimmers.heads.reshape(13, *self.shape)  # the same memory
         self._status: NDArray[np.int64] = np.full(count, LEFT_OUT)  # 0 from `reset` on, until a swimmer stops
-        self._stopped: dict[int, str] = {}  # in the last control step
         self.starts = [Start()] * count  #: of the present episodes
         self.restart(np.zeros(self.shape))
         if isinstance(self.swimmers, SampledSwimmers):
@@ -117,9 +105,7 @@ class SwimmerEnv(Task):
         """One control step: observation, reward, terminated, truncated, info."""
         if self._status[0] == LEFT_OUT:
             raise gymnasium.error.ResetNeeded("the environment must be reset before step")
-        self.march(self.checked_action(action))
-        observation = self.observation()
-        reward, terminated, truncated, stopped = self.judge()
+        observation, reward, terminated, truncated, stopped = self.march(self.checked_action(action))
         return observation, float(reward), bool(terminated), bool(truncated), {"stopped": stopped[0]} if stopped else {}
 
     def render(self) -> Any:
@@ -155,48 +141,46 @@ class SwimmerEnv(Task):
         self._end(index)
         self.starts[index] = start = self.begin(options)
         rows = self.action.begin_one(index, start.own_time) if self.shape else self.restart(start.own_time)
-        self._add_trim(rows[None], start.left_trim)
+        self._add_trim(rows, start.left_trim)
         twist = (start.roll_rate, 0.0, 0.0, start.speed, 0.0, 0.0)
         flow = self.flow if self.flow is None or isinstance(self.flow, Flow) else self.flow(self.np_random)
         self.swimmers.start(index, start.position, level_orientation(start.heading), twist, rows, flow)
         self._trim[index], self.ticks[index], self._status[index] = start.left_trim, 0, 0
         if len(start.goal) != len(self.goal):
             self.goal = np.zeros((len(start.goal), *self.shape))
+        self.goal.reshape(len(start.goal), len(self.ticks))[:, index] = start.goal
         self._look()
         if self.shape:
-            self.goal[:, index] = start.goal
             self.heading[index] = self._mean_heading.begin_one(index, self.head_heading[index])
         else:
-            self.goal[:] = start.goal
             self.heading = self._mean_heading.add(self.head_heading)
         self._record(index)
 
-    def march(self, actions: Array) -> None:
-        """March all swimmers that are under way through a control step with their `actions`."""
+    def march(self, actions: Array) -> tuple[np.ndarray, Any, Any, Any, dict[int, str]]:
+        """March all swimmers that are under way through a control step with their `actions`.
+
+        Returns the observation, the reward, whether the episode is terminated, and truncated, of one swimmer or (N,);
+        and why swimmers could not go on, by their index. These have no reward.
+        """
         rows = self.action.advance(actions, self.numbers.control_period)
-        rows = rows if self.shape else rows[None]
         self._add_trim(rows, self._trim)
         self.ticks += 1
-        self._elapsed = self.ticks * self.numbers.control_period
-        stopped = self.swimmers.advance(self._elapsed, rows, self._status)
+        elapsed = self.ticks * self.numbers.control_period
+        reasons = self.swimmers.advance(elapsed, rows if self.shape else rows[None], self._status)
         self._look()
         self.heading = self._mean_heading.add(self.head_heading)
-        self._stopped = {index: one_line(reason) for index, reason in stopped.items()}
+        stopped = {index: one_line(reason) for index, reason in reasons.items()}
         for index in stopped:
             self._end(index)
         for index in range(len(self._recordings)):
             self._record(index)
-
-    def judge(self) -> Judged:
-        """Reward and end of the control step that `march` has made; a swimmer that has stopped has no reward."""
+        observation = self.observation()  # of what the reward is for: it may change the goal
         reward, terminated = self.reward(), self.ended()
-        truncated = (self._elapsed if self.shape else self._elapsed[0]) >= self.numbers.duration * (1.0 - 1e-9)
-        if self._stopped:
-            here = np.zeros(len(self.ticks), dtype=bool)
-            here[list(self._stopped)] = True
-            here = here if self.shape else here[0]
+        truncated = (elapsed if self.shape else elapsed[0]) >= self.numbers.duration * (1.0 - 1e-9)
+        if stopped:
+            here = np.isin(np.arange(len(self.ticks)), list(stopped)).reshape(self.shape)
             reward, terminated, truncated = np.where(here, 0.0, reward), here | terminated, truncated & ~here
-        return Judged(reward, terminated, truncated, self._stopped)
+        return observation, reward, terminated, truncated, stopped
 
     def one(self, index: int) -> Self:
         """Swimmer `index` by itself, as far as tasks see it."""
@@ -218,16 +202,17 @@ class SwimmerEnv(Task):
 
     def _look(self) -> None:
         """Take in the motion of the heads, and of the joints."""
-        heads = self.swimmers.heads.copy() if self.shape else self.swimmers.heads[:, 0].copy()
+        heads = self._heads.copy()
         self.head = HeadMotion(heads[:3], heads[3:7], heads[7:10], heads[10:])
         self.head_heading = self.head.heading
         if isinstance(self.swimmers, CommandedRobots) and isinstance(self.action, JointAction):
-            self.action.see(self.swimmers.joints.copy() if self.shape else self.swimmers.joints[..., 0].copy())
+            self.action.see(self.swimmers.joints.reshape(2, -1, *self.shape).copy())
 
     def _add_trim(self, rows: Array, left_trim: Array | float) -> None:
-        """Bend each body by `left_trim` [rad/m], one or (N, 1), beside what its action asks in `rows` (N, ...)."""
+        """Bend bodies by `left_trim` [rad/m], one or (N, 1), beside what their action asks in `rows`, of one or N."""
         if not isinstance(self.action, JointAction):
-            rows[:, 3] -= left_trim
+            yaw = rows[..., 3, :]
+            yaw -= left_trim
         elif self.action.kind == "position":
             rows += left_trim * self.body.length / self.action.size
 

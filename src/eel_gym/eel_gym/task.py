@@ -12,6 +12,7 @@ from eel_base.quantity import Quantities, checked_instance, described_fields, qu
 from eel_base.wording import shown
 from eel_dynamics.simulation.sampled_swimmers import Array
 from eel_gaits.gaits.swimming import straight
+from eel_gaits.pilot.head_motion import wrapped
 from eel_model.body.body import Body, checked_body
 from eel_model.scene import Scene
 
@@ -84,12 +85,14 @@ class Task(gymnasium.Env[Any, Any]):
         if action is not None and not isinstance(action, Action):
             raise ValueError(f"action must be a LawAction, a KnotAction or a JointAction, got {shown(action)}")
         self.action = self.default_action() if action is None else action
-        bounds = [bound for _, _, bound in (*self.observed, *self.action.names_of_state)]
-        self._bounds = np.array(bounds, dtype=np.float32)
-        self._low = -self._bounds
-        self.observation_space = gymnasium.spaces.Box(self._low, self._bounds, dtype=np.float32)
+        bounds = np.array([each[2] for each in (*self.observed, *self.action.names_of_state)], dtype=np.float32)
+        self.observation_space = gymnasium.spaces.Box(-bounds, bounds, dtype=np.float32)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (self.action.size,), np.float32)
         self.shape = shape  #: () of one swimmer, (N,)
+        self._shape_of_action = (*shape, self.action.size)
+        self._seen = np.empty((len(bounds), *shape), dtype=np.float32)
+        self._high = np.full_like(self._seen.T, bounds).T
+        self._low = -self._high
         self.head: Any = None  #: a HeadMotion from the first reset on
         self.head_heading: Any = None  #: rad, of the head now; positive: left
         self.heading: Any = np.zeros(shape) if shape else 0.0  #: rad, the same averaged over the gait's period
@@ -130,14 +133,13 @@ class Task(gymnasium.Env[Any, Any]):
 
     def observation(self) -> np.ndarray:
         """(D,) or (N, D) float32: what the task observes and the state of the action, cut to the bounds."""
-        seen = np.empty((len(self._bounds), *self.shape), dtype=np.float32)
         for row, value in enumerate((*self.observe(), *self.action.state)):
-            seen[row] = value
-        return np.minimum(np.maximum(seen.T, self._low), self._bounds)
+            self._seen[row] = value
+        return np.minimum(np.maximum(self._seen, self._low), self._high).T
 
     def checked_action(self, action: Any) -> Array:
         """The action of each swimmer, cut to the bounds. `InvalidAction` for one that does not fit."""
-        shape = (*self.shape, self.action.size)
+        shape = self._shape_of_action
         try:
             values = np.asarray(action, dtype=float)
         except (TypeError, ValueError):
@@ -145,8 +147,7 @@ class Task(gymnasium.Env[Any, Any]):
         if values.shape != shape or not all(map(math.isfinite, values.ravel().tolist())):
             wanted = f"{'actions' if self.shape else 'action'} must be {' x '.join(map(str, shape))} finite numbers"
             raise gymnasium.error.InvalidAction(f"{wanted}, got {shown(action)}")
-        cut: Array = np.minimum(np.maximum(values, -1.0), 1.0)
-        return cut
+        return np.asarray(np.minimum(np.maximum(values, -1.0), 1.0))
 
     def describe(self) -> str:
         """One line for each number of the observation and of the action, with unit and bounds."""
@@ -155,6 +156,40 @@ class Task(gymnasium.Env[Any, Any]):
         return "\n".join(
             ["observation:", *lines, "action, each from -1 to 1:", *(f"  {each}" for each in self.action.described())]
         )
+
+
+class MeanHeading:
+    """The mean of the last `count` headings [rad], also across the turn from pi to -pi: the head swings with the gait.
+    Of one swimmer or, side by side, of the `swimmers` (N,)."""
+
+    def __init__(self, count: int, swimmers: tuple[int, ...] = ()):
+        self._count, self._swimmers, self._place = count, swimmers, 0  # place: of the last one
+        # rad, each within half a turn of the one before; 0 where none is
+        self._headings: list[Any] = [np.zeros(swimmers) if swimmers else 0.0 for _ in range(count)]
+        self._last = self._sum = self._headings[0]
+        self._known: Any = np.zeros(swimmers, dtype=int) if swimmers else 0
+
+    def clear(self) -> None:
+        """Forget all headings."""
+        self.__init__(self._count, self._swimmers)  # type: ignore[misc]
+
+    def add(self, heading: Any) -> Any:
+        """The mean [rad], from -pi to pi, with this `heading` [rad]."""
+        self._place = (self._place + 1) % self._count
+        self._last = self._last + wrapped(heading - self._last)
+        self._sum = self._sum + self._last - self._headings[self._place]
+        self._headings[self._place] = self._last
+        self._known = self._known + (self._known < self._count)
+        return wrapped(self._sum / self._known)
+
+    def begin_one(self, swimmer: int, heading: float) -> Any:
+        """The mean [rad] of one of N swimmers that has this `heading` alone."""
+        for each in self._headings:
+            each[swimmer] = 0.0
+        for each in (self._headings[self._place], self._last, self._sum):
+            each[swimmer] = wrapped(heading)
+        self._known[swimmer] = 1
+        return wrapped(heading)
 
 
 def described_task(task: type[Task]) -> str:

@@ -93,9 +93,7 @@ class ThreadedVectorEnv(VectorEnv[Any, Any, Any]):
         values, over = self.swimmers.checked_action(actions), self._over
         if not self._begun or (self._mode is AutoresetMode.DISABLED and over.any()):
             raise gymnasium.error.ResetNeeded("environments whose episode has ended must be reset before step")
-        self.swimmers.march(values)
-        observations = self.swimmers.observation()
-        rewards, terminated, truncated, stopped = self.swimmers.judge()
+        observations, rewards, terminated, truncated, stopped = self.swimmers.march(values)
         rewards, terminated, truncated = np.array(rewards), terminated | np.zeros_like(over), np.array(truncated)
         if self._limit is not None:
             truncated |= self.swimmers.ticks >= self._limit
@@ -103,12 +101,10 @@ class ThreadedVectorEnv(VectorEnv[Any, Any, Any]):
         for index, reason in stopped.items():
             if not (self._mode is AutoresetMode.NEXT_STEP and over[index]):
                 infos = self._add_info(infos, {"stopped": reason}, index)
-        begun = over
-        if self._mode is AutoresetMode.NEXT_STEP:
-            rewards[over], terminated[over], truncated[over] = 0.0, False, False
-        else:
-            begun = (terminated | truncated) & (self._mode is AutoresetMode.SAME_STEP)
-        if begun.any():
+        begun = over if self._mode is AutoresetMode.NEXT_STEP else terminated | truncated
+        if begun.any() and self._mode is not AutoresetMode.DISABLED:
+            if self._mode is AutoresetMode.NEXT_STEP:
+                rewards[over], terminated[over], truncated[over] = 0.0, False, False
             for index in np.flatnonzero(begun).tolist():
                 if self._mode is AutoresetMode.SAME_STEP:
                     final = {"stopped": stopped[index]} if index in stopped else {}

@@ -108,9 +108,8 @@ class WayPointsEnv(SwimmerEnv):
 
     def _way(self) -> tuple[Any, Any, Any]:
         """Bearing [rad] in the world and distance [m] of the present point, or of the last; the turn [rad] there."""
-        count = self._count
-        place = np.minimum(self.goal[0], count - 1)
-        here = np.arange(count).reshape(count, *(1 for _ in self.shape)) == place
-        x, y, turn = ((part * here).sum(axis=0) for part in np.split(self.goal[2:], 3))
+        place = np.minimum(self.goal[0], self._count - 1).astype(int)
+        parts = self.goal[2:].reshape(3, self._count, *self.shape)
+        x, y, turn = parts[:, place, *map(np.arange, self.shape)]
         east, north = x - self.head.position[0], y - self.head.position[1]
         return np.arctan2(north, east), np.hypot(east, north), turn

@@ -10,6 +10,7 @@ critically damped oscillator, so the curvature, its rate and its acceleration ne
 """
 
 import math
+import operator
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -55,8 +56,11 @@ class SteeredLaw:
 
     def __init__(self, law: Law, *, response: float = 0.2, length: float = 1.0, points: int = 21):
         self.law, self.x, self._rate = law, np.linspace(0.0, length, points), 1.0 / response
-        self._waves = [(term.angular_frequency, LAW_ROW[term.axis]) for term in law.terms]
         self._rows = np.concatenate([_rows(term, self.x) for term in law.terms] + [np.ones((1, points))])
+        self._waves = [  # with the places of cosine and sine
+            (term.angular_frequency, term.axis, self._places(term.axis, 2 * k), self._places(term.axis, 2 * k + 1))
+            for k, term in enumerate(law.terms)
+        ]
         self._rest = {name: (number.rest, 0.0, 0.0) for name, number in NUMBERS.items()}
         self.period = min((term.period for term in law.terms if term.period), default=1.0)  # s, of the fastest wave
         self.values: dict[str, Any] = dict(self._rest)  # of each number: value, rate, acceleration
@@ -101,38 +105,40 @@ class SteeredLaw:
         as_it_is = size is self._rest["amplitude"] and speed is self._rest["tempo"]
         zero: Any = np.zeros(self._swimmers) if self._swimmers else 0.0
         factors = [zero] * (6 * len(self._rows))  # of the rows, axis by axis and derivative by derivative
-        for k, (frequency, axis) in enumerate(self._waves):
-            s, c = np.sin(frequency * self.own_time), np.cos(frequency * self.own_time)
+        for k, (frequency, axis, of_cosine, of_sine) in enumerate(self._waves):
+            angle = frequency * self.own_time
+            s, c = np.sin(angle), np.cos(angle)
             if not self._swimmers:
                 s, c = float(s), float(c)
-            for row, (value, slope) in enumerate(((c, -frequency * s), (-s, -frequency * c)), 2 * k):
-                if as_it_is:  # of which there is the most
-                    self._add(factors, axis, row, (value, slope, -frequency * frequency * value))
-                else:
-                    self._add(factors, axis, row, _product(size, value, slope, frequency, speed))
-            if frequency and axis == LAW_ROW["yaw"]:
+            if as_it_is:  # of which there is the most
+                square = frequency * frequency
+                factors[of_cosine] = (c, -frequency * s, -square * c)
+                factors[of_sine] = (-s, -frequency * c, square * s)
+            else:
+                factors[of_cosine] = _product(size, c, -frequency * s, frequency, speed)
+                factors[of_sine] = _product(size, -s, -frequency * c, frequency, speed)
+            if frequency and axis == "yaw":
                 for name, (now, later) in ROLLING.items():
                     number = self.values[name]
                     if number is not self._rest[name]:
                         f, g = now * c + later * s, later * c - now * s
-                        for row, (value, slope) in enumerate(((f, frequency * g), (g, -frequency * f))):
-                            of_wave = _product(number, value, slope, frequency, speed)
-                            self._add(factors, LAW_ROW["pitch"], 2 * k + row, of_wave)
+                        for row, (value, slope) in enumerate(((f, frequency * g), (g, -frequency * f)), 2 * k):
+                            place, rolled = self._places("pitch", row), _product(number, value, slope, frequency, speed)
+                            factors[place] = map(operator.add, factors[place], rolled)
         for name, bent in BENDS.items():
             if self.values[name] is not self._rest[name]:
                 value, rate, acceleration = self.values[name]
-                self._add(factors, LAW_ROW[bent], len(self._rows) - 1, (-value, -rate, -acceleration))
+                factors[self._places(bent, len(self._rows) - 1)] = (-value, -rate, -acceleration)
         found = np.array(factors).reshape(6, len(self._rows), *self._swimmers)
-        if self._swimmers:
-            return np.asarray(np.ascontiguousarray(found.transpose(2, 0, 1)) @ self._rows)
-        return np.asarray(found.dot(self._rows))  # faster than @ for one
+        if not self._swimmers:
+            return np.asarray(found.dot(self._rows))
+        together: np.ndarray = found.transpose(2, 0, 1).reshape(-1, len(self._rows)) @ self._rows
+        return together.reshape(*self._swimmers, 6, -1)
 
-    def _add(self, factors: list[Any], axis: int, row: int, jet: Jet) -> None:
-        """Add value, rate and acceleration to a row of an axis."""
-        place = 3 * axis * len(self._rows) + row
-        for value in jet:
-            factors[place] = factors[place] + value
-            place += len(self._rows)
+    def _places(self, axis: str, row: int) -> slice:
+        """Where factors of a row are: that of the value, the rate and the acceleration about an axis."""
+        first = 3 * LAW_ROW[axis] * len(self._rows) + row
+        return slice(first, first + 3 * len(self._rows), len(self._rows))
 
 
 def _product(number: Jet, f: Any, f1: Any, frequency: float, speed: Jet) -> tuple[Any, Any, Any]:

@@ -3,10 +3,9 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
+#include <chrono>
 #include <cstddef>
 #include <functional>
-#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -17,63 +16,83 @@ class Threads {
     using Task = std::function<void(std::size_t)>;
 
     // `count` threads, of which the caller's own is one.
-    explicit Threads(std::size_t count)
+    explicit Threads(std::size_t count) : shares_(count)
     {
-        for (std::size_t k = 1; k < count; ++k) helpers_.emplace_back([this] { help(); });
+        for (std::size_t k = 1; k < count; ++k) helpers_.emplace_back([this, k] { help(k); });
     }
     ~Threads()
     {
-        {
-            const std::scoped_lock lock(mutex_);
-            over_ = true;
-        }
-        begun_.notify_all();
+        over_ = true;
+        ++round_;
+        round_.notify_all();
         for (std::thread& helper : helpers_) helper.join();
     }
     Threads(const Threads&) = delete;
     Threads& operator=(const Threads&) = delete;
 
-    // Calls `task`, which must not throw, with each of the numbers below `items` once; returns when all are done.
+    // Calls `task`, which must not throw, with each of the numbers below `items` once; returns when all are done. A
+    // helper that has not woken by then is not waited for.
     void run(std::size_t items, const Task& task)
     {
-        {
-            const std::scoped_lock lock(mutex_);
-            task_ = &task, items_ = items, next_ = 0, busy_ = helpers_.size(), ++round_;
-        }
-        begun_.notify_all();
-        work(task, items);
-        std::unique_lock lock(mutex_);
-        ended_.wait(lock, [this] { return busy_ == 0; });
+        const std::size_t count = shares_.size();
+        for (std::size_t k = 0; k < count; ++k)
+            shares_[k].next = k * items / count, shares_[k].end = (k + 1) * items / count;
+        task_ = &task;
+        ++round_;
+        round_.notify_all();
+        work(0);
+        ++round_;
+        awaited(busy_, [](unsigned helpers) { return helpers == 0; });
     }
 
   private:
-    void work(const Task& task, std::size_t items)
-    {
-        for (std::size_t item = next_++; item < items; item = next_++) task(item);
-    }
+    // Items of a thread, the same in each round while it keeps up: their data stay in its cache.
+    struct alignas(64) Share {  // bytes, a line of the cache
+        std::atomic<std::size_t> next{0};
+        std::size_t end = 0;
+    };
+    // A thread that sleeps wakes late, so it looks about first: longer than Python takes from one call to the next.
+    static constexpr std::chrono::microseconds patience{100};
 
-    void help()
+    // Its own items, then what others have left.
+    void work(std::size_t own)
     {
-        for (std::size_t seen = 0;;) {
-            std::unique_lock lock(mutex_);
-            begun_.wait(lock, [&] { return over_ || round_ != seen; });
-            if (over_) return;
-            seen = round_;
-            const Task& task = *task_;
-            const std::size_t items = items_;
-            lock.unlock();
-            work(task, items);
-            lock.lock();
-            if (--busy_ == 0) ended_.notify_one();
+        for (std::size_t k = 0; k < shares_.size(); ++k) {
+            Share& share = shares_[(own + k) % shares_.size()];
+            for (std::size_t item = share.next++; item < share.end; item = share.next++) (*task_)(item);
         }
     }
 
-    std::mutex mutex_;
-    std::condition_variable begun_, ended_;
+    void help(std::size_t own)
+    {
+        for (unsigned seen = 0;;) {
+            seen = awaited(round_, [&](unsigned round) { return round % 2 == 1 && round != seen; });
+            if (over_) return;
+            ++busy_;
+            if (round_ % 2 == 1) work(own);  // else it is over, and nobody waits
+            if (--busy_ == 0) busy_.notify_one();
+        }
+    }
+
+    // The `number` once it `fits`.
+    template <class Fits>
+    static unsigned awaited(const std::atomic<unsigned>& number, const Fits& fits)
+    {
+        const auto sleep = std::chrono::steady_clock::now() + patience;
+        for (;;) {
+            const unsigned found = number;
+            if (fits(found)) return found;
+            if (std::chrono::steady_clock::now() < sleep)
+                std::this_thread::yield();
+            else
+                number.wait(found);
+        }
+    }
+
     const Task* task_ = nullptr;
-    std::size_t items_ = 0, busy_ = 0, round_ = 0;  // busy: helpers that have not ended this round
-    std::atomic<std::size_t> next_{0};
-    bool over_ = false;
+    std::vector<Share> shares_;
+    std::atomic<unsigned> round_{0}, busy_{0};  // round: odd while it is under way; busy: helpers in it
+    std::atomic<bool> over_{false};
     std::vector<std::thread> helpers_;
 };
 
