@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Two topics of the same stamp: the one that comes first waits for the other."""
 
-from collections import OrderedDict
 from collections.abc import Callable
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 First = TypeVar("First")
 Second = TypeVar("Second")
@@ -11,32 +10,24 @@ MAXIMUM_WAITING = 512  # of each; the oldest is dropped
 
 
 class SameStamp(Generic[First, Second]):
-    """Calls draw(stamp, first, second) once both have come, whatever comes first."""
+    """Calls draw(stamp, first, second) once both have come at a `stamp` [ns], whatever comes first."""
 
     def __init__(self, draw: Callable[[int, First, Second], None]) -> None:
         self._draw = draw
-        self._first: OrderedDict[int, First] = OrderedDict()
-        self._second: OrderedDict[int, Second] = OrderedDict()
+        self._waiting: tuple[dict[int, Any], dict[int, Any]] = {}, {}  # firsts and seconds, by stamp
 
     def first(self, stamp: int, value: First) -> None:
-        """Take the first at `stamp` [ns]."""
-        if stamp in self._second:
-            self._draw(stamp, value, self._second.pop(stamp))
-        else:
-            _keep(self._first, stamp, value)
+        self._take(0, stamp, value)
 
     def second(self, stamp: int, value: Second) -> None:
-        """Take the second at `stamp` [ns]."""
-        if stamp in self._first:
-            self._draw(stamp, self._first.pop(stamp), value)
-        else:
-            _keep(self._second, stamp, value)
+        self._take(1, stamp, value)
 
-
-Waiting = TypeVar("Waiting")
-
-
-def _keep(waiting: OrderedDict[int, Waiting], stamp: int, value: Waiting) -> None:
-    waiting[stamp] = value
-    if len(waiting) > MAXIMUM_WAITING:
-        waiting.popitem(last=False)
+    def _take(self, which: int, stamp: int, value: Any) -> None:
+        others, own = self._waiting[1 - which], self._waiting[which]
+        if stamp in others:
+            other = others.pop(stamp)
+            self._draw(stamp, *((other, value) if which else (value, other)))
+            return
+        own[stamp] = value
+        if len(own) > MAXIMUM_WAITING:
+            del own[next(iter(own))]

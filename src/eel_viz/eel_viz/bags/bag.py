@@ -72,7 +72,6 @@ class Bag:
             raise
 
     def close(self) -> None:
-        """Close the files."""
         self._stack.close()
 
     def __enter__(self) -> Self:

@@ -59,12 +59,10 @@ class GrowingFile:
         self._writer.start("ros2")
 
     def add_msgtype(self, connection: Connection) -> None:
-        """Add the definition of a message type."""
         text = connection.msgdef.data.encode()
         self._schemas[connection.msgtype] = self._writer.register_schema(connection.msgtype, "ros2msg", text)
 
     def add_connection(self, connection: Connection, offered_qos_profiles: str) -> None:
-        """Add a topic."""
         about = {"offered_qos_profiles": offered_qos_profiles, "topic_type_hash": connection.digest}
         schema = self._schemas[connection.msgtype]
         self._channels[connection.id] = self._writer.register_channel(connection.topic, "cdr", schema, about)

@@ -131,9 +131,13 @@ def _cropped(png: bytes, size: tuple[int, int]) -> bytes:
         if image.size == size:
             return png
         left, top = ((whole - part) // 2 for whole, part in zip(image.size, size, strict=True))
-        kept = io.BytesIO()
-        image.crop((left, top, left + size[0], top + size[1])).save(kept, format="PNG")
-    return kept.getvalue()
+        return _png(image.crop((left, top, left + size[0], top + size[1])))
+
+
+def _png(image: Image.Image) -> bytes:
+    file = io.BytesIO()
+    image.save(file, format="PNG")
+    return file.getvalue()
 
 
 def _views_in(boxes: dict[str, dict[str, Any]], path: str) -> list[str]:
@@ -166,11 +170,10 @@ class SideBySide:
     def png(self, at: float) -> bytes:
         """Both pictures at simulation time `at` [s] as one PNG, twice as wide as either."""
         left, right = (Image.open(io.BytesIO(each.png(at))).convert("RGB") for each in self._both)
-        joined, file = Image.new("RGB", (left.width + right.width, left.height)), io.BytesIO()
+        joined = Image.new("RGB", (left.width + right.width, left.height))
         joined.paste(left, (0, 0))
         joined.paste(right, (left.width, 0))
-        joined.save(file, format="PNG")
-        return file.getvalue()
+        return _png(joined)
 
 
 @contextlib.contextmanager

@@ -122,11 +122,9 @@ class Side(Summary):
         self.line: Backbone | None = None  # the last backbone
 
     def head_pose(self, stamp: int, pose: Pose) -> None:
-        """Take the head's position."""
         self._comparison.add_head(self, stamp, pose.position)
 
     def internal_wrench(self, stamp: int, wrench: Profiles) -> None:
-        """Take the torques."""
         self._comparison.add_torque(self, stamp, wrench)
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
@@ -155,7 +153,6 @@ class OtherSide(Side):
         self._stream.add_scalars(stamp, entities.OTHER_SPEED, [np.linalg.norm(twist.linear)])
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
-        """Log line and hoops."""
         self.line = backbone
         if not self._stream.drawing_due("other", stamp):
             return

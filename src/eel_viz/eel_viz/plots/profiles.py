@@ -28,7 +28,6 @@ class ProfilePlots:
         )
 
     def internal_wrench(self, stamp: int, wrench: Profiles) -> None:
-        """Draw torques and forces."""
         x, c3 = wrench.x, wrench.values["torque_3"]
         k = int(np.argmax(np.abs(c3)))
         self._limit.recent.include(stamp, abs(float(c3[k])), float(x[k]))
@@ -37,5 +36,4 @@ class ProfilePlots:
         self._heat_map.add(stamp, x, c3)
 
     def curvature(self, stamp: int, curvature: Profiles) -> None:
-        """Draw the curvatures K2 and K3."""
         self._curvature.add(stamp, curvature.x, curvature.together("pitch", "yaw"))

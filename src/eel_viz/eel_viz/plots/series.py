@@ -52,7 +52,6 @@ class Series:
             stream.log_series_style(path, *zip(*lines, strict=True))
 
     def head_pose(self, stamp: int, pose: Pose) -> None:
-        """Log position, attitude and depth of the head."""
         if self._stream.number_due("head_pose", stamp):
             scalars = self._stream.add_scalars
             scalars(stamp, entities.POSITION, pose.position)
@@ -61,7 +60,6 @@ class Series:
             scalars(stamp, entities.DEPTH, -pose.position[2:])
 
     def head_twist(self, stamp: int, twist: Twist) -> None:
-        """Log the head's speed, and its velocities in base_link."""
         if self._stream.number_due("head_twist", stamp):
             self._stream.add_scalars(stamp, entities.SPEED, [np.linalg.norm(twist.linear)])
             self._stream.add_scalars(stamp, entities.LINEAR, twist.linear)

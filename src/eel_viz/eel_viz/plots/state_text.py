@@ -91,11 +91,9 @@ class Summary:
         self._sample = SameStamp(self._complete)
 
     def body(self, stamp: int, body: Body) -> None:
-        """Take the body."""
         self._body = body
 
     def curvature_law(self, stamp: int, name: str) -> None:
-        """Take the law's name."""
         self._law = name
 
     def diagnostics(self, stamp: int, statuses: list[Status]) -> None:

@@ -31,7 +31,6 @@ class CallerStream(Destination):
         self._stream = stream
 
     def open(self, number: int, name: str) -> Delivery:
-        """Send blueprint and name, and return the stream."""
         self._stream.send_blueprint(self.blueprint())
         self.describe(self._stream, name)
         return Delivery(self, self._stream)

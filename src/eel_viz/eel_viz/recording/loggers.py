@@ -58,7 +58,6 @@ class Loggers:
                 draw(stamp, *values)
 
     def send_due(self) -> None:
-        """Send the rows that have waited for a tick."""
         self._stream.send_due()
 
     def flush(self) -> None:
@@ -80,17 +79,14 @@ class Numbers:
         self._stream.log_static(entities.BODY_NUMBERS, rr.DynamicArchetype("BodyGeometry", components=values))
 
     def odom(self, stamp: int, pose: Pose, twist: Twist) -> None:
-        """Log odom."""
         values = {"position": pose.position, "orientation": pose.orientation}
         values |= {"linear": twist.linear, "angular": twist.angular}
         self._log(stamp, entities.ODOMETRY_NUMBERS, "Odometry", None, values)
 
     def internal_wrench(self, stamp: int, wrench: Profiles) -> None:
-        """Log torques and forces."""
         self._log(stamp, entities.WRENCH_NUMBERS, "InternalWrench", wrench.x, wrench.values)
 
     def curvature(self, stamp: int, curvature: Profiles) -> None:
-        """Log the curvatures and their rates."""
         self._log(stamp, entities.CURVATURE_NUMBERS, "Curvature", curvature.x, curvature.values)
 
     def hydrodynamic_load(self, stamp: int, load: Load) -> None:

@@ -27,19 +27,16 @@ class RunText(Summary):
         self._log_look(None)
 
     def body(self, stamp: int, body: Body) -> None:
-        """Say what it has of parts, and its size."""
         super().body(stamp, body)
         if body.fins or body.joints:
             self._log_look(body)
         send_properties(self._recording, "body", {"length": float(body.length), "mass": float(body.mass)})
 
     def head_pose(self, stamp: int, pose: Pose) -> None:
-        """Continue the path."""
         if self.add_position(stamp, pose.position):
             self._write_if_due(stamp)
 
     def internal_wrench(self, stamp: int, wrench: Profiles) -> None:
-        """Take the torque C3."""
         if self.add_torque(stamp, wrench.x, wrench.values["torque_3"]):
             self._write_if_due(stamp)
 

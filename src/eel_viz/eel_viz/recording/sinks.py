@@ -35,14 +35,6 @@ ANSWER_LIMIT = 1.0  # s until a listening viewer must answer
 FLUSH_TIMEOUT = 0.1  # s for one flush to a viewer
 
 
-class LiveDestination(Destination):
-    """A viewer that shows the data as they come."""
-
-    def __init__(self, settings: Settings, log_info: LogFunction, log_warning: LogFunction) -> None:
-        rates = Rates(numbers=settings.rate, drawings=settings.rate, tick=LIVE_TICK)
-        super().__init__(settings, rates, log_info, log_warning, live=True)
-
-
 class ViewerDelivery(Delivery):
     """A stream to a viewer, which is given nothing while it does not read."""
 
@@ -85,11 +77,11 @@ class ViewerDelivery(Delivery):
             return False
 
 
-class ServerDestination(LiveDestination):
+class ServerDestination(Destination):
     """A gRPC server on a port of this machine, for viewers that come and go."""
 
     def __init__(self, settings: Settings, log_info: LogFunction, log_warning: LogFunction) -> None:
-        super().__init__(settings, log_info, log_warning)
+        super().__init__(settings, live_rates(settings), log_info, log_warning, live=True)
         port = self._free(settings.port)  # of one that is in use the server would only log
         self._web_viewer: subprocess.Popen[bytes] | None = None
         address = ipaddress.IPv4Address(settings.address)
@@ -115,7 +107,6 @@ class ServerDestination(LiveDestination):
             )
 
     def open(self, number: int, name: str) -> Delivery:
-        """A stream to the server."""
         return ViewerDelivery(self, self.make_stream(rr.GrpcSink(self.uri), name))
 
     def close(self) -> None:
@@ -146,11 +137,11 @@ class ServerDestination(LiveDestination):
         return other
 
 
-class ViewerDestination(LiveDestination):
+class ViewerDestination(Destination):
     """A viewer that another process has started; while it is absent or closed, nothing is sent."""
 
     def __init__(self, settings: Settings, log_info: LogFunction, log_warning: LogFunction) -> None:
-        super().__init__(settings, log_info, log_warning)
+        super().__init__(settings, live_rates(settings), log_info, log_warning, live=True)
         address = urlsplit(settings.viewer)
         if address.hostname is None or address.port is None:
             raise ValueError(f"viewer must look like rerun+http://127.0.0.1:9876/proxy, got {shown(settings.viewer)}")
@@ -195,6 +186,11 @@ class ViewerDestination(LiveDestination):
         if not self._missing_reported:
             self._missing_reported = True
             self.log_warning(f"{text}: it is tried again while running")
+
+
+def live_rates(settings: Settings) -> Rates:
+    """Of a viewer that shows the data as they come."""
+    return Rates(numbers=settings.rate, drawings=settings.rate, tick=LIVE_TICK)
 
 
 def destinations(

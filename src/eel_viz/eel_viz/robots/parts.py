@@ -16,7 +16,7 @@ THIN, THICK = -1.5, -2.4  # pixels, as Rerun counts them: lines of a ring, and a
 
 
 class Parts:
-    """Draws into `stream`."""
+    """Draws, and logs the numbers, by the methods of topics."""
 
     def __init__(self, stream: BatchedStream) -> None:
         self._stream = stream
@@ -29,7 +29,6 @@ class Parts:
         self._names: dict[str, tuple[str, ...]] = {}
 
     def body(self, stamp: int, body: Body) -> None:
-        """Take what the body has of fins and joints."""
         self._joints = len(body.joints)
         if body.fins or body.joints:
             legend.log_parts(self._stream, fins=bool(body.fins), joints=bool(body.joints))
@@ -43,14 +42,12 @@ class Parts:
             self._motors = self._motors or MotorPlots(self._stream)
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
-        """Take the line that fins and joints lie on."""
         if self._plates is not None and self._stream.drawing_due("fins", stamp):
             self._turned.first(stamp, backbone)
         if self._rings is not None and self._stream.drawing_due("rings", stamp):
             self._driven.first(stamp, backbone)
 
     def fin_states(self, stamp: int, states: JointStates) -> None:
-        """Log and draw the angles of the fins."""
         self._log_states(stamp, entities.FIN_NUMBERS, states)
         if self._plates is not None and set(self._plates.names) <= set(states.names):
             self._turned.second(stamp, states)
@@ -59,7 +56,6 @@ class Parts:
                 self._stream.add_scalars(stamp, entities.FIN_ANGLES, angles)
 
     def joint_states(self, stamp: int, states: JointStates) -> None:
-        """Log angles, rates and torques of the joints."""
         self._log_states(stamp, entities.JOINT_NUMBERS, states)
 
     def motor_states(self, stamp: int, motors: Motors) -> None:

@@ -12,7 +12,6 @@ from typing import Any
 
 from eel_base.topics import DIAGNOSTICS, GLOBAL, LATCHED, OWN
 from eel_base.wording import shown
-from eel_ros.command_line import handle_arguments
 from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import declare_all, help_rows
 from eel_ros.process_end import exit_immediately
@@ -115,11 +114,9 @@ def main(arguments: list[str] | None = None) -> int:
     """Run the node. Exit status: 0 after SIGINT or SIGTERM; 1 if a file could not be written completely; 2 if a
     parameter or an argument is refused at start."""
     keep_pandas_out()
-    words, rows = sys.argv if arguments is None else [NAME, *arguments], list(help_rows(Settings))
-    if (status := handle_arguments(NAME, ABOUT, rows, words)) is not None:
-        return status
-    take = Visualiser.take_messages
-    status = run_node(NAME, words, Visualiser, Visualiser.poll, take, sim_time=True, complete=True)
+    words, rows = sys.argv if arguments is None else [NAME, *arguments], help_rows(Settings)
+    make, poll, take = Visualiser, Visualiser.poll, Visualiser.take_messages
+    status = run_node(NAME, words, make, poll, take, about=ABOUT, parameters=rows, sim_time=True, complete=True)
     # Not by Python's own way: a stream may be blocked, and a thread of LTTng, which ROS brings, may fork just then. It
     # would wait for a lock of Arrow, and the destructors of LTTng for the thread.
     return status if status == CANNOT_START else exit_immediately(status)

@@ -43,7 +43,6 @@ class PolledSubscriptions:
         return made
 
     def remove(self, subscription: Subscription) -> None:
-        """End a subscription."""
         del self._receivers[subscription]
         self._node.destroy_subscription(subscription)
 
@@ -119,7 +118,6 @@ class PublisherChange:
         self._last: tuple[int | None, int] | None = None  # count of the last message, and its time of sending [ns]
 
     def note_publishers(self) -> None:
-        """Note the present publishers."""
         self._seen |= self._publishers()
 
     def changes(self, count: int | None, sent: int) -> bool:

@@ -34,12 +34,10 @@ class Arrows:
             stream.log_static(path, rr.Arrows3D.from_fields(colors=[colour], radii=[RADII[path]]))
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
-        """Take the line that the load acts on."""
         if self._stream.drawing_due("line with load", stamp):
             self._both.first(stamp, backbone)
 
     def hydrodynamic_load(self, stamp: int, load: Load) -> None:
-        """Draw the force of the water."""
         if self._stream.drawing_due("load", stamp):
             if not self._explained:
                 self._explained = True

@@ -21,10 +21,6 @@ class Resampling:
         self.span = self.x[self.left + 1] - self.x[self.left]
         self.fraction = np.clip((self.target - self.x[self.left]) / self.span, 0.0, 1.0)
 
-    def matches(self, x: np.ndarray, target: np.ndarray) -> bool:
-        """Whether these weights are those of `x` and `target`."""
-        return same(self.x, x) and same(self.target, target)
-
     def linear(self, values: np.ndarray) -> np.ndarray:
         """Linear interpolation of `values`, shape (M,) or (M, n); returns (R,) or (R, n)."""
         values = np.asarray(values, dtype=float)

@@ -55,24 +55,22 @@ def log_limit(stream: BatchedStream, stamp: int, *, limit: float, unit: str, nam
 
 def log_words(stream: BatchedStream, stamp: int) -> None:
     """Log what arrows and ribbon are, in their colours."""
-    for path, words in (
-        (
-            f"{entities.LEGEND}/arrows",
-            ((FORCE_AT, "force of the water", colours.FORCE), (ENDS_AT, "nose and tail", colours.ENDS)),
-        ),
-        (entities.WAKE_LEGEND, ((WAKE_AT, "wake", colours.WAKE),)),
-    ):
-        at, texts, shades = zip(*words, strict=True)
-        places = [camera.before_eye(DISTANCE, right, WORDS_AT) for right in at]
-        stream.log(stamp, path, _written(places, texts, shades))
+    arrows = (FORCE_AT, "force of the water", colours.FORCE), (ENDS_AT, "nose and tail", colours.ENDS)
+    stream.log(stamp, f"{entities.LEGEND}/arrows", _words(WORDS_AT, arrows))
+    stream.log(stamp, entities.WAKE_LEGEND, _words(WORDS_AT, [(WAKE_AT, "wake", colours.WAKE)]))
 
 
 def log_parts(stream: BatchedStream, *, fins: bool, joints: bool) -> None:
     """Log what plates and rings are, below the other words, valid at all times."""
     words = {(FORCE_AT, "fins", colours.FIN): fins, (RINGS_AT, "joints, red at the limit", colours.LABEL): joints}
-    at, texts, shades = zip(*(each for each, there in words.items() if there), strict=True)
-    places = [camera.before_eye(DISTANCE, right, PARTS_AT) for right in at]
-    stream.log_static(f"{entities.LEGEND}/parts", _written(places, texts, shades))
+    shown = [each for each, there in words.items() if there]
+    stream.log_static(f"{entities.LEGEND}/parts", _words(PARTS_AT, shown))
+
+
+def _words(height: float, words: Sequence[tuple[float, str, Colour]]) -> rr.LineStrips3D:
+    """Each of the `words`: the tangent of its middle, what it says, and its colour."""
+    at, texts, shades = zip(*words, strict=True)
+    return _written([camera.before_eye(DISTANCE, right, height) for right in at], texts, shades)
 
 
 def _written(places: list[np.ndarray], texts: Sequence[str], shades: Sequence[Colour] = ()) -> rr.LineStrips3D:

@@ -66,22 +66,15 @@ class Skin:
         back = np.clip(0.5 + 0.8 * sin, 0.0, 1.0)[:, None]
         around = back * np.array(colours.BACK) + (1.0 - back) * np.array(colours.BELLY)
         self.shades = np.tile(around.round().astype(np.uint8), (rings, 1))
-        self._resampling: Resampling | None = None
         at = EYE_AT * length
         side, up = (float(np.sqrt(np.interp(at, x, np.square(half)))) for half in (half_width, half_height))
         outwards = side * np.sqrt(1.0 - EYE_HEIGHT**2) - EYE_DEPTH * up
         self.eyes = np.array([(-at, sign * outwards, EYE_HEIGHT * up) for sign in (1, 1, -1, -1)])
         self.eye_sizes = up * np.tile(EYE_SIZES, (2, 1))
 
-    def resampling(self, x: np.ndarray) -> Resampling:
-        """The interpolation from stations `x` (M,) [m] to the rings; cached while the stations stay the same."""
-        if self._resampling is None or not self._resampling.matches(x, self.x):
-            self._resampling = Resampling(x, self.x)
-        return self._resampling
-
     def place(self, x: np.ndarray, position: np.ndarray, orientation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Vertices [m] and normals in the world, float32 (V, 3), of a backbone at stations `x` [m]."""
-        points, axes = self.resampling(x).centre_line(position, orientation)
+        points, axes = Resampling(x, self.x).centre_line(position, orientation)
         turn = np.swapaxes(axes, 1, 2)
         vertices = points[:, None, :] + self._offset @ turn
         normals = self._normal @ turn
@@ -89,7 +82,7 @@ class Skin:
 
     def at_vertices(self, x: np.ndarray, values: np.ndarray) -> np.ndarray:
         """One value for each vertex, (V,), from `values` at stations `x`, (M,)."""
-        return np.repeat(self.resampling(x).linear(values), self._sides)
+        return np.repeat(Resampling(x, self.x).linear(values), self._sides)
 
     def coloured(self, x: np.ndarray, torque: np.ndarray, limit: float) -> np.ndarray:
         """As `shades`, with the flanks coloured by the `torque` (M,) at stations `x`, deepest at `limit`."""

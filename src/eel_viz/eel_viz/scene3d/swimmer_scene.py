@@ -28,7 +28,6 @@ class SwimmerScene:
         self._explained = 0.0  # N m: the limit in the legend
         self._frame, self._path_frame = FollowFrame(), PathFrame()
         self._water, self._path_water = (WaterBox(stream, root) for root in (entities.WATER, entities.PATH_WATER))
-        self._path_water_stamp: int | None = None  # ns
         self._notes = Notes(stream)
         stream.log_static(entities.WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP)
         shadow = rr.Mesh3D.from_fields(triangle_indices=tiles(SHADOW_POINTS, 2), albedo_factor=(0, 0, 0, 130))
@@ -45,7 +44,6 @@ class SwimmerScene:
         self._stream.log_static(entities.EYES, eyes)
 
     def head_twist(self, stamp: int, twist: Twist) -> None:
-        """Take the speed of the head, for the words beside its arrow."""
         self._notes.speed(stamp, float(np.linalg.norm(twist.linear)))
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
@@ -58,8 +56,7 @@ class SwimmerScene:
         self._water.draw(stamp, *frame)
         log_frame(self._stream, stamp, entities.FOLLOW, *frame)
         frame = self._path_frame.include(position, length)
-        if self._path_water_stamp is None or abs(stamp - self._path_water_stamp) >= PATH_WATER_PERIOD:
-            self._path_water_stamp = stamp
+        if self._stream.due("path water", stamp, PATH_WATER_PERIOD):
             self._path_water.draw(stamp, *frame)
         log_frame(self._stream, stamp, entities.WHOLE_PATH, *frame)
         self._draw_shadow(stamp, backbone)

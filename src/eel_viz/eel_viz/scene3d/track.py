@@ -19,37 +19,26 @@ EDGES = 91  # across the wake
 SHEER = 110  # of 255: opacity of the wake
 STROBE_PERIOD = 1_000_000_000  # ns
 AXES_LENGTH = 0.12  # m
-ROOM = 64  # positions, at least, between two reallocations of the history
 
 
 class RecentRows:
     """The last seconds of a quantity of `width` numbers."""
 
     def __init__(self, width: int) -> None:
-        self._stamps, self._rows = np.empty(0), np.empty((0, width))  # ns: `begin` to `end` are the last seconds
-        self._begin = self._end = 0
+        self._stamps, self._rows = np.empty(0), np.empty((0, width))  # ns, and the row of each
 
     def add(self, stamp: int, row: np.ndarray) -> np.ndarray | None:
         """Add a `row` (width,) at `stamp` [ns]; returns the previous one, None at first."""
-        previous = self._rows[self._end - 1].copy() if self._end > self._begin else None
-        if self._end == len(self._stamps):  # make room for as many again
-            kept, count = slice(self._begin, self._end), self._end - self._begin
-            stamps, rows = np.empty(2 * count + ROOM), np.empty((2 * count + ROOM, self._rows.shape[1]))
-            stamps[:count], rows[:count] = self._stamps[kept], self._rows[kept]
-            self._stamps, self._rows, self._begin, self._end = stamps, rows, 0, count
-        self._stamps[self._end], self._rows[self._end] = stamp, row
-        self._end += 1
-        while self._end - self._begin > 2 and self._stamps[self._begin + 1] < stamp - LENGTH * 1e9:
-            self._begin += 1
+        previous = self._rows[-1] if len(self._rows) else None
+        begin = max(0, int(np.searchsorted(self._stamps, stamp - LENGTH * 1e9)) - 1)
+        self._stamps = np.append(self._stamps[begin:], stamp)
+        self._rows = np.concatenate([self._rows[begin:], row[None]])
         return previous
 
     def at(self, stamps: np.ndarray) -> np.ndarray:
         """The quantity at `stamps` (...,) [ns], interpolated: float32 (..., width). Before the first row: that row."""
-        known, rows = self._stamps[self._begin : self._end], self._rows[self._begin : self._end]
-        found = np.empty((*stamps.shape, rows.shape[1]), dtype=np.float32)
-        for column in range(rows.shape[1]):
-            found[..., column] = np.interp(stamps, known, rows[:, column])
-        return found
+        found = [np.interp(stamps, self._stamps, column) for column in self._rows.T]
+        return np.stack(found, axis=-1).astype(np.float32)
 
 
 class Track:
@@ -72,7 +61,6 @@ class Track:
             stream.log_static(path, rr.TransformAxes3D(AXES_LENGTH))
 
     def head_pose(self, stamp: int, pose: Pose) -> None:
-        """Continue path and trail to the head."""
         if self._stream.drawing_due("track", stamp):
             previous = self._places.add(stamp, pose.position)
             if previous is not None:
