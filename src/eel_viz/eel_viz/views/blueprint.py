@@ -19,8 +19,7 @@ from eel_viz.views.views import (
     PLAIN,
     Look,
     following_view,
-    heat_map_view,
-    load_map_view,
+    map_view,
     path_view,
     profile_view,
     series_view,
@@ -29,6 +28,8 @@ from eel_viz.views.views import (
 
 REPEATED_FROM = 0.4  # of a run: from here on it is repeated, for the swim is settled by then
 POWER_SHOWN = 4.0  # s: duration of the last power that is shown, so that its scale fits the swim and not its start
+TORQUE_MAP = "Torque C3 over body and time: pulses run from nose to tail"
+LOAD_MAP = "Torque of each motor over its limit, in time: red at the limit"
 HARDEST = "Motor nearest to its limit [N m]: torque red, limit white"
 XYZ = "x orange, y green, z blue"
 
@@ -38,7 +39,7 @@ def overview(look: Look) -> rrb.Container:
     return rrb.Horizontal(
         rrb.Vertical(rrb.Tabs(following_view(look), path_view(look)), texts(look), row_shares=[2.3, 1.0]),
         rrb.Vertical(
-            heat_map_view(),
+            map_view(entities.HEAT_MAP, TORQUE_MAP),
             profile_view(entities.TORQUE, "Internal torque C(X)"),
             series_view(look, power_name(look), entities.POWER, entities.POWER_BESIDES, last=POWER_SHOWN),
             rrb.Horizontal(
@@ -69,7 +70,7 @@ def power_name(look: Look) -> str:
 def torques(look: Look) -> rrb.Container:
     """The profiles of torque, force and curvature."""
     return rrb.Horizontal(
-        rrb.Vertical(following_view(look), heat_map_view(), row_shares=[1.5, 1.0]),
+        rrb.Vertical(following_view(look), map_view(entities.HEAT_MAP, TORQUE_MAP), row_shares=[1.5, 1.0]),
         rrb.Vertical(
             profile_view(entities.TORQUE, "Internal torque C(X)"),
             profile_view(entities.FORCE, "Internal force N(X)"),
@@ -84,7 +85,7 @@ def robot(look: Look) -> rrb.Container:
     return rrb.Horizontal(
         rrb.Vertical(following_view(look), texts(look), row_shares=[2.3, 1.0]),
         rrb.Vertical(
-            load_map_view(),
+            map_view(entities.LOAD_MAP, LOAD_MAP),
             series_view(look, HARDEST, entities.HARDEST_MOTOR),
             series_view(look, "Motors at their limits", entities.SATURATED),
             rrb.Horizontal(

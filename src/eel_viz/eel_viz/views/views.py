@@ -90,20 +90,9 @@ def profile_view(root: str, name: str) -> rrb.Spatial2DView:
     return _drawing(root, name, profile_plot.BOUNDS_X, profile_plot.BOUNDS_Y)
 
 
-def heat_map_view() -> rrb.Spatial2DView:
-    """C3 over X and time."""
-    return _drawing(
-        entities.HEAT_MAP,
-        "Torque C3 over body and time: pulses run from nose to tail",
-        heat_map.BOUNDS_X,
-        heat_map.BOUNDS_Y,
-    )
-
-
-def load_map_view() -> rrb.Spatial2DView:
-    """The loads of the motors over time."""
-    name = "Torque of each motor over its limit, in time: red at the limit"
-    return _drawing(entities.LOAD_MAP, name, heat_map.BOUNDS_X, heat_map.BOUNDS_Y)
+def map_view(root: str, name: str) -> rrb.Spatial2DView:
+    """One map over X, or over the motors, and time."""
+    return _drawing(root, name, heat_map.BOUNDS_X, heat_map.BOUNDS_Y)
 
 
 def _drawing(root: str, name: str, x: tuple[float, float], y: tuple[float, float]) -> rrb.Spatial2DView:
