@@ -20,13 +20,14 @@ inline Vector3<Lanes> angular_acceleration_slope(const LawOnGrid& law, const Wor
     return turning(frame, law.combine_both(law.tables->node, work.factor, 2, k)) +
            cross(work.omega[k], turning(frame, work.curvature_rate[k]));
 }
-// acc', that of the linear acceleration.
+// acc', that of the linear acceleration, by the angular one.
 template <class M>
-Vector<M, Lanes> linear_acceleration_slope(const Workspace<M>& work, std::size_t k)
+Vector<M, Lanes> linear_acceleration_slope(const Workspace<M>& work, const Field<Angular<M, double>>& angular,
+                                           std::size_t k)
 {
     const auto t1 = work.frame[k].t1();
     const auto omega = work.omega[k];
-    return cross(work.angular_acceleration[k], t1) + cross(omega, cross(omega, t1));
+    return cross(angular[k], t1) + cross(omega, cross(omega, t1));
 }
 
 // Angular accelerations where the head has none.
@@ -34,12 +35,12 @@ inline void set_turning_acceleration(const Swimmer& swimmer, const LawOnGrid& la
 {
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
         work.integrand.store(k, {angular_acceleration_slope(law, work, k), Vector3<Lanes>{}});
-    swimmer.grid.from_nose.integrate(work.integrand, work.angular_acceleration);
+    swimmer.grid.from_nose.integrate(work.integrand, work.shape_acceleration.angular);
 }
 inline void set_turning_acceleration(const Swimmer& swimmer, const LawOnGrid& law, Workspace<Plane>& work)
 {
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-        work.angular_acceleration.store(k, law.combine(law.tables->angle, LawOnGrid::yaw, work.factor, 2, k)[0]);
+        work.shape_acceleration.angular.store(k, law.combine(law.tables->angle, LawOnGrid::yaw, work.factor, 2, k)[0]);
         work.curvature_rate.store(k, {0.0, law.combine(law.tables->node, LawOnGrid::yaw, work.factor, 1, k)[0]});
     }
 }
@@ -48,12 +49,13 @@ inline void set_turning_acceleration(const Swimmer& swimmer, const LawOnGrid& la
 //
 //     f_N = M Vdot + Omega x M V      f_C = J Omegadot + Omega x J Omega + V x M V
 template <class M>
-Wrench<M, Lanes> inertial_wrench(const Section<Lanes>& section, const Workspace<M>& work, std::size_t k)
+Wrench<M, Lanes> inertial_wrench(const Section<Lanes>& section, const Workspace<M>& work,
+                                 const Accelerations<M>& acceleration, std::size_t k)
 {
     const auto frame = work.frame[k];
-    const Angular<M, Lanes> omega = frame.local(work.omega[k]), omega_rate = frame.local(work.angular_acceleration[k]);
+    const Angular<M, Lanes> omega = frame.local(work.omega[k]), omega_rate = frame.local(acceleration.angular[k]);
     const Vector<M, Lanes> v = frame.local(work.velocity[k]);
-    const Vector<M, Lanes> v_rate = frame.local(work.linear_acceleration[k]) - cross(omega, v);
+    const Vector<M, Lanes> v_rate = frame.local(acceleration.linear[k]) - cross(omega, v);
     const Vector<M, Lanes> momentum = section.linear_momentum(v);
     const Wrench<M, Lanes> taken{
         section.angular_momentum(omega_rate) + cross(omega, section.angular_momentum(omega)) + cross(v, momentum),
@@ -63,19 +65,21 @@ Wrench<M, Lanes> inertial_wrench(const Section<Lanes>& section, const Workspace<
 
 // What the moment m e of sections, m h = `lever`, adds to it: m (Omegadot x e + Omega x (Omega x e)), and the torque
 // m e x (Vdot + Omega x V).
-inline Wrench<Space, Lanes> wrench_of_offset(Lanes lever, const Workspace<Space>& work, std::size_t k)
+inline Wrench<Space, Lanes> wrench_of_offset(Lanes lever, const Workspace<Space>& work,
+                                             const Accelerations<Space>& acceleration, std::size_t k)
 {
     const Vector3<Lanes> moment = mass_moment(lever, work.frame[k].axis3), omega = work.omega[k];
-    const Vector3<Lanes> force = cross(work.angular_acceleration[k], moment) + cross(omega, cross(omega, moment));
-    return {cross(work.position[k], force) + cross(moment, work.linear_acceleration[k]), force};
+    const Vector3<Lanes> force = cross(acceleration.angular[k], moment) + cross(omega, cross(omega, moment));
+    return {cross(work.position[k], force) + cross(moment, acceleration.linear[k]), force};
 }
 
 // Adds it to the `density` of the balance. Returns its integral over the body.
-EEL_CORE_APART inline Wrench<Space, double> add_offset(const Swimmer& swimmer, Workspace<Space>& work)
+EEL_CORE_APART inline Wrench<Space, double> add_offset(const Swimmer& swimmer, const Accelerations<Space>& acceleration,
+                                                       Workspace<Space>& work)
 {
     Wrench<Space, Lanes> sum{};
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-        const auto density = wrench_of_offset(swimmer.sections.lever[k], work, k);
+        const auto density = wrench_of_offset(swimmer.sections.lever[k], work, acceleration, k);
         work.density.store(k, work.density[k] + density);
         sum += swimmer.grid.weight[k] * density;
     }
@@ -84,28 +88,33 @@ EEL_CORE_APART inline Wrench<Space, double> add_offset(const Swimmer& swimmer, W
 
 // Writes to `density` the wrench that the motion takes per length. Returns the integral of the density over the body.
 template <class M>
-Wrench<M, double> set_inertial_density(const Swimmer& swimmer, Workspace<M>& work)
+Wrench<M, double> set_inertial_density(const Swimmer& swimmer, const Accelerations<M>& acceleration, Workspace<M>& work)
 {
     Wrench<M, Lanes> sum{};
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-        const auto density = inertial_wrench<M>(swimmer.sections[k], work, k);
+        const auto density = inertial_wrench<M>(swimmer.sections[k], work, acceleration, k);
         work.density.store(k, density);
         sum += swimmer.grid.weight[k] * density;
     }
     const auto taken = total_of(sum);
     if constexpr (!M::planar)
-        if (swimmer.offset) return taken + add_offset(swimmer, work);
+        if (swimmer.offset) return taken + add_offset(swimmer, acceleration, work);
     return taken;
 }
 
-// Adds the resistance, minus the drag, with the signs at the nodes.
+// Adds the resistance, minus the drag, with the signs at the nodes less their jumps at the kinks ahead: as smooth as
+// the motion. `add_jumps` gives these back.
 template <class M>
 void add_resistance(const Swimmer& swimmer, Workspace<M>& work)
 {
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-        const auto load =
-            local_resistive_load<M>(swimmer.sections.drag(k), work.friction_laminar[k], work.friction_excess[k],
-                                    work.turbulent_share[k], speeds_from(work, width * k), roll_from(work, width * k));
+        const auto v = speeds_from(work, width * k);
+        const Lanes turning = roll_from(work, width * k);
+        auto sign = local_signs<M>(work.turbulent_share[k], v, turning);
+        for (std::size_t j = 0; j < work.kink_count; ++j)
+            sign.of(work.kinks[j].speed) -= jump_behind(work.kinks[j], swimmer.grid.from_nose.place()[k]);
+        const auto load = resistive_load(swimmer.sections.drag(k), work.friction_laminar[k], work.friction_excess[k],
+                                         sign, v, turning);
         work.density.store(k, work.density[k] - about_head<M>(work.frame[k], work.position[k], load));
     }
 }
@@ -115,9 +124,10 @@ template <class M>
 void find_shape_accelerations(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
 {
     set_turning_acceleration(swimmer, law, work);
+    Accelerations<M>& own = work.shape_acceleration;
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
-        work.integrand.store(k, {work.angular_acceleration[k], linear_acceleration_slope(work, k)});
-    swimmer.grid.from_nose.integrate(work.integrand, work.linear_acceleration, Components<Angular<M, Lanes>>::count);
+        work.integrand.store(k, {own.angular[k], linear_acceleration_slope(work, own.angular, k)});
+    swimmer.grid.from_nose.integrate(work.integrand, own.linear, Components<Angular<M, Lanes>>::count);
 }
 
 // What the water does on the nose [N] beside its added mass times the acceleration.
@@ -136,12 +146,12 @@ void find_head_acceleration(const Swimmer& swimmer, const LawOnGrid& law, Worksp
 {
     find_shape_accelerations(swimmer, law, work);
     const double on_nose = water_on_nose(swimmer, work);
-    auto left = work.tail + work.drag - set_inertial_density(swimmer, work);
+    auto left = work.tail + work.drag - set_inertial_density(swimmer, work.shape_acceleration, work);
     left.linear.x += on_nose;
     if (work.flowing) left = left - add_wrench_of_flow(swimmer, work);
     if (swimmer.weighs()) left += work.weight;
     if constexpr (!M::planar)
-        if (!work.fins.empty()) left += wrench_of_fins(swimmer, work);
+        if (!work.fins.empty()) left += wrench_of_fins(swimmer, work.shape_acceleration, work);
     auto head = components_of(left);
     work.inertia.solve(head);
     work.head_acceleration = Components<Twist<M, double>>::make([&](std::size_t k) { return head[k]; });
@@ -152,14 +162,14 @@ void find_head_acceleration(const Swimmer& swimmer, const LawOnGrid& law, Worksp
 template <class M>
 void find_accelerations(const Swimmer& swimmer, Workspace<M>& work)
 {
-    add_head_motion(swimmer, work.head_acceleration, work.position, work.angular_acceleration, work.linear_acceleration,
-                    work.angular_acceleration, work.linear_acceleration);
-    work.balance = set_inertial_density(swimmer, work) - work.drag;
+    add_head_motion(swimmer, work.head_acceleration, work.position, work.shape_acceleration.angular,
+                    work.shape_acceleration.linear, work.acceleration.angular, work.acceleration.linear);
+    work.balance = set_inertial_density(swimmer, work.acceleration, work) - work.drag;
     if (swimmer.resistive) add_resistance(swimmer, work);
     if (work.flowing) work.balance += add_wrench_of_flow(swimmer, work);
     if (swimmer.weighs()) take_weight(swimmer, work);
     if constexpr (!M::planar)
-        if (!work.fins.empty()) work.balance = work.balance - wrench_of_fins(swimmer, work);
+        if (!work.fins.empty()) work.balance = work.balance - wrench_of_fins(swimmer, work.acceleration, work);
 }
 
 }  // namespace eel_core

@@ -101,10 +101,9 @@ Powers find_powers(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& w
 
 // THE STEP OF THE INTERNAL WRENCH, after the accelerations: the `integral` of the balance's density from the nose to
 // the stations, from which `internal_wrench` gives eq. (50) there.
-inline void find_internal_wrench(const Swimmer& swimmer, Workspace<Space>& work, UnsignedResistance& resistance,
+inline void find_internal_wrench(const Swimmer& swimmer, const Workspace<Space>& work, UnsignedResistance& resistance,
                                  Field<Wrench<Space, double>>& integral)
 {
-    smooth_kinks(swimmer, work);
     swimmer.to_station.integrate(work.density, swimmer.grid.weight, integral);
     add_jumps(swimmer, work, resistance, integral);
 }

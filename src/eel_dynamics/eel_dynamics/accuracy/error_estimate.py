@@ -115,4 +115,5 @@ def growth_rate_of(time: np.ndarray, distance: np.ndarray, small: float) -> floa
         counts = growing  # it has grown within the first part
     if counts.sum() < LEAST_SAMPLES:
         return 0.0
-    return max(0.0, float(np.polyfit(time[counts], np.log(distance[counts]), 1)[0]))
+    since_mean = time[counts] - time[counts].mean()
+    return max(0.0, float(since_mean @ np.log(distance[counts]) / (since_mean @ since_mean)))

@@ -171,12 +171,12 @@ class BentBody {
             work.curvature_rate.store(k, law.law.combine_both(law.law.tables->node, work.factor, 1, k));
         find_shape_accelerations(*swimmer_, law.law, work);
         const double on_nose = water_on_nose(*swimmer_, work);
-        auto left = work.tail + work.drag - set_inertial_density(*swimmer_, work);
+        auto left = work.tail + work.drag - set_inertial_density(*swimmer_, work.shape_acceleration, work);
         left.linear.x += on_nose;
         if (work.flowing) left = left - add_wrench_of_flow(*swimmer_, work);
         if (swimmer_->weighs()) left += work.weight;
         if constexpr (!M::planar)
-            if (!work.fins.empty()) left += wrench_of_fins(*swimmer_, work);
+            if (!work.fins.empty()) left += wrench_of_fins(*swimmer_, work.shape_acceleration, work);
         imposed_at_rest_ = power_of_shape(*swimmer_, work);
         for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {  // about the sections, weighed
             Wrench<M, Lanes> taken = work.density[k];

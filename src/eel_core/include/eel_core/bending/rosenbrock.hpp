@@ -407,7 +407,7 @@ class BentStepper {
                 std::swap(before_, here_), status = Status::singular;
             }
             ++counts_.rejected, budget_ -= 1.0;
-            length *= status != Status::marched ? 0.1 : shrink_factor(error, order);
+            length *= status != Status::marched ? shrinking_of_lost : shrink_factor(error, order);
             proposed = length;
             if (fixed || length < bounds.smallest) {
                 return status == Status::marched ? Status::step_too_small : status;

@@ -19,6 +19,21 @@ struct LoadSigns {
     T laminar;  // 1: the friction by the laminar law always opposes V1
     T excess;   // part of the turbulent law in the friction
     T lateral, vertical, roll;
+
+    // That of the load which changes its sign with a speed.
+    T& of(Speed speed)
+    {
+        switch (speed) {
+            case Speed::lateral:
+                return lateral;
+            case Speed::vertical:
+                return vertical;
+            case Speed::roll:
+                return roll;
+            default:
+                return excess;
+        }
+    }
 };
 
 // THE resistive load, in section axes: per length, or integrated over the length that the signs are weighed by.
@@ -49,14 +64,13 @@ inline Vector2<Lanes> speeds_from(const Workspace<Plane>& work, std::size_t node
 inline Lanes roll_from(const Workspace<Space>& work, std::size_t node) { return work.speed[roll].from(node); }
 inline Lanes roll_from(const Workspace<Plane>&, std::size_t) { return 0.0; }
 
-// The load per length with the signs that the speeds have at the node.
+// The signs that the speeds have at a node; `share`: that of turbulence.
 template <class M>
-Wrench<M, Lanes> local_resistive_load(const DragSection<Lanes>& section, Lanes laminar, Lanes excess, Lanes share,
-                                      const Vector<M, Lanes>& v, Lanes roll)
+LoadSigns<Lanes> local_signs(Lanes share, const Vector<M, Lanes>& v, Lanes roll)
 {
     LoadSigns<Lanes> sign{1.0, share, with_sign_of(1.0, v.y), 0.0, with_sign_of(1.0, roll)};
     if constexpr (!M::planar) sign.vertical = with_sign_of(1.0, v.z);
-    return resistive_load(section, laminar, excess, sign, v, roll);
+    return sign;
 }
 
 // V and Omega1 of the sections through the water, from their true velocities.

@@ -9,6 +9,8 @@
 // and the integrals to X_j come from the polynomial through the panel's nodes, as all others do.
 #pragma once
 
+#include <utility>
+
 #include "eel_core/loads/drag.hpp"
 
 namespace eel_core {
@@ -206,65 +208,37 @@ void find_kinks(const Swimmer& swimmer, Workspace<M>& work)
     if (jumps(swimmer.friction)) find_kinks_of(swimmer, above_critical, -1.0, 0.0, work);
 }
 
-// The part of the resistance (minus the drag) whose sign is that of a `speed`, as if that were positive: per length,
-// about the head, of a block of nodes.
-template <class M>
-Wrench<M, Lanes> unsigned_resistance(const Swimmer& swimmer, const Workspace<M>& work, Speed speed, std::size_t k)
-{
-    const auto part = [&](Speed other) { return Lanes(speed == other ? 1.0 : 0.0); };
-    const LoadSigns<Lanes> sign{0.0, part(above_critical), part(lateral), part(vertical), part(roll)};
-    const auto load = resistive_load(swimmer.sections.drag(k), work.friction_laminar[k], work.friction_excess[k], sign,
-                                     speeds_from(work, width * k), roll_from(work, width * k));
-    return -about_head<M>(work.frame[k], work.position[k], load);
-}
-
 // Jump of the sign at a kink, at those points of a block that lie behind it, by their `place`; 0 ahead of it.
 inline Lanes jump_behind(const Kink& kink, Lanes place)
 {
     return select(place >= Lanes(static_cast<double>(kink.first) + kink.fraction), kink.jump, 0.0);
 }
 
-// Speeds that change their sign along the body.
-inline std::array<bool, speeds> kinked_speeds(const auto& work)
-{
-    std::array<bool, speeds> found{};
-    for (std::size_t j = 0; j < work.kink_count; ++j) found[work.kinks[j].speed] = true;
-    return found;
-}
-
-// Takes the jumps at the kinks out of the `density` of the balance, which has the signs that the speeds have at the
-// nodes: what is left is as smooth as the motion.
-template <class M>
-void smooth_kinks(const Swimmer& swimmer, Workspace<M>& work)
-{
-    const auto kinked = kinked_speeds(work);
-    for (const Speed speed : {lateral, vertical, roll, above_critical})
-        for (std::size_t k = 0; kinked[speed] && k < swimmer.grid.blocks; ++k) {
-            Lanes jump(0.0);
-            for (std::size_t j = 0; j < work.kink_count; ++j)
-                if (work.kinks[j].speed == speed) jump += jump_behind(work.kinks[j], swimmer.grid.from_nose.place()[k]);
-            work.density.store(k, work.density[k] - jump * unsigned_resistance(swimmer, work, speed, k));
-        }
-}
-
-// What `add_jumps` works with: the resistance of a speed at the nodes, per length, and its integral from the nose to
-// the stations.
+// What `add_jumps` works with: the resistance (minus the drag) whose sign is that of a speed, as if that were positive,
+// per length and about the head, at the nodes; and its integral from the nose to the stations.
 struct UnsignedResistance {
     Field<Wrench<Space, double>> density, integral;
 };
 
-// Adds what the jumps give of the `integral` of the balance's density from the nose to the stations.
+// Adds what the jumps at the kinks give of the `integral` of the balance's density from the nose to the stations.
 inline void add_jumps(const Swimmer& swimmer, const Workspace<Space>& work, UnsignedResistance& own,
                       Field<Wrench<Space, double>>& integral)
 {
-    const auto kinked = kinked_speeds(work);
-    for (const Speed speed : {lateral, vertical, roll, above_critical}) {
-        if (!kinked[speed]) continue;
-        for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
-            own.density.store(k, unsigned_resistance(swimmer, work, speed, k));
+    std::array<bool, speeds> integrated{};
+    for (std::size_t j = 0; j < work.kink_count; ++j) {
+        const Speed speed = work.kinks[j].speed;
+        if (std::exchange(integrated[speed], true)) continue;
+        LoadSigns<Lanes> sign{};
+        sign.of(speed) = 1.0;
+        for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+            const auto load =
+                resistive_load(swimmer.sections.drag(k), work.friction_laminar[k], work.friction_excess[k], sign,
+                               speeds_from(work, width * k), roll_from(work, width * k));
+            own.density.store(k, -about_head<Space>(work.frame[k], work.position[k], load));
+        }
         swimmer.to_station.integrate(own.density, swimmer.grid.weight, own.integral);
-        for (std::size_t j = 0; j < work.kink_count; ++j) {
-            const Kink& kink = work.kinks[j];
+        for (std::size_t i = j; i < work.kink_count; ++i) {
+            const Kink& kink = work.kinks[i];
             if (kink.speed != speed) continue;
             const std::size_t first = kink.first, count = swimmer.grid.count[first];
             Wrench<Space, Lanes> sum{};

@@ -141,16 +141,17 @@ EEL_CORE_APART inline void find_fin_loads(const Swimmer& swimmer, const LawOnGri
     }
 }
 
-// The wrench of all fins about the head, with the accelerations that `work` holds; keeps the force of each.
-EEL_CORE_APART inline Wrench<Space, double> wrench_of_fins(const Swimmer& swimmer, Workspace<Space>& work)
+// The wrench of all fins about the head, with these accelerations of the sections; keeps the force of each.
+EEL_CORE_APART inline Wrench<Space, double> wrench_of_fins(const Swimmer& swimmer, const Accelerations<Space>& sections,
+                                                           Workspace<Space>& work)
 {
     Wrench<Space, double> sum{};
     for (std::size_t i = 0; i < swimmer.fins.size(); ++i) {
         const Fin& fin = swimmer.fins[i];
         FinMotion& now = work.fins[i];
         const Vector3<double> omega = work.omega.node(fin.node);
-        const Vector3<double> acceleration = work.linear_acceleration.node(fin.node) +
-                                             cross(work.angular_acceleration.node(fin.node), now.arm) +
+        const Vector3<double> acceleration = sections.linear.node(fin.node) +
+                                             cross(sections.angular.node(fin.node), now.arm) +
                                              cross(omega, cross(omega, now.arm));
         const double relative = dot(now.normal, acceleration - now.water_rate);
         now.whole = now.force - fin.added_mass * relative * now.normal;

@@ -69,9 +69,9 @@ class Instant {
     {
         move(law, time, twist, {}, {});
         find_shape_accelerations(*swimmer_, law, work_);
-        add_head_motion(*swimmer_, acceleration, work_.position, work_.angular_acceleration, work_.linear_acceleration,
-                        work_.angular_acceleration, work_.linear_acceleration);
-        return set_inertial_density(*swimmer_, work_);
+        add_head_motion(*swimmer_, acceleration, work_.position, work_.shape_acceleration.angular,
+                        work_.shape_acceleration.linear, work_.acceleration.angular, work_.acceleration.linear);
+        return set_inertial_density(*swimmer_, work_.acceleration, work_);
     }
 
   private:

@@ -46,7 +46,9 @@ class MissedWrench {
     void set_inertial_units(const Swimmer& swimmer, const Workspace<Space>& work)
     {
         for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-            const auto of = [&](const Section<Lanes>& one) { return inertial_wrench<Space>(one, work, k); };
+            const auto of = [&](const Section<Lanes>& one) {
+                return inertial_wrench<Space>(one, work, work.acceleration, k);
+            };
             unit_[Part::mass].store(k, of({1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}));
             unit_[Part::added2].store(k, of({0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0}));
             unit_[Part::added3].store(k, of({0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0}));
@@ -55,7 +57,7 @@ class MissedWrench {
             unit_[Part::inertia3].store(k, of({0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0}));
             if (!swimmer.weighs() && !swimmer.offset) continue;
             Wrench<Space, Lanes> hanging{};
-            if (swimmer.offset) hanging = wrench_of_offset(Lanes(1.0), work, k);
+            if (swimmer.offset) hanging = wrench_of_offset(Lanes(1.0), work, work.acceleration, k);
             hanging.angular = hanging.angular - righting_torque(Lanes(swimmer.righting), work.frame[k].axis3, work.up);
             unit_[Part::lever].store(k, hanging);
             unit_[Part::net].store(k, -net_weight(swimmer, work.up, work.position[k], Lanes(1.0)));

@@ -202,11 +202,12 @@ class Observer {
     void find_accelerations_there(const LawOnGrid& law, Workspace<Space>& work, StationWork& here) const
     {
         for (std::size_t k = 0; k < swimmer_.grid.blocks; ++k)
-            work.integrand.store(k, {angular_acceleration_slope(law, work, k), linear_acceleration_slope(work, k)});
+            work.integrand.store(k, {angular_acceleration_slope(law, work, k),
+                                     linear_acceleration_slope(work, work.acceleration.angular, k)});
         const Twist<Space, double>& head = work.head_acceleration;
-        swimmer_.to_station.integrate(work.integrand, 0, head.angular, work.angular_acceleration,
+        swimmer_.to_station.integrate(work.integrand, 0, head.angular, work.acceleration.angular,
                                       here.angular_acceleration);
-        swimmer_.to_station.integrate(work.integrand, 3, head.linear, work.linear_acceleration,
+        swimmer_.to_station.integrate(work.integrand, 3, head.linear, work.acceleration.linear,
                                       here.linear_acceleration);
     }
 
@@ -293,9 +294,8 @@ class Observer {
             if (swimmer_.resistive) {
                 const DragSection<Lanes> drag = swimmer_.at_station.drag(k);
                 const AxialFriction friction = axial_friction(drag, swimmer_.friction, v);
-                resistive = local_resistive_load<Space>(drag, friction.laminar, friction.excess,
-                                                        friction.turbulent_share, v, turning)
-                                .linear;
+                const auto sign = local_signs<Space>(friction.turbulent_share, v, turning);
+                resistive = resistive_load(drag, friction.laminar, friction.excess, sign, v, turning).linear;
             }
             show(Profiles::resistive_force, sample, k, resistive);
             show(Profiles::fluid_force, sample, k, force + resistive);

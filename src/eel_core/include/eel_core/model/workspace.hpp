@@ -24,6 +24,13 @@ struct Kink {
 // Numbers of a state, filled up for lanes: `momentum_balance.hpp`.
 inline constexpr std::size_t state_space = 16;
 
+// Accelerations of the sections.
+template <class M>
+struct Accelerations {
+    Field<Angular<M, double>> angular;  // [rad/s^2]
+    Field<Vector<M, double>> linear;    // [m/s^2]
+};
+
 template <class M>
 struct Workspace {
     explicit Workspace(const Swimmer& swimmer)
@@ -33,7 +40,7 @@ struct Workspace {
         position = Field<Vector<M, double>>(n);
         shape_omega = omega = Field<Angular<M, double>>(n), shape_velocity = velocity = Field<Vector<M, double>>(n),
         curvature_rate = Field<Vector2<double>>(n);
-        angular_acceleration = Field<Angular<M, double>>(n), linear_acceleration = Field<Vector<M, double>>(n);
+        shape_acceleration = acceleration = {omega, velocity};
         integrand = Field<Wrench<M, double>>(n), density = Field<Wrench<M, double>>(n);
         friction_laminar = friction_excess = turbulent_share = turbulent_weight = Row(n);
         for (Row& row : speed) row = Row(n);
@@ -55,10 +62,8 @@ struct Workspace {
     Field<Vector<M, double>> velocity;        // [m/s]
     Field<Vector2<double>> curvature_rate;    // Kdot [rad/m/s], pitch and yaw
     Field<Wrench<M, double>> integrand;
-    // Of the sections: without the head's in `find_shape_accelerations`, with it from `add_head_motion` on.
-    Field<Angular<M, double>> angular_acceleration;  // [rad/s^2]
-    Field<Vector<M, double>> linear_acceleration;    // [m/s^2]
-    // Of the balance: what the motion takes, less the loads, per length, about the head.
+    Accelerations<M> shape_acceleration, acceleration;  // where the head has none, and with it
+    // Of the balance: what the motion takes, less the loads, per length, about the head; without the jumps at kinks.
     Field<Wrench<M, double>> density;
 
     // Where the water moves by itself (`flowing`); no memory elsewhere:
@@ -108,7 +113,7 @@ struct Workspace {
     {
         std::size_t sum = frame.bytes() + quaternion.bytes() + position.bytes() + shape_omega.bytes() + omega.bytes() +
                           shape_velocity.bytes() + velocity.bytes() + curvature_rate.bytes() + integrand.bytes() +
-                          angular_acceleration.bytes() + linear_acceleration.bytes() + density.bytes() +
+                          2 * (acceleration.angular.bytes() + acceleration.linear.bytes()) + density.bytes() +
                           friction_laminar.bytes() + friction_excess.bytes() + turbulent_share.bytes() +
                           turbulent_weight.bytes() + flow.bytes() + relative.bytes();
         for (const Row& row : speed) sum += row.bytes();

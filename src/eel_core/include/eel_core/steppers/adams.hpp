@@ -50,6 +50,11 @@ class Adams {
     static constexpr std::size_t highest =
         6;  // beyond, the steps that are stable are shorter than those that are exact
     static constexpr double is_short = 0.0125;  // of the longest step: below, the order may fall
+    // How many times longer a step must get by a neighbouring order, and the least growth that is taken, so that steps
+    // stay equal: in the way of LSODE (Hindmarsh, ODEPACK, 1983), where they are 1.3/1.2, 1.4/1.2 and 1.1.
+    static constexpr double gain_below = 1.1, gain_above = 1.3, least_growth = 1.15;
+    // The greatest growth while the order is above that of the steps that are known, and later. Ours.
+    static constexpr double growth_at_start = 2.0, growth_of_full_order = 1.5;
 
     explicit Adams(std::size_t wanted = 1) : wanted_(wanted) {}
 
@@ -120,9 +125,9 @@ class Adams {
             may_rise_ = false;
             return taken(growth);
         }
-        if (below > 1.1 * growth)
+        if (below > gain_below * growth)
             growth = below, order_ = terms_ - 1, since_change_ = 0;
-        else if (settled && terms_ == order_ && order_ < wanted_ && above > 1.3 * growth)
+        else if (settled && terms_ == order_ && order_ < wanted_ && above > gain_above * growth)
             growth = above, order_ = terms_ + 1, since_change_ = 0;
         may_rise_ = since_change_ > terms_ && order_ < wanted_;
         return taken(growth);
@@ -150,13 +155,12 @@ class Adams {
         }
     }
 
-    // What of a proposed growth is taken: none where it is little, so that steps stay equal; twice at most while the
-    // order is not yet reached by the steps that are known, and half as much again later.
+    // What of a proposed growth is taken.
     double taken(double growth) const
     {
-        if (known_ + 1 < order_) return std::min(2.0, growth);
-        if (1.0 <= growth && growth < 1.15) return 1.0;
-        return std::min(1.5, growth);
+        if (known_ + 1 < order_) return std::min(growth_at_start, growth);
+        if (1.0 <= growth && growth < least_growth) return 1.0;
+        return std::min(growth_of_full_order, growth);
     }
 
     std::size_t wanted_, known_ = 0, terms_ = 0, order_ = 1, since_change_ = 0;

@@ -70,6 +70,11 @@ inline double rounded_down(double growth) { return std::floor(32.0 * growth) / 3
 inline constexpr double safety = 0.9, greatest_growth = 5.0, greatest_shrinking = 0.2;
 inline constexpr double no_error = 1e-4;  // of the tolerance: the step grows by the greatest factor at any order
 
+// Ours:
+inline constexpr double shrinking_of_lost = 0.1;  // of a step at whose end no motion is found
+inline constexpr double accepted_of_adams = 4.0;  // error over tolerance: the next step is shorter, and none repeated
+inline constexpr double equal_steps = 8.0;        // of Adams' method, or fewer: those up to a breakpoint are made equal
+
 // How many times longer a step may be whose error goes with the power `order` of its length.
 inline double growth_factor(double error, double order)
 {
@@ -100,7 +105,7 @@ inline double time_step_size(const Method& method, const StepBounds& bounds, dou
     const double left = span.next - start;
     if (!method.adaptive) return left < 1e100 ? left / std::ceil(left / bounds.longest - 1e-9) : bounds.longest;
     const double length = std::min({bounds.longest, proposed, bounds.part_of_span * (span.next - span.before)});
-    if (method.adams > 0 && left < 8.0 * length) return left / std::ceil(left / length - 1e-9);  // equal steps
+    if (method.adams > 0 && left < equal_steps * length) return left / std::ceil(left / length - 1e-9);
     if (length > left - tiny) return left;
     return length > 0.5 * left ? std::min(length, 0.5 * left) : length;
 }

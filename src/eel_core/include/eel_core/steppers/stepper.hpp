@@ -181,13 +181,12 @@ class Stepper {
         begin_anew_ = anew_;
         if (!anew_) rate_[0] = rate_[method_.stages - 1];  // the last rate of a step is the first of the next
         double proposed = proposed_, length = time_step_size(method_, bounds, proposed, start, span, tiny), error = 0.0;
-        const double accepted =
-            method_.adams > 0 ? 4.0 : 1.0;  // Adams' next step is the shorter: cheaper than to repeat
+        const double accepted = method_.adams > 0 ? accepted_of_adams : 1.0;
         for (;;) {
             const Status status = attempt(settings, start, length, error);
             if (status == Status::marched && error <= accepted) break;
             ++counts_.rejected, budget_ -= 1.0;
-            length *= status != Status::marched ? 0.1 : shrink_factor(error, method_.order);
+            length *= status != Status::marched ? shrinking_of_lost : shrink_factor(error, method_.order);
             proposed = length;
             if (!method_.adaptive || length < bounds.smallest) {
                 anew_ = true;
