@@ -14,14 +14,13 @@ import matplotlib.pyplot as plt
 import numpy as np
 from eel_base.attitude import heading
 from eel_base.files import markdown
-from eel_gaits.gaits.registry import GAITS
 from eel_studies.outputs import Table
 from eel_studies.pictures import BLUE, ORANGE, SETTINGS, along_way
 from PIL import Image
 from scipy.integrate import cumulative_trapezoid
 
 from eel_dynamics import simulate
-from eel_gaits import straight
+from eel_gaits import GAITS, straight
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE, PICTURES = ROOT / "docs/reference/manoeuvres.md", ROOT / "docs/images/manoeuvres"

@@ -22,8 +22,9 @@ from eel_gaits.gaits.settings import FILE_GAITS, numbers_of
 from eel_gaits.pilot.settings import GROUPS
 from eel_gaits.ros.heading_controller import HeadingParameters
 from eel_gaits.ros.node import FILE
-from eel_model.scene import Scene
 from eel_viz.settings import MarkerSettings, Settings
+
+from eel_dynamics import Scene
 
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "docs" / "reference"

@@ -7,8 +7,8 @@ from eel_base.command.command_line import Parser
 from eel_base.wording import shown
 from eel_dynamics.commands.options import add_options, named_texts, set_numbers
 from eel_dynamics.commands.scene_options import add_changes, swim_from
-from eel_dynamics.runs.swim import Swim
 
+from eel_dynamics import Swim
 from eel_studies.points import point_at
 
 ABOUT = "a .yaml file (docs/howto/scenes.md), or a gait by name"

@@ -8,12 +8,13 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from eel_base.command.command import checked_out
 from eel_base.command.command_line import Parser
 from eel_base.files import markdown
 from eel_base.files.output_file import check_output, replacing, written_as
 from eel_dynamics.runs.storage.tables import needed
 
-from eel_studies.pictures import Draw, write_picture
+from eel_studies.pictures import PICTURES, Draw, write_picture
 
 NEW = "<!-- {name}: written by `{command}` -->\n<!-- end of {name} -->\n\n"  # a part of a page that there is not yet
 
@@ -47,6 +48,11 @@ class Table(NamedTuple):
         """Write the table to `path`. `NotWritten` where it cannot be completed."""
         with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
             csv.writer(file).writerows((self.head, *self.rows))
+
+
+def checked_outs(command: str, options: argparse.Namespace) -> list[Path]:
+    """The files that --out of a `command` names: tables (.csv) and `PICTURES`. `ValueError` for another suffix."""
+    return [checked_out(command, out, (*PICTURES, ".csv")) for out in options.out]
 
 
 def write_files(paths: list[Path], table: Callable[[Path], object], draw: Draw, size: tuple[float, float]) -> None:

@@ -39,6 +39,7 @@ SETTINGS: dict[str, Any] = {
     "figure.dpi": 100,
     "savefig.dpi": 100,
 }
+PICTURES = ".png", ".svg", ".pdf"
 METADATA = {".png": {"Software": None}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}  # None: left out
 COLOUR_BAR = "<colorbar>"  # label that matplotlib gives the axes of a colour bar
 PITCH_RAMPS = ((1.0, 3.0), (6.0, 8.0))  # s, intervals in which the falling gait bends in pitch: t1 to t3 and t4 to t6

@@ -24,28 +24,24 @@ from typing import Any, NamedTuple
 import numpy as np
 from eel_base.quantity import checked_instance, number
 from eel_base.wording import did_you_mean, shown
-from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import measures_of
-from eel_dynamics.batches.batch import Batch
-from eel_dynamics.batches.simulate_batch import simulate_batch, swim_of
+from eel_dynamics.batches.simulate_batch import swim_of
 from eel_dynamics.runs.motions import law_from
-from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.settled_duration import duration_of
-from eel_dynamics.runs.swim import Swim
 from eel_dynamics.runs.swim_request import SwimRequest
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_gaits.gaits.registry import find
-from eel_gaits.laws.law import Law
 from eel_model.body.body import MASSES, NUMBERS, Body, checked_body
 from eel_model.fins.fins import Fin, RollHold, checked_fins
 from eel_model.fins.text import GAINS, fins_from_text
-from eel_model.flow.flow import Flow
 from eel_model.flow.plain import KINDS
 from eel_model.flow.text import flow_from_text
 from eel_model.initial_state import InitialState
 from eel_model.robot.robot import Robot, checked_robot, robot_of
-from eel_model.scene import Scene
+
+from eel_dynamics import Accuracy, Batch, Flow, Run, Scene, Swim, simulate_batch
+from eel_gaits import Law
 
 Gait = str | Callable[..., Law] | Swim  # its name, a function of numbers, or a whole swim, as of a scene's file
 Numbers = dict[str, Any]  # by the names above

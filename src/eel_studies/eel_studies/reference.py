@@ -11,12 +11,9 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
-from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.runs.companion import relative_errors
-from eel_dynamics.runs.run import Run
-from eel_dynamics.runs.swim import Swim
-from eel_dynamics.simulation.stopping import SimulationStopped
 
+from eel_dynamics import Accuracy, Run, SimulationStopped, Swim
 from eel_studies.workers import in_threads
 
 DEARER = 10.0  # times, that the next pair takes

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 from eel_dynamics.analysis.averaging_window import common_period
-from eel_gaits.laws.law import Law
 
+from eel_gaits import Law
 from eel_studies.points import Numbers, law_of_terms
 
 SAMPLES = 16  # in a period

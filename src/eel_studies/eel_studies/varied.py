@@ -21,9 +21,8 @@ from typing import Any
 import numpy as np
 from eel_base.quantity import number
 from eel_base.wording import shown
-from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.runs.swim import Swim
 
+from eel_dynamics import Accuracy, Swim
 from eel_studies.points import point_at
 
 RESOLUTION = 36.0  # points per body length where a setting in time is given: the error in space stays below 1e-3

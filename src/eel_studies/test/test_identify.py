@@ -295,7 +295,7 @@ def test_speeds_in_a_table_have_the_numbers_of_their_swims(files, tmp_path, caps
         (["path.npz", *GAIT, "--level", "2"], "level must be below 1, got 2"),
         (["path.csv", *GAIT, "--first", "body.drag"], "--first must be NAME=VALUE, got 'body.drag'"),
         (["path.csv", *GAIT, "--first", "body.drag=x"], "--first must be NAME=NUMBER, got 'body.drag=x'"),
-        (["path.csv", *GAIT, "--out", "fit.pdf"], "--out must end in .png, .svg or .csv, got 'fit.pdf'"),
+        (["path.csv", *GAIT, "--out", "fit.gif"], "--out must end in .png, .svg, .pdf or .csv, got 'fit.gif'"),
     ],
 )
 def test_the_command_refuses_bad_input_in_one_line(files, words, told, capsys, monkeypatch):

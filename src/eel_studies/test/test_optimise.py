@@ -151,7 +151,7 @@ def test_the_command_prints_the_front_and_writes_what_was_asked_for(tmp_path, ca
     for bad, told in [
         (["--bound", "period=1"], "--bound must be NAME=LOW:HIGH, got 'period=1'"),
         (["--speeds", "fast"], "--speeds must be start:end:count, count >= 1, or a,b,c in m/s, got 'fast'"),
-        (["--out", "front.pdf"], "--out must end in .png, .svg or .csv, got 'front.pdf'"),
+        (["--out", "front.gif"], "--out must end in .png, .svg, .pdf or .csv, got 'front.gif'"),
         (["--set", "amplitude_2=x"], "--set must be NAME=NUMBER"),
     ]:
         assert main(["--bound", "amplitude_0=1:2", "--speeds", "0.3", *bad]) == 2

@@ -15,8 +15,8 @@ from eel_studies.reference import front, reference_of
 from eel_studies.tradeoff import measuring, report
 from eel_studies.tradeoff.command import main
 from eel_studies.tradeoff.delivered import Trial, delivered_table
-from eel_studies.tradeoff.drawing import _grouped
 from eel_studies.tradeoff.measuring import ASKED_FOR, REFERENCE, settings
+from eel_studies.tradeoff.report import _grouped
 
 from eel_dynamics import Accuracy, Body, Robot, Scene, SimulationStopped, simulate
 from eel_gaits import falling, straight

@@ -199,5 +199,5 @@ OPTIONS = {  # what argparse takes
         "help": "s; the last sample is at its last whole multiple within the duration",
     },
     "--scale": {"type": float, "default": 1.0, "metavar": "M", "help": "metres in the file's unit of length"},
-    "--out": _repeated("FILE", ".png, .svg: a picture; .csv: a table"),
+    "--out": _repeated("FILE", ".png, .svg, .pdf: a picture; .csv: a table"),
 }

@@ -18,18 +18,15 @@ from eel_base.command.progress import Progress
 from eel_base.files.output_file import written_as
 from eel_dynamics.analysis.measures import MEASURES, measures_of
 from eel_dynamics.commands.options import add_options, scene_of, set_numbers
-from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.settled_duration import until_settled
-from eel_dynamics.runs.simulate import simulate
-from eel_gaits.gaits.registry import gait
 from eel_model.body.body import Body, body_of
-from eel_model.scene import Scene
 
+from eel_dynamics import Run, Scene, simulate
+from eel_gaits import gait
 from eel_studies.outputs import Table
-from eel_studies.pictures import BLUE, ORANGE, Figure, legend_above, write_picture
+from eel_studies.pictures import BLUE, ORANGE, PICTURES, Figure, legend_above, write_picture
 
 NAME = "eel compare"
-PICTURES = (".png", ".svg", ".pdf")
 DURATION = 10.0  # s, of two gaits
 SIZE = 6.8, 6.4  # inches
 STYLES: tuple[dict[str, Any], ...] = ({"color": BLUE}, {"color": ORANGE, "linestyle": (0, (4, 2))})

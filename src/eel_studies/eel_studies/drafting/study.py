@@ -17,12 +17,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from eel_base.attitude import heading
-from eel_dynamics.simulation.simulation import Simulation
-from eel_gaits.gaits.swimming import straight
 from eel_gaits.laws.steered_law import SteeredLaw
-from eel_model.flow.flow import Flow
-from eel_model.flow.sources import Uniform, VortexStreet
-from eel_model.scene import Scene
+
+from eel_dynamics import Flow, Scene, Simulation, Uniform, VortexStreet
+from eel_gaits import straight
 
 STROUHAL = 0.2  # of shedding, of a cylinder at Re 1e3 to 1e5
 FOLLOWING = 0.15  # v / U: the street follows the cylinder at this part of its speed

@@ -11,12 +11,9 @@ from collections.abc import Callable
 from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.commands.options import add_options
-from eel_dynamics.runs.run import Run
-from eel_dynamics.runs.simulate import simulate
-from eel_model.scene import Scene
 
+from eel_dynamics import Accuracy, Run, Scene, simulate
 from eel_gaits import straight
 from eel_studies.figures import drawings, notes, readings
 from eel_studies.outputs import Outputs

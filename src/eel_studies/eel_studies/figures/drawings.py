@@ -2,8 +2,8 @@
 """Figures 5 to 9 of the paper, and two more. Each function draws runs of the falling gait into an empty figure."""
 
 import numpy as np
-from eel_dynamics.runs.run import Run
 
+from eel_dynamics import Run
 from eel_studies.pictures import (
     AS_PRINTED,
     BLACK,

@@ -3,9 +3,9 @@
 
 import numpy as np
 from eel_dynamics.analysis.analysis import Analysis
-from eel_dynamics.runs.run import Run
 from eel_model.section_data import CRITICAL_REYNOLDS
 
+from eel_dynamics import Run
 from eel_studies.figures.drawings import INSTANT, PLACE, wrench_of
 from eel_studies.figures.readings import FASTEST, OWN, PRINTED
 

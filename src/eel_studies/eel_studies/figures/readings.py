@@ -11,11 +11,8 @@ from typing import Any
 
 import numpy as np
 from eel_dynamics.analysis.analysis import Analysis
-from eel_dynamics.runs.run import Run
-from eel_dynamics.runs.simulate import simulate
-from eel_model.body.body import Body
-from eel_model.scene import Scene
 
+from eel_dynamics import Body, Run, Scene, simulate
 from eel_gaits import falling, kern_efficient, kern_fast
 from eel_studies.outputs import Table
 from eel_studies.points import AccuracyLike

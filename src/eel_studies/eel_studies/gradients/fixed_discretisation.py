@@ -13,8 +13,9 @@ import numpy as np
 from eel_dynamics.accuracy.accuracy import FIXED, SPARED, WAVES_POWER, Accuracy
 from eel_dynamics.accuracy.budget import Budget
 from eel_dynamics.accuracy.law_waves import check_law
-from eel_dynamics.runs.swim import Swim
 from eel_model.initial_state import time_scale
+
+from eel_dynamics import Swim
 
 SHORTER = 0.002  # part of a step by which the next one that is tried is shorter
 TRIALS = 500

@@ -24,22 +24,16 @@ from eel_base.attitude import world_from_body
 from eel_base.command.progress import progress_of
 from eel_base.quantity import checked_instance, number, positive
 from eel_base.wording import not_one_of, shown
-from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.measures import checked_measures
-from eel_dynamics.batches.batch import Batch
 from eel_dynamics.runs.companion import relative_errors
-from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.sampling import default_sample_period
-from eel_dynamics.runs.swim import Swim
-from eel_model.body.body import Body
 from eel_model.equality import EqualByFields
 from eel_model.robot.actuators import at_limit
-from eel_model.robot.robot import Robot
-from eel_model.scene import Scene
 from eel_model.section_data import CRITICAL_REYNOLDS
 
+from eel_dynamics import Accuracy, Batch, Body, Robot, Run, Scene, Swim
 from eel_studies.gradients.fixed_discretisation import fixed_steps, on_one_grid, step_of
 from eel_studies.points import (
     AccuracyLike,

@@ -9,30 +9,34 @@ eel identify run.nc --first body.lateral_drag=1.5 --out fit.png --out fit.csv
 
 import argparse
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from eel_base.command.command import checked_out, command
+import numpy as np
+from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
 from eel_base.wording import shown
 from eel_dynamics.commands.options import add_options, add_repeated, scene_of, set_numbers
 from eel_dynamics.runs.storage.tables import write_columns
-from eel_gaits.laws.law import Law
 from eel_model.body.body import body_of
 from eel_model.robot.robot import robot_of
-from eel_model.scene import Scene
 
-from eel_studies.identification.drawing import FORMATS, SIZE, draw_identified
+from eel_dynamics import Scene
+from eel_gaits import Law
+from eel_studies.identification.fit import Identified
 from eel_studies.identification.identify import identify
 from eel_studies.identification.measured_file import MeasuredFile, read_measured
-from eel_studies.identification.measurements import count_of
-from eel_studies.outputs import write_files
+from eel_studies.identification.measurements import MeasuredAngles, MeasuredPath, MeasuredSpeed, Measurements, count_of
+from eel_studies.outputs import checked_outs, write_files
+from eel_studies.pictures import BLUE, GREY, ORANGE, Axes, Figure
 from eel_studies.points import ROBOT, Gait
 
 NAME = "eel identify"
-SUFFIXES = (*FORMATS, ".csv")
+SIZE = 10.0, 3.4  # inches
+MILLI = 1e3
 
 
 def _add_options(parser: Parser) -> None:
@@ -73,7 +77,7 @@ def _add_options(parser: Parser) -> None:
 )
 def main(options: argparse.Namespace) -> None:
     start, progress = time.perf_counter(), Progress(NAME, "evaluations")
-    outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
+    outs = checked_outs(NAME, options)
     first, numbers = set_numbers(options.first, "--first"), set_numbers(options.set)
     robot, angles = robot_of(options.robot), any(name.startswith(ROBOT) for name in first) and not options.path
     files = [
@@ -133,3 +137,62 @@ def _scene(options: argparse.Namespace, files: list[MeasuredFile]) -> Scene:
     if scene is None:
         return scene_of(options.scene, Scene(friction="blended"))
     return replace(scene, friction="blended") if scene.friction == "printed" else scene
+
+
+def draw_identified(figure: Figure, found: Identified, measured: Measurements) -> None:
+    """Draw what was `found` of `measured`, in that order, into an empty matplotlib figure."""
+    left, middle, right = figure.subplots(1, 3)
+    draw = {MeasuredPath: _draw_paths, MeasuredAngles: _draw_angles, MeasuredSpeed: _draw_speeds}[type(measured[0])]
+    middle.set(xlabel="t [s]", title="residuals")
+    draw(left, middle, found, measured)
+    _draw_intervals(right, found)
+
+
+def _draw_paths(left: Axes, middle: Axes, found: Identified, measured: Sequence[Any]) -> None:
+    for each, residual in zip(measured, found.residuals, strict=True):
+        fitted = each.position[:, : residual.shape[1]] - residual
+        left.plot(*each.position[:, :2].T, ".", color=GREY, markersize=3, label="measured")
+        left.plot(*fitted[:, :2].T, color=BLUE, linewidth=1.2, label="of the swim found")
+        for name, values, colour in zip("xyz", residual.T, (BLUE, ORANGE, GREY), strict=False):
+            middle.plot(each.time, MILLI * values, ".-", color=colour, linewidth=0.6, markersize=3, label=name)
+    left.set(xlabel="x [m]", ylabel="y [m]", title="path")
+    left.set_aspect("equal", adjustable="datalim")
+    middle.set_ylabel("measured less found [mm]")
+    for axes in (left, middle):
+        handles: dict[str, Any] = dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
+        axes.legend(handles.values(), handles.keys())
+
+
+def _draw_angles(left: Axes, middle: Axes, found: Identified, measured: Sequence[Any]) -> None:
+    for each, residual in zip(measured, found.residuals, strict=True):
+        left.plot(each.time, each.angles, ".", color=GREY, markersize=2)
+        left.plot(each.time, each.angles - residual, color=BLUE, linewidth=0.8)
+        middle.plot(each.time, MILLI * residual, linewidth=0.8)
+    left.set(xlabel="t [s]", ylabel="angle [rad]", title="joints: measured (dots), of the swim found")
+    middle.set_ylabel("measured less found [mrad]")
+
+
+def _draw_speeds(left: Axes, middle: Axes, found: Identified, measured: Sequence[Any]) -> None:
+    speed, residual = np.array([each.speed for each in measured]), np.concatenate(found.residuals)
+    swim = np.arange(1, len(speed) + 1)
+    left.plot(swim, speed, "o", color=GREY, label="measured")
+    left.plot(swim, speed - residual, "x", color=BLUE, label="of the swim found")
+    left.set(xlabel="swim", ylabel="speed [m/s]", title="speeds", ylim=(0.0, None))
+    left.legend()
+    middle.axhline(0.0, color=GREY, linewidth=0.8)
+    middle.plot(swim, MILLI * residual, "o", color=BLUE)
+    middle.set(xlabel="swim", ylabel="measured less found [mm/s]")
+    for axes in (left, middle):
+        axes.set_xticks(swim if len(swim) <= 12 else axes.get_xticks())
+
+
+def _draw_intervals(axes: Axes, found: Identified) -> None:
+    """Each parameter, relative to its value."""
+    row = np.arange(len(found.names))
+    size = np.where(found.value, np.abs(found.value), 1.0)
+    low, high = 100.0 * (found.value - found.low) / size, 100.0 * (found.high - found.value) / size
+    axes.errorbar(np.zeros(len(row)), row, xerr=(low, high), fmt="o", color=BLUE, capsize=4)
+    labels = [f"{name}\n{value:.4g}" for name, value in zip(found.names, found.value, strict=True)]
+    axes.set_yticks(row, labels)
+    axes.set(xlabel="% of the value", title=f"{100.0 * found.level:.4g} % intervals", ylim=(len(row) - 0.5, -0.5))
+    axes.grid(False, axis="y")

@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from eel_dynamics.runs.run import Run
 from eel_model.equality import EqualByFields
 
+from eel_dynamics import Run
 from eel_studies.identification.measurements import MeasuredPath, MeasuredSpeed, Measurement, count_of
 from eel_studies.identification.prediction import Predicted, Swims, placed, placement_of
 from eel_studies.identification.statistics import Block, correlation_of, gauss_newton_covariance, undetermined, whitened

@@ -17,10 +17,8 @@ from typing import Any
 from eel_base.command.progress import progress_of
 from eel_base.quantity import number, positive
 from eel_base.wording import shown
-from eel_model.body.body import Body
-from eel_model.robot.robot import Robot
-from eel_model.scene import Scene
 
+from eel_dynamics import Body, Robot, Scene
 from eel_studies.gradients.fixed_discretisation import fixed_steps
 from eel_studies.identification.fit import Fit, Identified
 from eel_studies.identification.measurements import (

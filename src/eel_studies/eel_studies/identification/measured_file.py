@@ -17,13 +17,10 @@ import numpy as np
 from eel_base.attitude import heading
 from eel_base.files.input_file import reading
 from eel_base.wording import shown
-from eel_dynamics.runs.run import Run
-from eel_gaits.laws.law import Law
 from eel_gaits.sources.tables import Table, read_table
-from eel_model.body.body import Body
-from eel_model.robot.robot import Robot
-from eel_model.scene import Scene
 
+from eel_dynamics import Body, Robot, Run, Scene
+from eel_gaits import Law
 from eel_studies.identification.measurements import MeasuredAngles, MeasuredPath, MeasuredSpeed
 from eel_studies.points import VELOCITIES
 

@@ -11,10 +11,9 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from eel_dynamics.runs.run import Run
-from eel_dynamics.runs.swim import Swim
-from eel_gaits.laws.law import Law
 
+from eel_dynamics import Run, Swim
+from eel_gaits import Law
 from eel_studies.gradients.gradient import gradient
 from eel_studies.identification.measurements import MeasuredAngles, MeasuredPath, MeasuredSpeed
 from eel_studies.points import Gait, Numbers, law_of_terms, point_at

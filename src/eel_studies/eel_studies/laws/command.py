@@ -8,17 +8,16 @@ eel laws gazzola --friction taylor
 import argparse
 from functools import partial
 
-from eel_base.command.command import checked_out, command
+from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_dynamics.commands.options import add_options
 from eel_model.scene import FRICTION
 
 from eel_studies.laws.laws import LAWS, Result
-from eel_studies.outputs import write_files
+from eel_studies.outputs import checked_outs, write_files
 from eel_studies.pictures import BLACK, LOOKS, Figure, legend_above
 
 NAME = "eel laws"
-SUFFIXES = (".csv", ".png", ".svg", ".pdf")
 SIZE = 5.2, 3.6  # inches
 
 
@@ -30,7 +29,7 @@ def _add_options(parser: Parser) -> None:
 
 @command(NAME, "Hold the model against a law of swimming that was found on animals.", add_options=_add_options)
 def main(options: argparse.Namespace) -> None:
-    outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
+    outs = checked_outs(NAME, options)
     if options.friction and options.law != "gazzola":
         raise ValueError("--friction belongs to gazzola")
     found = LAWS[options.law](options.friction) if options.friction else LAWS[options.law]()

@@ -21,14 +21,10 @@ from typing import NamedTuple
 
 import numpy as np
 from eel_dynamics.analysis.analysis import Analysis
-from eel_dynamics.batches.simulate_batch import simulate_batch
-from eel_dynamics.runs.run import Run
 from eel_gaits.film.kinematics import kinematics
-from eel_gaits.gaits.registry import gait
-from eel_gaits.laws.law import Law
-from eel_model.body.body import Body
-from eel_model.scene import Scene
 
+from eel_dynamics import Body, Run, Scene, simulate_batch
+from eel_gaits import Law, gait
 from eel_studies.optimisation.optimise import optimise
 from eel_studies.outputs import Table
 

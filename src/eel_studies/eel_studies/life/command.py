@@ -10,24 +10,23 @@ from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
-from eel_base.command.command import checked_out, command
+from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_base.quantity import positive
 from eel_dynamics.commands.filmed import add_film_options, beat_from
 from eel_dynamics.commands.options import add_options, add_repeated, scene_of, set_numbers
-from eel_dynamics.runs.run import Run
 from eel_gaits.film.beat import Beat
 from eel_model.body.body import body_of
 
+from eel_dynamics import Run
 from eel_studies.life.lamprey import HEIGHTS, MEASURED, LampreySwim, in_thick_water, lamprey, swims
 from eel_studies.life.lamprey import PLANAR as WATER_OF_FILM
 from eel_studies.life.leave_out import PLANAR, Choice, choices, computed, swum
-from eel_studies.outputs import Table, write_files
+from eel_studies.outputs import Table, checked_outs, write_files
 from eel_studies.pictures import BLACK, BLUE, GREY, LOOKS, PALE_BLUE, Axes, Draw, Figure, along_way, legend_above
 
 NAME = "eel life"
 Drawn: TypeAlias = tuple[Table, Draw, tuple[float, float]]  # with the picture and its size, inches
-SUFFIXES = (".csv", ".png", ".svg", ".pdf")
 FIRST = {"nose_drag": 1.0}  # one number: with two, films that are left out are predicted worse
 SHOWN = 6  # midlines of a beat
 
@@ -53,7 +52,7 @@ def _add_options(parser: Parser) -> None:
 
 @command(NAME, "Swim by filmed motions, and compare with what was measured.", add_options=_add_options)
 def main(options: argparse.Namespace) -> None:
-    outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
+    outs = checked_outs(NAME, options)
     beats = [beat_from(file, options) for file in options.files]
     table, draw, size = (_lamprey if options.swimmer == "lamprey" else _robot)(beats, options)
     print(table.text())

@@ -14,15 +14,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from eel_dynamics.commands.filmed import speeds_of
-from eel_dynamics.runs.run import Run
-from eel_dynamics.runs.simulate import simulate
 from eel_gaits.film.beat import Beat, jackknife
 from eel_gaits.film.kinematics import Kinematics, kinematics
-from eel_gaits.laws.law import Law
-from eel_gaits.laws.term import Term
 from eel_gaits.sources.tables import read_table
-from eel_model.body.body import Body
-from eel_model.scene import Scene
+
+from eel_dynamics import Body, Run, Scene, simulate
+from eel_gaits import Law, Term
 
 HEIGHTS = 0.02, 0.03, 0.04  # L, half-height of the tail fin
 TRUNK = 1.2  # height of the trunk by its width

@@ -12,11 +12,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from eel_dynamics.batches.batch import Batch
-from eel_dynamics.batches.simulate_batch import simulate_batch
 from eel_gaits.film.beat import Beat
-from eel_model.body.body import Body
-from eel_model.scene import Scene
+
+from eel_dynamics import Batch, Body, Scene, simulate_batch
 
 PLANAR = Scene(planar=True, friction="blended", internal_wrench=False, ledger=False)
 BEATS = 16  # of a swim that begins at the measured speed; the later half counts

@@ -15,16 +15,14 @@ from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
 from eel_base.files.output_file import written_as
 from eel_dynamics.commands.options import add_options
-from eel_dynamics.runs.run import Run
-from eel_dynamics.runs.simulate import simulate
 from eel_gaits.sources.midlines import Midlines
-from eel_gaits.sources.motion_file import read_midlines
 from eel_model.body.body import body_of
 
-from eel_studies.pictures import Figure, write_picture
+from eel_dynamics import Run, simulate
+from eel_gaits import read_midlines
+from eel_studies.pictures import PICTURES, Figure, write_picture
 
 NAME = "eel midlines"
-SUFFIXES = (".png", ".svg", ".pdf")
 SHOWN = 8  # instants in the picture
 
 
@@ -64,7 +62,7 @@ def _add_options(parser: Parser) -> None:
     NAME, "Simulate a file of midlines, and compare the computed ones with those measured.", add_options=_add_options
 )
 def main(options: argparse.Namespace) -> None:
-    out = None if options.out is None else checked_out(NAME, options.out, SUFFIXES)
+    out = None if options.out is None else checked_out(NAME, options.out, PICTURES)
     body = body_of(options.body)
     midlines = read_midlines(options.file, length=body.length, scale=options.scale)
     law = midlines.law(Path(options.file).stem)

@@ -17,26 +17,22 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from eel_base.command.command import checked_out, command
+from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_base.wording import shown
 from eel_dynamics.commands.options import add_options, add_repeated, named_texts, scene_of
-from eel_dynamics.runs.run import Run
-from eel_dynamics.runs.swim import Swim
-from eel_gaits.laws.law import Law
-from eel_model.robot.actuators import Servo
-from eel_model.robot.robot import Robot
 
+from eel_dynamics import Robot, Run, Servo, Swim
+from eel_gaits import Law
 from eel_studies.motors.motor_figures import Comparison, MotorFigures, comparison, motor_swim, with_number, word_of
 from eel_studies.options import add_scene_options, chosen
-from eel_studies.outputs import Table, write_files
+from eel_studies.outputs import Table, checked_outs, write_files
 from eel_studies.pictures import LOOKS, Figure, legend_above
 
 NAME = "eel motors"
 RECORDED = ".nc", ".mcap", ".db3"
 DEMAND = 8  # joints an axis, of what an imposed swim takes
 MOST_VARIED = 2
-FORMATS = ".png", ".svg"
 WIDE = 5.0  # ratio of the greatest to the least value, from which the axis is logarithmic
 MOST_TICKS = 7
 PANELS: dict[str, Callable[[MotorFigures], float]] = {
@@ -72,7 +68,7 @@ def _add_options(parser: Parser) -> None:
     add_options=_add_options,
 )
 def main(options: argparse.Namespace) -> None:
-    outs = [checked_out(NAME, out, (".csv", *FORMATS)) for out in options.out]
+    outs = checked_outs(NAME, options)
     if len(options.vary) > MOST_VARIED:
         raise ValueError(f"--vary must be given {MOST_VARIED} times at most, got {len(options.vary)}")
     robot, swim = _robot(options), _swim(options)

@@ -11,13 +11,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from eel_base.wording import shown
-from eel_dynamics.runs.run import Run
-from eel_dynamics.runs.swim import Swim
-from eel_gaits.laws.law import Law
 from eel_model.robot.actuators import at_limit
 from eel_model.robot.compiled import HINGE, mode_table
-from eel_model.robot.robot import Robot
 
+from eel_dynamics import Robot, Run, Swim
+from eel_gaits import Law
 from eel_studies.outputs import Table
 from eel_studies.points import ROBOT
 from eel_studies.varied import varied

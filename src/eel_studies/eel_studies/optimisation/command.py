@@ -10,7 +10,7 @@ import argparse
 import time
 from functools import partial
 
-from eel_base.command.command import checked_out, command
+from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
 from eel_base.wording import shown
@@ -20,14 +20,13 @@ from eel_dynamics.commands.scene_options import add_changes, swim_from
 from eel_dynamics.runs.scene_file import SUFFIXES as SCENES
 from eel_dynamics.runs.storage.tables import write_columns
 
-from eel_studies.optimisation.front import FORMATS, SIZE, draw_front
+from eel_studies.optimisation.front import SIZE, draw_front
 from eel_studies.optimisation.optimise import optimise
 from eel_studies.optimisation.searches import METHODS
 from eel_studies.options import ranges_of
-from eel_studies.outputs import write_files
+from eel_studies.outputs import checked_outs, write_files
 
 NAME = "eel optimise"
-SUFFIXES = (*FORMATS, ".csv")
 MOST_SPEEDS = 1000
 ACCURACY = 1e-3
 
@@ -54,7 +53,7 @@ def _add_options(parser: Parser) -> None:
 )
 def main(options: argparse.Namespace) -> None:
     start = time.perf_counter()
-    outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
+    outs = checked_outs(NAME, options)
     smooth = {} if options.gait.endswith(SCENES) else {"scene": {"friction": "blended"}}
     swim = swim_from(options.gait, options, **smooth)
     front = optimise(

@@ -8,14 +8,13 @@ from typing import Any
 import numpy as np
 from eel_base.wording import shown
 from eel_dynamics.analysis.measures import described
-from eel_dynamics.runs.run import Run
 from eel_model.equality import EqualByFields
 
+from eel_dynamics import Run
 from eel_studies.outputs import Table
-from eel_studies.pictures import BLUE, GREY, LOOKS, Axes, Figure, along_way, write_picture
+from eel_studies.pictures import BLUE, GREY, LOOKS, PICTURES, Axes, Figure, along_way, write_picture
 
 BOUND = 1e-3  # of the bounds' distance: nearer to one of them is at it
-FORMATS = (".png", ".svg")
 SIZE = 9.0, 5.6  # inches
 MOST_GAITS = 5
 PHASES = 9  # midlines in a period
@@ -83,13 +82,13 @@ class Front(EqualByFields):
         return Table(head, list(zip(*cells, strict=True)), left=()).text()
 
     def draw(self, path: str | Path) -> None:
-        """Draw the front, the parameters and the gaits into a file (.png, .svg).
+        """Draw the front, the parameters and the gaits into a file (.png, .svg, .pdf).
 
         `ValueError` for another suffix; `ImportError` without matplotlib; `OSError` where the file cannot be written.
         """
         path = Path(path)
-        if path.suffix not in FORMATS:
-            raise ValueError(f"path must end in {' or '.join(FORMATS)}, got {shown(str(path))}")
+        if path.suffix not in PICTURES:
+            raise ValueError(f"path must end in {' or '.join(PICTURES)}, got {shown(str(path))}")
         write_picture(lambda figure: draw_front(figure, self), SIZE, path)
 
 

@@ -10,11 +10,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from eel_dynamics.analysis.measures import measures_of
-from eel_dynamics.runs.run import Run
-from eel_dynamics.runs.swim import Swim
-from eel_dynamics.simulation.stopping import SimulationStopped
-from eel_gaits.laws.law import Law
 
+from eel_dynamics import Run, SimulationStopped, Swim
+from eel_gaits import Law
 from eel_studies.gradients.gradient import gradient
 from eel_studies.points import Gait, Numbers, law_of_terms, point_at
 from eel_studies.steady_swim import at_speed, swim_times

@@ -20,10 +20,8 @@ from eel_base.command.progress import progress_of
 from eel_base.quantity import checked_instance, checked_row, number
 from eel_base.wording import not_one_of, shown
 from eel_dynamics.analysis.measures import checked_measures, measures_of
-from eel_model.body.body import Body
-from eel_model.robot.robot import Robot
-from eel_model.scene import Scene
 
+from eel_dynamics import Body, Robot, Scene
 from eel_studies.gradients.fixed_discretisation import fixed_steps
 from eel_studies.optimisation.front import Front
 from eel_studies.optimisation.gait_problem import GaitProblem

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from eel_dynamics.simulation.simulation import Simulation
 from eel_gaits.pilot.pilot import Pilot
 from eel_model.initial_state import head_motion_of
-from eel_model.scene import Scene
 
+from eel_dynamics import Scene, Simulation
 from eel_studies.points import AccuracyLike
 
 STEP = 0.02  # s, from one sample of the head's motion to the next

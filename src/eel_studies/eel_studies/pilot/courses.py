@@ -10,9 +10,8 @@ import numpy as np
 from eel_gaits.pilot.goals import Path, Station, course, path, station
 from eel_gaits.pilot.pilot import Pilot
 from eel_gaits.pilot.settings import PilotSettings
-from eel_model.flow.sources import Shear, VortexStreet, Wave
-from eel_model.scene import Scene
 
+from eel_dynamics import Scene, Shear, VortexStreet, Wave
 from eel_studies.pilot.closed_loop import Voyage, swim_with
 
 POINTS = 5  # way points of a course

@@ -12,11 +12,9 @@ import numpy as np
 from eel_base.quantity import positive
 from eel_base.wording import shown
 from eel_dynamics.analysis.analysis import Analysis
-from eel_dynamics.batches.simulate_batch import simulate_batch
-from eel_dynamics.runs.run import Run
-from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.body.body import Body
-from eel_model.scene import Scene
+
+from eel_dynamics import Body, Run, Scene, simulate_batch
+from eel_gaits import SampledLaw
 
 UNCERTAIN: dict[str, tuple[float, float]] = {  # factors, and why
     "lateral_drag": (0.5, 1.0),  # cross flow on a round section, to a flat one

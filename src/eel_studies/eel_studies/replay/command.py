@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from eel_base.command.command import checked_out, command
+from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_base.quantity import positive
 from eel_base.wording import shown
@@ -20,15 +20,14 @@ from eel_dynamics.runs.exchange.eel_viz_functions import joints_of_bag
 from eel_dynamics.runs.storage.tables import write_columns
 from eel_gaits.sources.joint_log import JointLog, joint_log, law_of_links, read_joint_log
 from eel_model.body.body import Body, body_of
-from eel_model.scene import Scene
 
+from eel_dynamics import Scene
 from eel_studies.options import ranges_of
-from eel_studies.outputs import Table, write_files
+from eel_studies.outputs import Table, checked_outs, write_files
 from eel_studies.replay.band import UNCERTAIN, Replayed, replay, robot_body, with_factors
 from eel_studies.replay.drawing import Seen, draw
 
 NAME = "eel replay-joints"
-SUFFIXES = (".csv", ".png", ".svg", ".pdf")
 FITTING = 1e-6  # part of the length by which the links' sum may miss the body's
 
 
@@ -62,7 +61,7 @@ def _add_options(parser: Parser) -> None:
     add_options=_add_options,
 )
 def main(options: argparse.Namespace) -> None:
-    outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
+    outs = checked_outs(NAME, options)
     seen = None if options.seen is None else Seen.of_file(Path(options.seen))
     if seen and options.speed is not None:
         raise ValueError("--seen gives the measured speed: leave out --speed")

@@ -14,14 +14,11 @@ import numpy as np
 from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_base.files.markdown import table
-from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.commands.options import add_repeated
-from eel_dynamics.runs.swim import Swim
-from eel_gaits.laws.law import Law
-from eel_model.fins.fins import Fin
 from eel_model.fins.text import fins_from_text
 
-from eel_gaits import falling, straight, turning
+from eel_dynamics import Accuracy, Fin, Swim
+from eel_gaits import Law, falling, straight, turning
 from eel_studies.options import add_scene_options, check_least, chosen, ranges_of
 from eel_studies.outputs import Outputs, Table, add_output_options
 from eel_studies.points import base_point

@@ -16,11 +16,9 @@ from typing import Any
 
 import numpy as np
 from eel_base.attitude import roll
-from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.runs.swim import Swim
-from eel_gaits.laws.law import Law
-from eel_model.fins.fins import Fin, RollHold
 
+from eel_dynamics import Accuracy, Fin, RollHold, Swim
+from eel_gaits import Law
 from eel_studies.points import base_point, law_of_terms
 from eel_studies.stability.maps import Axis, Map
 from eel_studies.steering.linearisation import PeriodicLinearisation, periodic_linearisation

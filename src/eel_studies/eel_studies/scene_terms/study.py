@@ -16,10 +16,9 @@ from eel_base.wording import one_line
 from eel_dynamics.accuracy.accuracy import COARSEST, Accuracy
 from eel_dynamics.analysis.measures import measures_of
 from eel_dynamics.runs.companion import relative_errors
-from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.scene_file import words_of
-from eel_dynamics.runs.swim import Swim
 
+from eel_dynamics import Run, Swim
 from eel_studies.outputs import Table
 from eel_studies.reference import attempts, cpu_seconds
 from eel_studies.scene_terms.terms import TERMS, WITHIN, terms_of, without

@@ -10,10 +10,9 @@ from typing import Any
 
 import numpy as np
 from eel_dynamics.runs.swim import AT_REST, Swim
-from eel_gaits.laws.law import Law
-from eel_model.flow.sources import Gust, Uniform
-from eel_model.robot.joint import Joint
-from eel_model.robot.robot import Robot
+
+from eel_dynamics import Gust, Joint, Robot, Uniform
+from eel_gaits import Law
 
 Off = Callable[[Swim], Swim]  # a swim -> the same without the term
 

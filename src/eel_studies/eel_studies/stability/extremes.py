@@ -5,9 +5,8 @@ from typing import Any
 
 from eel_dynamics.accuracy.accuracy import ORDERS, PRESETS, Accuracy
 from eel_dynamics.runs.scene_file import swim_of
-from eel_dynamics.runs.swim import Swim
-from eel_model.body.body import Body
 
+from eel_dynamics import Body, Swim
 from eel_studies.stability.maps import TARGET, Axis, Map
 from eel_studies.varied import varied
 

@@ -9,13 +9,11 @@ short the step is.
 
 import numpy as np
 from eel_base.files.markdown import table
-from eel_dynamics.simulation.simulation import Simulation
-from eel_model.body.body import Body
 from eel_model.inertia import MOST, condition_of, straight_inertia
-from eel_model.scene import Scene
 from eel_model.section_data import nose_of
 
 import eel_core
+from eel_dynamics import Body, Scene, Simulation
 from eel_gaits import straight
 from eel_studies.stability.extremes import DENSITY, SLENDERNESS, amplitudes
 from eel_studies.stability.maps import Map

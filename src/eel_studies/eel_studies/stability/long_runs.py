@@ -10,11 +10,8 @@ from typing import Any
 
 import numpy as np
 from eel_base.files.markdown import table
-from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.simulation.simulation import Simulation
-from eel_model.body.body import Body
-from eel_model.scene import Scene
 
+from eel_dynamics import Accuracy, Body, Scene, Simulation
 from eel_gaits import helix, straight
 from eel_studies.steering.linearisation import periodic_linearisation
 

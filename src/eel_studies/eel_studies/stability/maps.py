@@ -19,9 +19,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from eel_dynamics.accuracy.accuracy import FINEST, Accuracy
 from eel_dynamics.runs.companion import relative_errors
-from eel_dynamics.runs.run import Run
-from eel_dynamics.runs.swim import Swim
 
+from eel_dynamics import Run, Swim
 from eel_studies.reference import attempt
 from eel_studies.varied import varied
 from eel_studies.workers import in_threads

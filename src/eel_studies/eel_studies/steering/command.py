@@ -13,8 +13,8 @@ from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
 from eel_base.files.markdown import table
-from eel_gaits.laws.law import Law
 
+from eel_gaits import Law
 from eel_studies.options import check_least
 from eel_studies.outputs import Outputs, Table, add_output_options
 from eel_studies.pictures import BLUE, GREY, LOOKS, Axes, Figure

@@ -16,14 +16,11 @@ from typing import Any
 import numpy as np
 from eel_base.quantity import checked_instance, checked_row, number, positive
 from eel_base.wording import not_one_of, shown
-from eel_gaits.laws.law import Law
-from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.steered_law import BENDS
-from eel_gaits.laws.term import Term
 from eel_model.body.body import Body, checked_body
-from eel_model.fins.fins import Fin
-from eel_model.scene import Scene
 
+from eel_dynamics import Fin, Scene
+from eel_gaits import Law, Ramp, Term
 from eel_studies.steering.period_map import Motion, PeriodMap, rotation, turned_by
 
 STATES = ("roll", "pitch", "heading", "roll_rate", "pitch_rate", "yaw_rate", "surge", "sway", "heave")

@@ -13,14 +13,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from eel_base.wording import shown
-from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.averaging_window import common_period
-from eel_dynamics.batches.simulate_batch import simulate_batch
-from eel_dynamics.runs.simulate import simulate
-from eel_gaits.laws.law import Law
-from eel_model.body.body import Body
 from eel_model.fins.fins import Fin, RollHold, checked_fins, servos_of
-from eel_model.scene import Scene
+
+from eel_dynamics import Accuracy, Body, Scene, simulate, simulate_batch
+from eel_gaits import Law
 
 SETTLING = 12  # periods from rest, after which the settled motion is searched from
 CLOSE = 1e-9  # rad, and relative to the twist: a motion that repeats so closely has settled

@@ -6,13 +6,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from eel_dynamics.runs.simulate import simulate
-from eel_gaits.laws.law import Law
-from eel_model.body.body import Body
-from eel_model.scene import Scene
 from eel_model.section_data import GRAVITY, sections_of
 
-from eel_gaits import straight, turning
+from eel_dynamics import Body, Scene, simulate
+from eel_gaits import Law, straight, turning
 from eel_studies.steering.linearisation import (
     RESOLUTION,
     STATES,

@@ -21,9 +21,16 @@ from eel_dynamics.accuracy.budget import Budget
 from eel_studies.options import add_scene_options, check_least, chosen
 from eel_studies.outputs import Outputs, add_output_options
 from eel_studies.tradeoff.delivered import COUNT, SEED, deliver, delivered_table, draw_delivered
-from eel_studies.tradeoff.drawing import SIZE, draw_trade
 from eel_studies.tradeoff.measuring import SAMPLE_PERIOD, affordable, bare, measure
-from eel_studies.tradeoff.report import PARTS, budget_line, parts_of_page, reference_line, trade_table
+from eel_studies.tradeoff.report import (
+    PARTS,
+    SIZE,
+    budget_line,
+    draw_trade,
+    parts_of_page,
+    reference_line,
+    trade_table,
+)
 
 NAME = "eel tradeoff"
 DELIVERED = "--delivered"  # as the first option: the other parser

@@ -16,13 +16,9 @@ import numpy as np
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.swim import AT_REST, Swim
-from eel_dynamics.simulation.stopping import SimulationStopped
-from eel_gaits.laws.law import Law
-from eel_gaits.laws.ramp import Ramp
-from eel_gaits.laws.term import Term
-from eel_model.body.body import Body
-from eel_model.scene import Scene
 
+from eel_dynamics import Body, Scene, SimulationStopped
+from eel_gaits import Law, Ramp, Term
 from eel_studies.outputs import Table
 from eel_studies.reference import reference_of
 from eel_studies.workers import in_threads

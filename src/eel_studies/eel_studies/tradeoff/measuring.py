@@ -16,9 +16,8 @@ from eel_dynamics.accuracy.accuracy import PRESETS, Accuracy
 from eel_dynamics.accuracy.budget import Budget
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.runs.companion import relative_errors
-from eel_dynamics.runs.run import Run
-from eel_dynamics.runs.swim import Swim
 
+from eel_dynamics import Run, Swim
 from eel_studies.reference import attempts, cpu_seconds, front, reference_of
 from eel_studies.scene_terms.terms import terms_of
 
