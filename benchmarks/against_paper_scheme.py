@@ -85,8 +85,9 @@ def swum(
     return theirs | {name: np.array(theirs[name]) for name in ("position", "torque")}
 
 
-def cells_of(body: Body, count: int, density: float = 1000.0, viscosity: float = 1e-6) -> dict[str, Any]:
+def cells_of(body: Body, count: int) -> dict[str, Any]:
     """`body`, as heavy as water, cut into `count` equal cells: what the scheme's `Cells` hold."""
+    density, viscosity = 1000.0, 1e-6  # kg/m^3, m^2/s
     x = np.linspace(0.0, body.length, 2 * count + 1)
     a, b = body.half_height(x), body.half_width(x)
     area, behind = np.pi * a * b, np.maximum(x, 1e-9 * body.length)  # at the nose c_f P has a limit

@@ -83,12 +83,19 @@ def _over_topics(plant: Callable[..., Any]) -> float:
         return float(controlling.output().splitlines()[-1])
 
 
-def controller():
-    """Answer samples on odom until the last tick, and print the seconds of a tick."""
+def _node_of(name: str) -> tuple[Any, Any]:
+    """A node, and the executor that spins it."""
     import rclpy
 
     rclpy.init()
-    node = rclpy.create_node("controller")
+    node, executor = rclpy.create_node(name), rclpy.executors.SingleThreadedExecutor()
+    executor.add_node(node)
+    return node, executor
+
+
+def controller():
+    """Answer samples on odom until the last tick, and print the seconds of a tick."""
+    node, executor = _node_of("controller")
     publisher = node.create_publisher(CurvatureSamples, "curvature_samples", keep_all())
     begun, done = [], []
 
@@ -102,8 +109,6 @@ def controller():
         publisher.publish(message)
 
     node.create_subscription(Odometry, "odom", answer, keep_all())
-    executor = rclpy.executors.SingleThreadedExecutor()
-    executor.add_node(node)
     while not done:
         executor.spin_once()
     print((done[0] - begun[0]) / (LAST - FIRST), flush=True)
@@ -111,10 +116,7 @@ def controller():
 
 def echo():
     """Answer each sample of curvature with the odometry of its time, and begin with that of time 0."""
-    import rclpy
-
-    rclpy.init()
-    node = rclpy.create_node("echo")
+    node, executor = _node_of("echo")
     publisher, message = node.create_publisher(Odometry, "odom", keep_all()), Odometry()
 
     def answer(samples):
@@ -123,8 +125,6 @@ def echo():
 
     node.create_subscription(CurvatureSamples, "curvature_samples", answer, keep_all())
     start = node.create_timer(0.1, lambda: None if message.header.stamp.nanosec else publisher.publish(message))
-    executor = rclpy.executors.SingleThreadedExecutor()
-    executor.add_node(node)
     while not message.header.stamp.nanosec:
         executor.spin_once()
     node.destroy_timer(start)

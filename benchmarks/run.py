@@ -21,21 +21,10 @@ from overhead import overhead
 from robots import robots
 from swims import batch, falling_gait, gym, start, ticks
 
+OF_SWIMS = evaluation, flows, falling_gait, wrench, start, ticks, integrators, batch
 FIGURES = {
-    "evaluation": evaluation,
-    "flows": flows,
-    "falling": falling_gait,
-    "wrench": wrench,
-    "start": start,
-    "ticks": ticks,
-    "integrators": integrators,
-    "batch": batch,
-    "visualiser": visualiser,
-    "nodes": nodes,
-    "lockstep": lockstep,
-    "gym": gym,
-    "overhead": overhead,
-    "robots": robots,
+    each.__name__.removesuffix("_gait"): each
+    for each in (*OF_SWIMS, visualiser, nodes, lockstep, gym, overhead, robots)
 }
 OPTIONAL = {"peers": peers, "paper_scheme": paper_scheme}  # on request: they install other people's packages
 

@@ -36,7 +36,6 @@ class Figures:
     heading: float  # rad, likewise, mean over a period
     straight_roll: float  # rad, likewise
     station: float  # greatest distance from the station
-    station_roll: float  # rad
     news: tuple[str, ...]  # what the pilot reported of goals that it could not reach
 
 
@@ -87,7 +86,6 @@ def figures_of(seed: int, fins: Any = None, **scene: Any) -> Figures:
         heading=float(held.heading_error[held.last].max()),
         straight_roll=float(np.abs(held.roll[held.last]).max()),
         station=stayed.distance_from(spot) / settings.length,
-        station_roll=float(np.abs(stayed.roll[stayed.last]).max()),
         news=(*(line for line in swum.news if "cannot" in line), *held.news, *stayed.news),
     )
 
