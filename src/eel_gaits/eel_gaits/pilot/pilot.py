@@ -121,7 +121,7 @@ class Pilot:
 
     def steer(self, step: float) -> np.ndarray:
         """The curvature (6, points) `step` [s] after that of the last call, or of `begin`."""
-        assert self.demand is not None and self.estimate is not None, "`observe` comes first"
+        assert self.demand is not None and self.estimate is not None, "`see` comes first"
         targets = self._regulator.targets(self.demand, self.estimate, self.law, step)
         tempo = max(self.law.values["tempo"][0], self.settings.slowest_tempo)
         return self.law.advance(targets, step, RESPONSE * self.law.period / tempo)

@@ -26,6 +26,7 @@ from rclpy.parameter import Parameter
 from rclpy.subscription import Subscription
 
 from eel_gaits.pilot import goals
+from eel_gaits.pilot.head_motion import HeadMotion
 from eel_gaits.pilot.pilot import Pilot
 from eel_gaits.pilot.settings import GROUPS, GoalParameters, TimingParameters
 from eel_gaits.ros.lead import Lead
@@ -55,7 +56,7 @@ class PilotNode(ParameterNode):
         self._lead = Lead(self._timing.sample_period, self._timing.lead)
         self._last = math.inf  # s, of the last odom
         self._answers: list[CurvatureSamples] = []  # to it
-        self._waiting: list[tuple[float, Odometry]] = []  # by time [s]
+        self._waiting: list[tuple[float, HeadMotion, str]] = []  # time [s] and frame of each
         self._torques: dict[float, float] = {}  # time [s]: torque [N m]
         self._torque_comes = False  # whether swim_state has come, and none has been missed since
         self._publisher = self.create_publisher(CurvatureSamples, "curvature_samples", keep_all())
@@ -123,7 +124,7 @@ class PilotNode(ParameterNode):
             known = " or ".join(shown(each) for each in sorted(self._frames - {""})) or "empty"
             raise ValueError(f"frame_id must be {known}, got {shown(frame)}")
 
-    # -- samples
+    # -- samples: a message with bad values is an error, and left out
 
     def _subscribe_to_torque(self) -> None:
         """Subscribe to swim_state while there is a limit of torque."""
@@ -138,11 +139,7 @@ class PilotNode(ParameterNode):
             self._answer_waiting()
 
     def _receive_state(self, message: SwimState) -> None:
-        try:
-            now = seconds_of(message.header.stamp)
-        except ValueError as error:
-            self._warn_of_torque(f"swim_state is left out: {error}")
-            return
+        now = seconds_of(message.header.stamp)
         known = [time for time in self._torques if time < now][-MOST_WAITING:]  # none of an earlier run
         self._torques = {time: self._torques[time] for time in known} | {now: message.greatest_torque}
         self._torque_comes = True
@@ -154,14 +151,8 @@ class PilotNode(ParameterNode):
         self.get_logger().warning(f"torque_limit is not kept: {reason}", throttle_duration_sec=10.0)
 
     def _receive(self, odometry: Odometry) -> None:
-        try:
-            self._waiting.append((seconds_of(odometry.header.stamp), odometry))
-        except ValueError as error:
-            self._leave_out(error)
+        self._waiting.append((seconds_of(odometry.header.stamp), head_motion(odometry), odometry.header.frame_id))
         self._answer_waiting()
-
-    def _leave_out(self, error: ValueError) -> None:
-        self.get_logger().warning(f"odom left out: {error}", throttle_duration_sec=1.0)
 
     def _answer_waiting(self) -> None:
         """Answer each odom once the torque of its time is known, so that a run repeats itself.
@@ -169,7 +160,7 @@ class PilotNode(ParameterNode):
         Nothing waits before swim_state has come, nor once it stays away.
         """
         while self._waiting:
-            now, odometry = self._waiting[0]
+            now, head, frame = self._waiting[0]
             if self._swim_state is not None:
                 if now not in self._torques and self._torque_comes:
                     if len(self._waiting) <= MOST_WAITING:
@@ -180,19 +171,14 @@ class PilotNode(ParameterNode):
                 self._torques = {time: each for time, each in self._torques.items() if time >= now}
                 self._pilot.limit_torque(torque, self._numbers.torque_limit, now)
             self._waiting.pop(0)
-            self._answer(now, odometry)
+            self._answer(now, head, frame)
 
-    def _answer(self, now: float, odometry: Odometry) -> None:
+    def _answer(self, now: float, head: HeadMotion, frame: str) -> None:
         """Send the samples up to `lead` after `now` [s]. A stamp that goes back is a start, and so is one after a gap;
         one that is repeated gets the same answers."""
         if now != self._last:
             self._answers = []
-            try:
-                head = head_motion(odometry)
-            except ValueError as error:
-                self._leave_out(error)
-                return
-            self._frames = {odometry.header.frame_id.lstrip("/"), ""}
+            self._frames = {frame.lstrip("/"), ""}
             gap = now - self._last
             if gap > LONGEST_GAP:
                 text = f"odom goes on at t = {now:.9g} s, {gap:.9g} s after the last: a new start"
