@@ -12,7 +12,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 from eel_studies.tradeoff.measuring import REFERENCE
-from measuring import MOTION, Lines, median_ratio, times_in_turn
+from measuring import MOTION, Lines, median_ratio, times_in_turn, two_processes_by_one
 
 import eel_gym  # noqa: F401, it registers the environments
 from eel_dynamics import Scene, Simulation, simulate, simulate_batch
@@ -147,6 +147,8 @@ def gym() -> Lines:
         wall = times_in_turn(steps, 5, time.perf_counter)
         gain = median_ratio(wall[1], wall[2])
         yield f"2 threads, actions up to {greatest:g}", gain, "times as fast as 1 thread, wall time"
+    most = two_processes_by_one(steps[1])
+    yield "2 processes", most, "times as much as 1, wall time: the most that 2 threads can gain here"
 
 
 def _bare(scene: Scene) -> None:

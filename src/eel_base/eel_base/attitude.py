@@ -26,25 +26,25 @@ def unit_quaternion(name: str, values: Sequence[float]) -> tuple[float, ...]:
 
 def heading(orientation: Sequence[float] | np.ndarray) -> Any:
     """Angle [rad] from the world's x to the horizontal direction of the head's x, positive to the left, -pi to pi."""
-    x, y, z, w = _components(orientation)
+    x, y, z, w = components(orientation)
     return _plain(np.arctan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z))
 
 
 def climb(orientation: Sequence[float] | np.ndarray) -> Any:
     """Angle [rad] of the head's x above the horizontal, -pi/2 to pi/2."""
-    x, y, z, w = _components(orientation)
+    x, y, z, w = components(orientation)
     sine = 2.0 * (x * z - w * y) / (x * x + y * y + z * z + w * w)
     return _plain(np.arcsin(np.maximum(-1.0, np.minimum(1.0, sine))))
 
 
 def roll(orientation: Sequence[float] | np.ndarray) -> Any:
     """Angle [rad] about the head's x, positive where the right side is down, -pi to pi."""
-    x, y, z, w = _components(orientation)
+    x, y, z, w = components(orientation)
     return _plain(np.arctan2(2.0 * (y * z + w * x), w * w - x * x - y * y + z * z))
 
 
-def _components(orientation: Sequence[float] | np.ndarray) -> Any:
-    """Of one quaternion as floats, which are faster."""
+def components(orientation: Sequence[float] | np.ndarray) -> Any:
+    """Of one quaternion, or another vector, as floats, which are faster; of N as rows (N,)."""
     if isinstance(orientation, np.ndarray) and orientation.ndim == 1:
         return orientation.tolist()
     return orientation

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from eel_base.attitude import components
 from eel_base.quantity import quantity
 from eel_gaits.pilot.head_motion import wrapped
 
@@ -79,9 +80,9 @@ class DepthEnv(SwimmerEnv):
         """Error of the depth, vertical speed, attitude, twist."""
         head = self.head
         climb, roll = head.climb, head.roll
-        forward, left, up = head.velocity
+        spin, (forward, left, up) = map(components, (head.angular_velocity, head.velocity))
         rise = forward * np.sin(climb) + np.cos(climb) * (left * np.sin(roll) + up * np.cos(roll))
-        return [self.error, rise, climb, roll, wrapped(self.heading), *head.angular_velocity, forward, left, up]
+        return [self.error, rise, climb, roll, wrapped(self.heading), *spin, forward, left, up]
 
     @property
     def error(self) -> Any:

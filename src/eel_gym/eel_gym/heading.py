@@ -5,6 +5,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from eel_base.attitude import components
 from eel_base.quantity import quantity
 from eel_gaits.pilot.head_motion import wrapped
 from eel_model.scene import Scene
@@ -72,8 +73,8 @@ class HeadingEnv(SwimmerEnv):
 
     def observe(self) -> list[Any]:
         """Errors of the heading, yaw rate, velocity in the plane."""
-        forward, left, _ = self.head.velocity
-        return [self.error, wrapped(self.target - self.head_heading), self.head.angular_velocity[2], forward, left]
+        (_, _, yaw_rate), (forward, left, _) = map(components, (self.head.angular_velocity, self.head.velocity))
+        return [self.error, wrapped(self.target - self.head_heading), yaw_rate, forward, left]
 
     @property
     def error(self) -> Any:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from eel_base.attitude import components
 from eel_base.quantity import quantity
 from eel_gaits.pilot.head_motion import wrapped
 from eel_model.scene import Scene
@@ -75,9 +76,9 @@ class WayPointsEnv(SwimmerEnv):
 
     def observe(self) -> list[Any]:
         """Bearing and distance of the point, turn to the next, yaw rate, velocity in the plane."""
-        forward, left, _ = self.head.velocity
+        (_, _, yaw_rate), (forward, left, _) = map(components, (self.head.angular_velocity, self.head.velocity))
         bearing, distance, turn = self._way()
-        return [wrapped(bearing - self.heading), distance, turn, self.head.angular_velocity[2], forward, left]
+        return [wrapped(bearing - self.heading), distance, turn, yaw_rate, forward, left]
 
     def reward(self) -> Any:
         """See the class."""

@@ -9,6 +9,7 @@ wave3 is the part of the law that travels in yaw, each wave with its own period 
 critically damped oscillator, so the curvature, its rate and its acceleration never jump.
 """
 
+import copy
 import math
 import operator
 from collections.abc import Mapping
@@ -83,7 +84,7 @@ class SteeredLaw:
             if self.values[name] is not rest:
                 for value, begun in zip(self.values[name], rest, strict=True):
                     value[swimmer] = begun
-        return np.asarray(self._curvature()[swimmer])
+        return copy.copy(self).begin(own_time)
 
     def advance(self, targets: Mapping[str, Any], step: float, response: float | None = None) -> np.ndarray:
         """The curvature at the end of a step of `step` [s] with these `targets` by name; other numbers stay.
@@ -129,11 +130,11 @@ class SteeredLaw:
             if self.values[name] is not self._rest[name]:
                 value, rate, acceleration = self.values[name]
                 factors[self._places(bent, len(self._rows) - 1)] = (-value, -rate, -acceleration)
-        found = np.array(factors).reshape(6, len(self._rows), *self._swimmers)
+        count = len(self._rows)
         if not self._swimmers:
-            return np.asarray(found.dot(self._rows))
-        together: np.ndarray = found.transpose(2, 0, 1).reshape(-1, len(self._rows)) @ self._rows
-        return together.reshape(*self._swimmers, 6, -1)
+            return np.asarray(np.array(factors).reshape(6, count).dot(self._rows))
+        together = np.concatenate(factors).reshape(6, count, -1).transpose(2, 0, 1).reshape(-1, count)
+        return np.asarray(together @ self._rows).reshape(-1, 6, len(self.x))
 
     def _places(self, axis: str, row: int) -> slice:
         """Where factors of a row are: that of the value, the rate and the acceleration about an axis."""

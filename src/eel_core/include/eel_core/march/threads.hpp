@@ -3,9 +3,10 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <functional>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -22,9 +23,11 @@ class Threads {
     }
     ~Threads()
     {
-        over_ = true;
-        ++round_;
-        round_.notify_all();
+        {
+            const std::scoped_lock lock(mutex_);
+            over_ = true;
+        }
+        begun_.notify_all();
         for (std::thread& helper : helpers_) helper.join();
     }
     Threads(const Threads&) = delete;
@@ -35,14 +38,17 @@ class Threads {
     void run(std::size_t items, const Task& task)
     {
         const std::size_t count = shares_.size();
-        for (std::size_t k = 0; k < count; ++k)
-            shares_[k].next = k * items / count, shares_[k].end = (k + 1) * items / count;
-        task_ = &task;
-        ++round_;
-        round_.notify_all();
+        {
+            const std::scoped_lock lock(mutex_);
+            for (std::size_t k = 0; k < count; ++k)
+                shares_[k].next = k * items / count, shares_[k].end = (k + 1) * items / count;
+            task_ = &task, under_way_ = true, ++round_;
+        }
+        begun_.notify_all();
         work(0);
-        ++round_;
-        awaited(busy_, [](unsigned helpers) { return helpers == 0; });
+        std::unique_lock lock(mutex_);
+        under_way_ = false;
+        ended_.wait(lock, [this] { return busy_ == 0; });
     }
 
   private:
@@ -51,8 +57,6 @@ class Threads {
         std::atomic<std::size_t> next{0};
         std::size_t end = 0;
     };
-    // A thread that sleeps wakes late, so it looks about first: longer than Python takes from one call to the next.
-    static constexpr std::chrono::microseconds patience{100};
 
     // Its own items, then what others have left.
     void work(std::size_t own)
@@ -65,34 +69,24 @@ class Threads {
 
     void help(std::size_t own)
     {
-        for (unsigned seen = 0;;) {
-            seen = awaited(round_, [&](unsigned round) { return round % 2 == 1 && round != seen; });
+        std::unique_lock lock(mutex_);
+        for (std::size_t seen = 0;;) {
+            begun_.wait(lock, [&] { return over_ || (under_way_ && round_ != seen); });
             if (over_) return;
-            ++busy_;
-            if (round_ % 2 == 1) work(own);  // else it is over, and nobody waits
-            if (--busy_ == 0) busy_.notify_one();
+            seen = round_, ++busy_;
+            lock.unlock();
+            work(own);
+            lock.lock();
+            if (--busy_ == 0) ended_.notify_one();
         }
     }
 
-    // The `number` once it `fits`.
-    template <class Fits>
-    static unsigned awaited(const std::atomic<unsigned>& number, const Fits& fits)
-    {
-        const auto sleep = std::chrono::steady_clock::now() + patience;
-        for (;;) {
-            const unsigned found = number;
-            if (fits(found)) return found;
-            if (std::chrono::steady_clock::now() < sleep)
-                std::this_thread::yield();
-            else
-                number.wait(found);
-        }
-    }
-
+    std::mutex mutex_;
+    std::condition_variable begun_, ended_;
     const Task* task_ = nullptr;
     std::vector<Share> shares_;
-    std::atomic<unsigned> round_{0}, busy_{0};  // round: odd while it is under way; busy: helpers in it
-    std::atomic<bool> over_{false};
+    std::size_t round_ = 0, busy_ = 0;  // busy: helpers at work
+    bool under_way_ = false, over_ = false;
     std::vector<std::thread> helpers_;
 };
 
