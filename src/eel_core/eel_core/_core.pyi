@@ -280,7 +280,7 @@ class _Modes(Protocol):
     def stops(self) -> Iterable[tuple[int, float, float, float, float]]: ...  # mode, low, high, stiffness, damping
     @property
     def torques(self) -> Iterable[tuple[Any, ...]]: ...
-    # coordinate and function(time [s]); or coordinate, knots (k,) [s], cubics (k - 1, 4) from the highest power on
+    # coordinate and function(time [s]); or coordinate, knots (k,) [s], cubics (k - 1, 4) from the constant on
 
 class Modes(_Shared):
     """The modes of a robot on a grid. It is copied from Python and never changes."""

@@ -35,26 +35,9 @@ inline FunctionFlow function_from(const py::object& function)
     }};
 }
 
-inline SplineFlow spline_from(const py::object& knots, const py::object& coefficients)
-{
-    const Numbers times(knots, "knots"), numbers(coefficients, "coefficients");
-    if (times.size() < 2) throw py::value_error("knots must be two or more, got " + std::to_string(times.size()));
-    numbers.check_size(12 * (times.size() - 1), "coefficients");
-    SplineFlow flow{{times.data(), times.data() + times.size()}, {}};
-    for (std::size_t piece = 0; piece + 1 < times.size(); ++piece) {
-        auto& cubic = flow.pieces.emplace_back();
-        for (std::size_t power = 0; power < 4; ++power) {
-            const double* const v = numbers.data() + 12 * piece + 3 * power;
-            cubic[power] = half_turn(Vector3{v[0], v[1], v[2]});
-        }
-    }
-    return flow;
-}
-
 inline VortexFlow vortices_from(const py::object& rows, double core, const py::object& drift)
 {
-    const Numbers numbers(rows, "vortices");
-    numbers.check_size(numbers.size() / 3 * 3, "vortices");
+    const auto numbers = Numbers::sized(rows, "vortices", Numbers(rows, "vortices").size() / 3 * 3);
     VortexFlow flow{{}, core, vector_from(drift, "drift")};
     for (std::size_t i = 0; i < numbers.size(); i += 3) {
         const double* const v = numbers.data() + i;
@@ -71,16 +54,14 @@ inline GriddedFlow grid_from(const py::tuple& axes, const py::object& velocity)
     for (std::size_t k = 0; k < size.size(); ++k) {
         const Numbers points(axes[k], "axis");
         size[k] = points.size();
-        auto& own = flow.axes[k].points;
-        own.assign(points.data(), points.data() + size[k]);
+        auto& own = flow.axes[k].points = points.vector();
         if (own.empty() || !std::ranges::is_sorted(own, std::less_equal())) throw py::value_error("axes must rise");
         if (k != 1 && k != 2) continue;
         std::ranges::reverse(own);
         for (double& point : own) point = 0.0 - point;
     }
     const auto [times, columns, rows, layers] = size;
-    const Numbers from(velocity, "velocity");
-    from.check_size(3 * times * columns * rows * layers, "velocity");
+    const auto from = Numbers::sized(velocity, "velocity", 3 * times * columns * rows * layers);
     std::vector<GriddedFlow::Point> points;
     points.reserve(from.size() / 3);
     for (std::size_t t = 0; t < times; ++t)
@@ -108,7 +89,10 @@ inline std::shared_ptr<Flow> flow_from(const py::list& sources)
                 ramped.ramps.push_back({start, end, delta});
             flow->sources.emplace_back(std::move(ramped));
         } else if (kind == "spline") {
-            flow->sources.emplace_back(spline_from(source[1], source[2]));
+            SplineFlow spline{cubics_from<Vector3<double>>(source[1], source[2])};
+            for (auto& cubic : spline.velocity.pieces)
+                for (auto& coefficient : cubic) coefficient = half_turn(coefficient);
+            flow->sources.emplace_back(std::move(spline));
         } else if (kind == "shear") {
             flow->sources.emplace_back(
                 ShearFlow{vector(1, "velocity"), vector(2, "across"), number(3), number(4), source[5].cast<bool>()});
@@ -136,10 +120,8 @@ inline Water water_from(const py::object& current, std::shared_ptr<const Flow> f
 // Writes the flow at the places of `rows` (n, 18) into them.
 inline void put_flow(const Flow& flow, double time, const py::object& rows)
 {
-    const Numbers into(rows, "rows", true);
-    constexpr std::size_t columns = FunctionFlow::columns;
-    const std::size_t count = into.size() / columns;
-    into.check_size(columns * count, "rows");
+    const std::size_t count = Numbers(rows, "rows").size() / FunctionFlow::columns;
+    const auto into = Numbers::sized(rows, "rows", FunctionFlow::columns * count, true);
     turn_rows(into.data(), count);
     flow_at(flow, time, into.data(), count);
     turn_rows(into.data(), count);

@@ -30,7 +30,7 @@ class PySampledMarches {
     double start(std::size_t index, const StepBounds& bounds, const py::object& position, const py::object& orientation,
                  const py::object& twist, const py::object& values, std::shared_ptr<Flow> flow)
     {
-        const Numbers sample = sized(values, "values", sample_rows * marches_.points());
+        const Numbers sample = Numbers::sized(values, "values", sample_rows * marches_.points());
         const InUse in_use(in_use_, these);
         marches_[index].set_flow(std::move(flow));
         return marches_[index].start(bounds, vector_from(position, "position"), orientation_from(orientation),
@@ -40,10 +40,9 @@ class PySampledMarches {
     bool advance(const py::object& times, const py::object& values, const py::object& status, const py::object& heads)
     {
         const std::size_t n = marches_.size();
-        const Numbers instants = sized(times, "times", n), into = sized(heads, "heads", 13 * n, true),
-                      samples = sized(values, "values", n * sample_rows * marches_.points());
-        const Array<std::int64_t> found(status, "status", true);
-        found.check_size(n, "status");
+        const Numbers instants = Numbers::sized(times, "times", n), into = Numbers::sized(heads, "heads", 13 * n, true),
+                      samples = Numbers::sized(values, "values", n * sample_rows * marches_.points());
+        const auto found = Array<std::int64_t>::sized(status, "status", n, true);
         const InUse in_use(in_use_, these);
         const py::gil_scoped_release unlocked;
         marches_.advance(instants.data(), samples.data(), found.data(), into.data());
@@ -51,7 +50,7 @@ class PySampledMarches {
     }
     bool put_head(std::size_t index, const py::object& heads)
     {
-        const Numbers into = sized(heads, "heads", 13 * marches_.size(), true);
+        const Numbers into = Numbers::sized(heads, "heads", 13 * marches_.size(), true);
         const InUse in_use(in_use_, these);
         return marches_.put_head(index, into.data());
     }
@@ -60,28 +59,20 @@ class PySampledMarches {
         const InUse in_use(in_use_, these);
         March& march = marches_[index].march();
         const Profiles profiles(1, march.swimmer().stations, wrench, load);
-        const Numbers into = sized(whole, "whole", profiles.begin[Profiles::quantities], true);
+        const Numbers into = Numbers::sized(whole, "whole", profiles.begin[Profiles::quantities], true);
         return march.observe(Observer(march.swimmer(), profiles, into.data()), 0);
     }
     // Of one swimmer: time, works, and counts as of `March`.
-    py::tuple present(std::size_t index)
+    auto present(std::size_t index)
     {
         const InUse in_use(in_use_, these);
         const March& march = marches_[index].march();
         const Counts counts = march.counts();
-        return py::make_tuple(march.time(), march.works(),
-                              py::make_tuple(counts.steps, counts.rejected, counts.evaluations));
+        return std::tuple(march.time(), march.works(), std::tuple(counts.steps, counts.rejected, counts.evaluations));
     }
 
   private:
     static constexpr const char* these = "these marches are";
-
-    static Numbers sized(const py::object& object, const char* name, std::size_t size, bool writable = false)
-    {
-        Numbers numbers(object, name, writable);
-        numbers.check_size(size, name);
-        return numbers;
-    }
 
     static std::shared_ptr<const SampledKind> kind_of(const std::shared_ptr<const Swimmer>& swimmer,
                                                       const Method& method, bool planar, bool ledger,
@@ -106,9 +97,10 @@ inline void bind_sampled_marches(py::module_& module)
     module.def(
         "tabulate",
         [](const py::object& weights, const py::object& values, const py::object& rows) {
-            const Numbers by_point(weights, "weights"), from(values, "values"), into(rows, "rows", true);
+            const Numbers by_point(weights, "weights");
             const std::size_t points = by_point.length(0), columns = by_point.length(1);
-            from.check_size(sample_rows * points, "values"), into.check_size(sample_rows * columns, "rows");
+            const Numbers from = Numbers::sized(values, "values", sample_rows * points),
+                          into = Numbers::sized(rows, "rows", sample_rows * columns, true);
             for (const std::size_t row : {std::size_t{0}, rows_of_axis})
                 tabulate(by_point.data(), points, columns, from.data() + row * points, into.data() + row * columns);
         },

@@ -10,18 +10,14 @@
 
 namespace eel_core {
 
-template <class S>
-py::list list_of(const S& numbers)
-{
-    py::list result;
-    for (const double number : numbers) result.append(number);
-    return result;
-}
-
-inline py::list list_of_state(const State& state)
+// Of a state, what Python sees.
+using PythonState = std::array<double, state_size>;
+inline PythonState shown(const State& state)
 {
     const State turned = half_turn(state);
-    return list_of(std::span(turned).first(state_size));
+    PythonState result;
+    std::copy_n(turned.begin(), state_size, result.begin());
+    return result;
 }
 
 // Held while a call uses what the flag stands for. Throws where another thread does.
@@ -54,10 +50,10 @@ class BoundMarch {
         const Driven in_use(*this);
         return march_.set_twist(twist_from(twist, "twist"));
     }
-    py::list twist()
+    std::array<double, 6> twist()
     {
         const Driven in_use(*this);
-        return list_of(components_of(half_turn(march_.twist())));
+        return components_of(half_turn(march_.twist()));
     }
     int advance(double time)
     {
@@ -76,19 +72,24 @@ class BoundMarch {
         return march_.memory();
     }
     double time() const { return march_.time(); }
-    py::object outside() const
+    std::optional<std::tuple<double, double, double, double>> outside() const
     {
         const auto found = march_.outside();
-        if (!found) return py::none();
+        if (!found) return {};
         const auto [time, x, y, z] = *found;
-        return py::make_tuple(time, 0.0 - x, 0.0 - y, z);
+        return std::tuple(time, 0.0 - x, 0.0 - y, z);
     }
-    py::list state() const { return list_of_state(march_.state()); }
-    py::list works() const { return list_of(std::span(march_.works()).first(std::tuple_size_v<WorkDone>)); }
-    py::tuple counts() const
+    PythonState state() const { return shown(march_.state()); }
+    WorkDone works() const
+    {
+        WorkDone works;
+        std::copy_n(march_.works().begin(), works.size(), works.begin());
+        return works;
+    }
+    auto counts() const
     {
         const Counts counts = march_.counts();
-        return py::make_tuple(counts.steps, counts.rejected, counts.evaluations);
+        return std::tuple(counts.steps, counts.rejected, counts.evaluations);
     }
 
   protected:
@@ -104,13 +105,32 @@ class BoundMarch {
         }
     };
 
-    // Of `samples` instants, which `whole` has room for.
-    Profiles profiles_for(const Numbers& whole, std::size_t samples, bool wrench, bool load) const
+    Profiles profiles_of(std::size_t samples, bool wrench, bool load) const
     {
-        const Swimmer& swimmer = march_.swimmer();
-        const Profiles profiles(samples, swimmer.stations, wrench, load, swimmer.fins.size());
-        whole.check_size(profiles.begin[Profiles::quantities], "whole");
-        return profiles;
+        return {samples, march_.swimmer().stations, wrench, load, march_.swimmer().fins.size()};
+    }
+    static Numbers room_for(const Profiles& profiles, const py::object& whole)
+    {
+        return Numbers::sized(whole, "whole", profiles.begin[Profiles::quantities], true);
+    }
+
+    // Records what `record` of the core gives for so many instants, into `whole` and `works`: how many are complete,
+    // and the status.
+    template <class Record>
+    py::tuple recorded(std::size_t instants, const py::object& whole, const py::object& works, bool wrench, bool load,
+                       const Record& record)
+    {
+        const Profiles profiles = profiles_of(instants, wrench, load);
+        const Numbers into = room_for(profiles, whole);
+        const auto works_into = Numbers::sized(works, "works", std::tuple_size_v<WorkDone> * instants, true);
+        const Driven in_use(*this);
+        std::size_t done = 0;
+        Status status = Status::marched;
+        {
+            const py::gil_scoped_release unlocked;
+            status = record(profiles, into.data(), works_into.data(), done);
+        }
+        return py::make_tuple(done, static_cast<int>(status));
     }
 
     Core march_;
@@ -136,5 +156,16 @@ void bind_what_marches_share(py::class_<Bound>& bound)
         .def_property_readonly("outside", &Bound::outside)
         .def_property_readonly("counts", &Bound::counts);
 }
+
+// Lets copies in Python share the object, which never changes.
+template <class Class>
+void share_in_copies(Class& bound)
+{
+    bound.def("__copy__", [](const py::object& self) { return self; })
+        .def("__deepcopy__", [](const py::object& self, const py::dict&) { return self; }, py::arg("memo"));
+}
+
+// The Python classes of bodies with modes (bind_bent.cpp).
+void bind_bent_marches(py::module_& module);
 
 }  // namespace eel_core

@@ -30,15 +30,24 @@ class Array {
                                   py::format_descriptor<T>::format() + "', got '" + info_.format + "'");
     }
 
+    static Array sized(const py::handle& object, const std::string& name, std::size_t size, bool writable = false)
+    {
+        Array array(object, name, writable);
+        if (array.size() != size)
+            throw py::value_error(name + " must have " + std::to_string(size) + " numbers, got " +
+                                  std::to_string(array.size()));
+        return array;
+    }
+
     std::size_t length(std::size_t axis) const { return static_cast<std::size_t>(info_.shape.at(axis)); }
     std::size_t size() const { return static_cast<std::size_t>(info_.size); }
     T* data() const { return static_cast<T*>(info_.ptr); }
     std::span<const T> span() const { return {data(), size()}; }
-    void check_size(std::size_t wanted, const std::string& name) const
+    // A copy, of the same numbers or of others.
+    template <class Number = T>
+    std::vector<Number> vector() const
     {
-        if (size() != wanted)
-            throw py::value_error(name + " must have " + std::to_string(wanted) + " numbers, got " +
-                                  std::to_string(size()));
+        return std::vector<Number>(data(), data() + size());
     }
 
   private:
@@ -64,8 +73,7 @@ Array<T> array_of(const py::handle& object, const char* name)
 template <std::size_t N>
 std::array<double, N> row_from(const py::handle& object, const std::string& name)
 {
-    const Numbers numbers(object, name);
-    numbers.check_size(N, name);
+    const auto numbers = Numbers::sized(object, name, N);
     std::array<double, N> result;
     std::copy_n(numbers.data(), N, result.begin());
     return result;
@@ -96,123 +104,32 @@ inline State state_from(const py::handle& object)
     return half_turn(y);
 }
 
-// One number for each of n points.
-inline Row points(const py::handle& object, const char* name, std::size_t n)
+// Knots (n,) [s], and the coefficients (n - 1, 4) of cubics from the constant on, of numbers or of vectors.
+template <class Value>
+Cubics<Value> cubics_from(const py::handle& knots, const py::handle& coefficients)
 {
-    const Numbers numbers = array_of<double>(object, name);
-    numbers.check_size(n, name);
-    Row row(blocks_of(n));
-    std::copy_n(numbers.data(), n, row.row(0));
-    return row;
-}
-
-inline Sections sections_from(const py::handle& s, std::size_t n)
-{
-    return {points(s, "mass", n),       points(s, "added2", n),
-            points(s, "added3", n),     points(s, "inertia1", n),
-            points(s, "inertia2", n),   points(s, "inertia3", n),
-            points(s, "added_roll", n), points(s, "lever", n),
-            points(s, "net", n),        points(s, "displaced", n),
-            points(s, "drag2", n),      points(s, "drag3", n),
-            points(s, "drag_roll", n),  points(s, "laminar", n),
-            points(s, "turbulent", n),  points(s, "by_critical_speed", n)};
-}
-
-// `matrix`: rows for the `points`, as those of `PanelRows`.
-inline FromNose from_nose(const py::handle& points, const py::handle& matrix, const Row& weight, std::size_t nodes)
-{
-    const Numbers rows(matrix, "matrix"), fraction = array_of<double>(points, "fraction");
-    const auto first = array_of<std::uint64_t>(points, "first"), count = array_of<std::uint64_t>(points, "count");
-    rows.check_size(array_of<double>(points, "matrix").size(), "matrix");
-    return FromNose({rows.span(), first.span(), count.span(), fraction.span()}, {weight.row(0), nodes});
-}
-
-inline Grid grid_from(const py::handle& g)
-{
-    Grid grid;
-    const auto first = array_of<std::uint64_t>(g, "first"), count = array_of<std::uint64_t>(g, "count");
-    const auto series = array_of<double>(g, "series");
-    const std::size_t n = first.size();
-    if (n == 0) throw py::value_error("grid must have nodes, got none");
-    grid.nodes = n, grid.blocks = blocks_of(n), grid.widest = array_of<double>(g, "matrix").length(1);
-    grid.first.assign(first.span().begin(), first.span().end());
-    grid.count.assign(count.span().begin(), count.span().end());
-    grid.weight = points(g, "weight", n);
-    grid.from_nose = from_nose(g, g.attr("matrix"), grid.weight, n);
-    grid.fraction = points(g, "fraction", n);
-    grid.barycentric = points(g, "barycentric", n);
-    grid.set_steps();
-    for (std::size_t degree = 0; degree <= grid.widest; ++degree) {
-        Row row(grid.blocks);
-        std::copy_n(series.data() + degree * n, n, row.row(0));
-        grid.series.push_back(row);
-    }
-    return grid;
-}
-
-inline std::shared_ptr<const Swimmer> swimmer_from(const py::object& grid, const py::object& sections,
-                                                   const py::object& stations, const std::string& friction,
-                                                   bool resistive, std::size_t first_watched, bool wake,
-                                                   bool inertia_of_water, const py::object& tail_water,
-                                                   bool flow_gradient, double nose_mass, double nose_drag,
-                                                   bool distributed_pressure, bool offset, double righting,
-                                                   double gravity, const py::object& missed_drag)
-{
-    auto swimmer = std::make_shared<Swimmer>();
-    swimmer->grid = grid_from(grid);
-    const std::size_t n = swimmer->grid.nodes;
-    swimmer->sections = sections_from(sections, n);
-    const auto name = std::find(friction_names.begin(), friction_names.end(), friction);
-    if (name == friction_names.end())
-        throw py::value_error("friction is none of FRICTION_LAWS, got '" + friction + "'");
-    swimmer->friction = static_cast<Friction>(name - friction_names.begin());
-    swimmer->resistive = resistive, swimmer->first_watched = first_watched, swimmer->wake = wake ? 1.0 : 0.0;
-    swimmer->inertia_of_water = inertia_of_water ? 1.0 : 0.0, swimmer->flow_gradient = flow_gradient;
-    const Numbers water(tail_water, "tail_water");
-    water.check_size(3, "tail_water");
-    swimmer->tail.added2 = water.data()[0], swimmer->tail.added3 = water.data()[1];
-    swimmer->tail.added_roll = water.data()[2];
-    swimmer->nose_mass = nose_mass, swimmer->nose_drag = nose_drag,
-    swimmer->distributed_pressure = distributed_pressure;
-    swimmer->offset = offset, swimmer->righting = righting, swimmer->gravity = gravity;
-
-    for (std::size_t speed = lateral; const py::handle each : missed_drag) {
-        const Numbers table(each, "missed_drag");
-        if (table.length(0) < 2) throw py::value_error("missed_drag must have two rows or more");
-        table.check_size(table.length(0) * n, "missed_drag");
-        for (std::size_t place = 0; place < table.length(0); ++place) {
-            swimmer->missed_drag.at(speed).emplace_back(blocks_of(n));
-            std::copy_n(table.data() + place * n, n, swimmer->missed_drag[speed].back().row(0));
+    using Parts = Components<Value>;
+    const Numbers times(knots, "knots");
+    if (times.size() < 2) throw py::value_error("knots must be two or more, got " + std::to_string(times.size()));
+    const auto numbers = Numbers::sized(coefficients, "coefficients", 4 * Parts::count * (times.size() - 1));
+    Cubics<Value> cubics{times.vector(), {}};
+    for (const double* next = numbers.data(); cubics.pieces.size() + 1 < times.size();)
+        for (Value& coefficient : cubics.pieces.emplace_back()) {
+            coefficient = Parts::make([&](std::size_t k) { return next[k]; });
+            next += Parts::count;
         }
-        ++speed;
-    }
-
-    const auto before = array_of<std::uint64_t>(stations, "nodes_before");
-    const std::size_t m = swimmer->stations = before.size();
-    swimmer->nodes_before.assign(before.span().begin(), before.span().end());
-    swimmer->at_station = sections_from(stations.attr("sections"), m);
-    swimmer->added2_slope = points(stations, "added2_slope", m);
-    swimmer->added3_slope = points(stations, "added3_slope", m);
-    swimmer->added_roll_slope = points(stations, "added_roll_slope", m);
-    const py::object places = stations.attr("points");
-    swimmer->to_station = from_nose(places, places.attr("matrix"), swimmer->grid.weight, n);
-    const Row none(swimmer->grid.blocks);
-    for (const py::handle rows : stations.attr("missed")) swimmer->missed.push_back(from_nose(places, rows, none, n));
-    if (!swimmer->missed.empty() && swimmer->missed.size() != SectionPart::count)
-        throw py::value_error("stations must have missed rows for each part of a section, or none");
-    return swimmer;
+    return cubics;
 }
 
-// rows (m, 4 (n + s)), as `LawTables::set` takes them.
-inline std::shared_ptr<const LawTables> tables_from(const std::vector<std::size_t>& axis, const py::object& rows,
-                                                    std::size_t n, std::size_t s)
+// What the servos are given: a pair of knots and coefficients each.
+inline std::vector<AngleLaw> angles_from(const py::list& given)
 {
-    const Numbers numbers(rows, "rows");
-    const std::size_t m = axis.size();
-    numbers.check_size(4 * m * (n + s), "rows");
-    auto tables = std::make_shared<LawTables>(axis, n, s);
-    for (std::size_t row = 0; row < m; ++row) tables->set(row, numbers.data() + row * tables->columns());
-    return tables;
+    std::vector<AngleLaw> laws;
+    for (const py::handle each : given) {
+        const auto [knots, coefficients] = each.cast<std::pair<py::object, py::object>>();
+        laws.push_back(cubics_from<double>(knots, coefficients));
+    }
+    return laws;
 }
 
 }  // namespace eel_core

@@ -2,14 +2,15 @@
 // The Python module. EEL_CORE_MODULE is its name: one for each level of the processor.
 #include <pybind11/pybind11.h>
 
-#include "bind_bent.hpp"
-#include "bind_fins.hpp"
+#include <sstream>
+
 #include "bind_flow.hpp"
 #include "bind_sampled.hpp"
 #include "bound_march.hpp"
 #include "eel_core/build_info.hpp"
 #include "eel_core/march/instant.hpp"
 #include "from_python.hpp"
+#include "swimmer_from.hpp"
 
 namespace py = pybind11;
 using namespace eel_core;
@@ -19,46 +20,26 @@ namespace {
 py::dict build_info_as_dict()
 {
     const BuildInfo info = build_info();
-    py::dict result;
-    result["level"] = info.level;
-    result["compiler"] = info.compiler;
-    result["flags"] = info.flags;
-    result["sanitizers"] = info.sanitizers;
-    result["pybind11"] = PYBIND11_TOSTRING(PYBIND11_VERSION_MAJOR) "." PYBIND11_TOSTRING(PYBIND11_VERSION_MINOR);
-    return result;
+    constexpr const char* pybind11 =
+        PYBIND11_TOSTRING(PYBIND11_VERSION_MAJOR) "." PYBIND11_TOSTRING(PYBIND11_VERSION_MINOR);
+    return py::dict(py::arg("level") = info.level, py::arg("compiler") = info.compiler, py::arg("flags") = info.flags,
+                    py::arg("sanitizers") = info.sanitizers, py::arg("pybind11") = pybind11);
 }
 
 // Where the quantities of samples lie in one array: name -> (begin, instants, numbers of an instant).
 py::dict layout(std::size_t samples, std::size_t stations, bool wrench, bool load, std::size_t fins)
 {
-    static constexpr const char* names[Profiles::quantities] = {"position",
-                                                                "orientation",
-                                                                "twist",
-                                                                "head_acceleration",
-                                                                "center_of_mass",
-                                                                "energies",
-                                                                "powers",
-                                                                "closure",
-                                                                "backbone",
-                                                                "section_orientation",
-                                                                "curvature",
-                                                                "curvature_rate",
-                                                                "torque",
-                                                                "force",
-                                                                "fluid_force",
-                                                                "resistive_force",
-                                                                "tail_force",
-                                                                "nose_force",
-                                                                "wake_momentum_rate",
-                                                                "fin_angle",
-                                                                "fin_force"};
+    std::istringstream names(
+        "position orientation twist head_acceleration center_of_mass energies powers closure backbone "
+        "section_orientation curvature curvature_rate torque force fluid_force resistive_force tail_force nose_force "
+        "wake_momentum_rate fin_angle fin_force");
     const Profiles profiles(samples, stations, wrench, load, fins);
     py::dict result;
-    for (std::size_t q = 0; q < Profiles::quantities; ++q)
-        result[names[q]] = py::make_tuple(profiles.begin[q], profiles.instants(q), Profiles::width_of[q],
-                                          profiles.along_body(q) ? 1
-                                          : profiles.of_fins(q)  ? 2
-                                                                 : 0);
+    std::string name;
+    for (std::size_t q = 0; names >> name; ++q) {
+        const int of = profiles.along_body(q) ? 1 : profiles.of_fins(q) ? 2 : 0;
+        result[name.c_str()] = py::make_tuple(profiles.begin[q], profiles.instants(q), Profiles::width_of[q], of);
+    }
     return result;
 }
 
@@ -82,8 +63,8 @@ Quintic quintic_from(const py::object& quintic)
     return {row, start, end};
 }
 
-std::shared_ptr<const LawOnGrid> law_from(std::shared_ptr<const LawTables> tables, double origin, const py::list& waves,
-                                          const py::object& segment, const py::object& blend)
+std::shared_ptr<LawOnGrid> law_from(std::shared_ptr<LawTables> tables, double origin, const py::list& waves,
+                                    const py::object& segment, const py::object& blend)
 {
     auto law = std::make_shared<LawOnGrid>();
     law->tables = std::move(tables), law->origin = origin;
@@ -100,16 +81,13 @@ std::shared_ptr<const LawOnGrid> law_from(std::shared_ptr<const LawTables> table
     return law;
 }
 
-py::list factors_at(const LawOnGrid& law, double time)
+std::array<std::vector<double>, 3> factors_at(const LawOnGrid& law, double time)
 {
     std::vector<Jet> factor(law.tables->rows());
     law.set_factors(time, factor);
-    py::list result;
-    for (std::size_t derivative = 0; derivative < 3; ++derivative) {
-        py::list row;
-        for (const Jet& jet : factor) row.append(jet[derivative]);
-        result.append(row);
-    }
+    std::array<std::vector<double>, 3> result;
+    for (const Jet& jet : factor)
+        for (std::size_t derivative = 0; derivative < 3; ++derivative) result[derivative].push_back(jet[derivative]);
     return result;
 }
 
@@ -167,22 +145,16 @@ class PyMarch : public BoundMarch<March> {
     py::tuple record(const py::object& times, std::size_t first, const py::object& whole, const py::object& works,
                      bool wrench, bool load, double until)
     {
-        const Numbers instants(times, "times"), into(whole, "whole", true), works_into(works, "works", true);
-        const Profiles profiles = profiles_for(into, instants.size(), wrench, load);
-        works_into.check_size(std::tuple_size_v<WorkDone> * instants.size(), "works");
-        const Driven in_use(*this);
-        std::size_t done = 0;
-        Status status = Status::marched;
-        {
-            const py::gil_scoped_release unlocked;
-            status = march_.record(instants.span(), first, until, profiles, into.data(), works_into.data(), done);
-        }
-        return py::make_tuple(done, static_cast<int>(status));
+        const Numbers instants(times, "times");
+        const auto record = [&](const Profiles& profiles, double* into, double* works_into, std::size_t& done) {
+            return march_.record(instants.span(), first, until, profiles, into, works_into, done);
+        };
+        return recorded(instants.size(), whole, works, wrench, load, record);
     }
     bool observe(const py::object& whole, bool wrench, bool load)
     {
-        const Numbers into(whole, "whole", true);
-        const Profiles profiles = profiles_for(into, 1, wrench, load);
+        const Profiles profiles = profiles_of(1, wrench, load);
+        const Numbers into = room_for(profiles, whole);
         const Driven in_use(*this);
         return march_.observe(Observer(march_.swimmer(), profiles, into.data()), 0);
     }
@@ -191,35 +163,34 @@ class PyMarch : public BoundMarch<March> {
     PyMarch(const March& march, bool has_law) : BoundMarch(has_law, march) {}
 };
 
-// Lets copies in Python share the object, which never changes.
-template <class Class>
-void share_in_copies(Class& bound)
-{
-    bound.def("__copy__", [](const py::object& self) { return self; })
-        .def("__deepcopy__", [](const py::object& self, const py::dict&) { return self; }, py::arg("memo"));
-}
+// Members of `StepBounds` by their names in Python.
+constexpr std::pair<const char*, double StepBounds::*> step_bounds[] = {{"tolerance", &StepBounds::tolerance},
+                                                                        {"longest", &StepBounds::longest},
+                                                                        {"smallest", &StepBounds::smallest},
+                                                                        {"length", &StepBounds::length},
+                                                                        {"momentum_floor", &StepBounds::momentum_floor},
+                                                                        {"part_of_span", &StepBounds::part_of_span},
+                                                                        {"most_steps", &StepBounds::most_steps},
+                                                                        {"spare_steps", &StepBounds::spare_steps}};
 
 template <class M>
-py::object rate_of(Instant<M>& instant, const LawOnGrid& law, const py::object& current, double time,
-                   const py::object& state, std::shared_ptr<Flow> flow)
+std::optional<PythonState> rate_of(Instant<M>& instant, const LawOnGrid& law, const py::object& current, double time,
+                                   const py::object& state, std::shared_ptr<Flow> flow)
 {
     State rate{};
     const Water water = water_from(current, std::move(flow));
-    if (!instant.rate(law, water, time, state_from(state), rate)) return py::none();
-    return list_of_state(rate);
+    if (!instant.rate(law, water, time, state_from(state), rate)) return {};
+    return shown(rate);
 }
 
 template <class M>
-py::list inertia_of(Instant<M>& instant, const LawOnGrid& law, double time)
+std::array<std::array<double, M::freedoms>, M::freedoms> inertia_of(Instant<M>& instant, const LawOnGrid& law,
+                                                                    double time)
 {
     const auto inertia = instant.inertia(law, time);
-    py::list rows;
-    for (std::size_t i = 0; i < M::freedoms; ++i) {
-        py::list row;
-        for (std::size_t j = 0; j < M::freedoms; ++j)
-            row.append(inertia.lower[j <= i ? inertia.at(i, j) : inertia.at(j, i)]);
-        rows.append(row);
-    }
+    std::array<std::array<double, M::freedoms>, M::freedoms> rows;
+    for (std::size_t i = 0; i < M::freedoms; ++i)
+        for (std::size_t j = 0; j <= i; ++j) rows[i][j] = rows[j][i] = inertia.lower[inertia.at(i, j)];
     return rows;
 }
 
@@ -244,9 +215,7 @@ py::class_<Instant<M>> bind_instant(py::module_& module, const char* name, const
              py::arg("flow") = py::none())
         .def("repeat_rate", &repeat_rate<M>, py::arg("law"), py::arg("time"), py::arg("state"), py::arg("count"),
              py::arg("flow") = py::none())
-        .def(
-            "powers", [](Instant<M>& instant, const LawOnGrid& law) { return list_of(instant.powers(law)); },
-            py::arg("law"))
+        .def("powers", &Instant<M>::powers, py::arg("law"))
         .def("inertia", &inertia_of<M>, py::arg("law"), py::arg("time"));
 }
 
@@ -267,23 +236,7 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
 
     auto swimmer = py::class_<Swimmer, std::shared_ptr<Swimmer>>(module, "Swimmer");
     share_in_copies(swimmer);
-    swimmer.def(
-        py::init([](const py::object& grid, const py::object& sections, const py::object& stations,
-                    const std::string& friction, bool resistive, std::size_t first_watched, bool wake,
-                    bool inertia_of_water, const py::object& tail_water, bool flow_gradient, double nose_mass,
-                    double nose_drag, bool distributed_pressure, bool offset, double righting, double gravity,
-                    const py::object& missed_drag, const py::list& fins, const py::list& servos) {
-            auto made = std::const_pointer_cast<Swimmer>(swimmer_from(
-                grid, sections, stations, friction, resistive, first_watched, wake, inertia_of_water, tail_water,
-                flow_gradient, nose_mass, nose_drag, distributed_pressure, offset, righting, gravity, missed_drag));
-            add_fins(*made, fins, servos);
-            return made;
-        }),
-        py::arg("grid"), py::arg("sections"), py::arg("stations"), py::kw_only(), py::arg("friction"),
-        py::arg("resistive"), py::arg("first_watched"), py::arg("wake"), py::arg("inertia_of_water"),
-        py::arg("tail_water"), py::arg("flow_gradient"), py::arg("nose_mass"), py::arg("nose_drag"),
-        py::arg("distributed_pressure"), py::arg("offset"), py::arg("righting"), py::arg("gravity"),
-        py::arg("missed_drag") = py::tuple(), py::arg("fins") = py::list(), py::arg("servos") = py::list());
+    swimmer.def(py::init(&swimmer_from), py::arg("grid"), py::arg("sections"), py::arg("stations"));
 
     auto flow_class = py::class_<Flow, std::shared_ptr<Flow>>(module, "Flow");
     share_in_copies(flow_class);
@@ -291,40 +244,23 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
 
     auto law_tables = py::class_<LawTables, std::shared_ptr<LawTables>>(module, "LawTables");
     share_in_copies(law_tables);
-    law_tables.def(py::init([](const std::vector<std::size_t>& axis, const py::object& rows, std::size_t nodes,
-                               std::size_t stations) {
-                       return std::const_pointer_cast<LawTables>(tables_from(axis, rows, nodes, stations));
-                   }),
-                   py::arg("axis"), py::arg("rows"), py::arg("nodes"), py::arg("stations"));
+    law_tables.def(py::init(&tables_from), py::arg("axis"), py::arg("rows"), py::arg("nodes"), py::arg("stations"));
 
     auto curvature_law = py::class_<LawOnGrid, std::shared_ptr<LawOnGrid>>(module, "LawOnGrid");
     share_in_copies(curvature_law);
     curvature_law
-        .def(py::init([](std::shared_ptr<LawTables> tables, double origin, const py::list& waves,
-                         const py::object& segment, const py::object& blend) {
-                 return std::const_pointer_cast<LawOnGrid>(law_from(std::move(tables), origin, waves, segment, blend));
-             }),
-             py::arg("tables"), py::arg("origin"), py::arg("waves"), py::arg("segment"), py::arg("blend"))
+        .def(py::init(&law_from), py::arg("tables"), py::arg("origin"), py::arg("waves"), py::arg("segment"),
+             py::arg("blend"))
         .def("factors", &factors_at, py::arg("time"));
 
     auto bounds = py::class_<StepBounds>(module, "StepBounds");
     share_in_copies(bounds);
-    bounds
-        .def(py::init([](double tolerance, double longest, double smallest, double length, double momentum_floor,
-                         double part_of_span, double most_steps, double spare_steps) {
-                 return StepBounds{tolerance,      longest,      smallest,   length,
-                                   momentum_floor, part_of_span, most_steps, spare_steps};
-             }),
-             py::kw_only(), py::arg("tolerance"), py::arg("longest"), py::arg("smallest"), py::arg("length"),
-             py::arg("momentum_floor"), py::arg("part_of_span"), py::arg("most_steps"), py::arg("spare_steps"))
-        .def_readonly("tolerance", &StepBounds::tolerance)
-        .def_readonly("longest", &StepBounds::longest)
-        .def_readonly("smallest", &StepBounds::smallest)
-        .def_readonly("length", &StepBounds::length)
-        .def_readonly("momentum_floor", &StepBounds::momentum_floor)
-        .def_readonly("part_of_span", &StepBounds::part_of_span)
-        .def_readonly("most_steps", &StepBounds::most_steps)
-        .def_readonly("spare_steps", &StepBounds::spare_steps);
+    bounds.def(py::init([](const py::kwargs& given) {
+        StepBounds made{};
+        for (const auto& [name, member] : step_bounds) made.*member = given[name].cast<double>();
+        return made;
+    }));
+    for (const auto& [name, member] : step_bounds) bounds.def_readonly(name, member);
 
     auto marches = py::class_<PyMarch>(module, "March");
     bind_what_marches_share(marches);
@@ -348,7 +284,7 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
             "loads",
             [](Instant<Space>& instant, const LawOnGrid& law, double time, const py::object& twist) {
                 const auto [tail, drag] = instant.loads(law, time, twist_from(twist, "twist"));
-                return py::make_tuple(list_of(components_of(half_turn(tail))), list_of(components_of(half_turn(drag))));
+                return std::make_tuple(components_of(half_turn(tail)), components_of(half_turn(drag)));
             },
             py::arg("law"), py::arg("time"), py::arg("twist"))
         .def(
@@ -356,11 +292,10 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
             [](Instant<Space>& instant, const LawOnGrid& law, const py::object& times, const py::object& twists,
                const py::object& powers, const py::object& current, std::shared_ptr<Flow> flow,
                const py::object& poses) {
-                const Numbers at(times, "times"), motion(twists, "twists"), into(powers, "powers", true),
-                    heads(poses, "poses");
-                motion.check_size(6 * at.size(), "twists");
-                into.check_size(4 * at.size(), "powers");
-                heads.check_size(7 * at.size(), "poses");
+                const Numbers at(times, "times");
+                const Numbers motion = Numbers::sized(twists, "twists", 6 * at.size()),
+                              into = Numbers::sized(powers, "powers", 4 * at.size(), true),
+                              heads = Numbers::sized(poses, "poses", 7 * at.size());
                 const Water water = water_from(current, std::move(flow));
                 const py::gil_scoped_release unlocked;
                 for (std::size_t k = 0; k < at.size(); ++k) {
@@ -377,8 +312,8 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
             "momentum_rate",
             [](Instant<Space>& instant, const LawOnGrid& law, double time, const py::object& twist,
                const py::object& acceleration) {
-                return list_of(components_of(half_turn(instant.momentum_rate(
-                    law, time, twist_from(twist, "twist"), twist_from(acceleration, "acceleration")))));
+                return components_of(half_turn(instant.momentum_rate(law, time, twist_from(twist, "twist"),
+                                                                     twist_from(acceleration, "acceleration"))));
             },
             py::arg("law"), py::arg("time"), py::arg("twist"), py::arg("acceleration"));
 }

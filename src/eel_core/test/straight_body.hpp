@@ -45,11 +45,13 @@ struct PanelOfOne {
     }
 };
 
-inline Row constant(double value)
+template <class Value = double>
+Field<Value> constant(const Value& value)
 {
-    Row row(blocks_of(panel_nodes));
-    std::fill_n(row.row(0), panel_nodes, value);
-    return row;
+    Field<Value> field(blocks_of(panel_nodes));
+    Components<Value>::each(value,
+                            [&](std::size_t row, double part) { std::fill_n(field.row(row), panel_nodes, part); });
+    return field;
 }
 
 inline std::shared_ptr<Swimmer> straight_body()
@@ -67,30 +69,48 @@ inline std::shared_ptr<Swimmer> straight_body()
     grid.set_steps();
     grid.series.assign(panel_nodes + 1, Row(grid.blocks));
     Sections& sections = swimmer->sections;
-    sections = {constant(body_mass), constant(added_mass), constant(added_mass3), constant(0.01),
-                constant(0.015),     constant(inertia3),   constant(0.0),         constant(0.0),
-                constant(0.0),       constant(body_mass),  constant(0.0),         constant(drag3),
-                constant(0.0),       constant(0.0),        constant(0.0),         constant(0.0)};
+    sections = {constant<Section<double>>({body_mass, added_mass, added_mass3, 0.01, 0.015, inertia3, 0.0}),
+                constant(0.0), constant(0.0), constant(body_mass),
+                constant<DragSection<double>>({0.0, drag3, 0.0, 0.0, 0.0, 0.0})};
     swimmer->tail.added2 = added_mass, swimmer->tail.added3 = added_mass3;
     swimmer->friction = Friction::laminar, swimmer->resistive = false;
     return swimmer;
 }
 
-// Rows of constant curvature 1 rad/m in pitch and yaw; the yaw's factor is f_r(t; 0, 1) times `bend`.
-inline LawOnGrid arc(double bend)
+// The columns of a row of the constant curvature `size` rad/m.
+inline std::vector<double> constant_curvature(double size)
 {
     const PanelOfOne panel;
-    auto tables = std::make_shared<LawTables>(std::vector<std::size_t>{0, 1}, panel_nodes, 0);
     std::vector<double> columns(4 * panel_nodes, 0.0);
-    tables->set(0, columns.data());
     for (std::size_t i = 0; i < panel_nodes; ++i) {
-        columns[i] = 1.0;
-        columns[panel_nodes + i] = panel.fraction[i] - (i > 0 ? panel.fraction[i - 1] : 0.0);
+        columns[i] = size;
+        columns[panel_nodes + i] = size * (panel.fraction[i] - (i > 0 ? panel.fraction[i - 1] : 0.0));
     }
-    tables->set(1, columns.data());
+    return columns;
+}
+
+// No pitch; in yaw the curvature f_r(t; 0, 1) times `bend`, all along the body.
+inline LawOnGrid arc(double bend)
+{
+    auto tables = std::make_shared<LawTables>(std::vector<std::size_t>{0, 1}, panel_nodes, 0);
+    tables->set(0, constant_curvature(0.0).data()), tables->set(1, constant_curvature(1.0).data());
     LawOnGrid law;
     law.tables = tables;
     law.waves = {{0.0, {}, 0, 0}, {0.0, {{{0.0, 1.0, bend}}}, 1, 1}};
+    return law;
+}
+
+// At time 0 the curvature in pitch and yaw, all along the body, and two time derivatives: {{K2, K3}, rates, ...}.
+inline LawOnGrid bending(const std::array<std::array<double, 2>, 3>& curvature)
+{
+    auto tables =
+        std::make_shared<LawTables>(std::vector<std::size_t>{0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1}, panel_nodes, 0);
+    for (std::size_t row = 0; row < 12; ++row) {
+        const double size = row % 6 < 3 ? curvature[row % 6][row / 6] : 0.0;
+        tables->set(row, constant_curvature(size).data());
+    }
+    LawOnGrid law;
+    law.tables = tables, law.segment = {0, 0.0, 1.0};
     return law;
 }
 

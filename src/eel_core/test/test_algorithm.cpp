@@ -2,6 +2,7 @@
 // Motion, accelerations and internal wrench of bodies whose answers are known in closed form.
 #include <gtest/gtest.h>
 
+#include "reference_table.hpp"
 #include "straight_body.hpp"
 
 using namespace eel_core;
@@ -156,4 +157,36 @@ TEST(Algorithm, WrenchAtTheNoseIsTheNosesLoad)
     const auto left = components_of(plus_axial<Space>(work.tail - work.balance, work.nose_force));
     for (const double part : left) EXPECT_NEAR(part, 0.0, 1e-13);
     EXPECT_GT(std::abs(work.nose_force), 1e-3);
+}
+
+// The whole algorithm in space against a table that the Python reference wrote: it shares no code with it, and writes
+// no acceleration of a section.
+TEST(Algorithm, AccelerationsAndWrenchAreThoseOfTheReference)
+{
+    const auto swimmer = straight_body();
+    const auto& [mass, added2, added3, inertia1, inertia2, inertia3_, added_roll] = reference::section;
+    const Section<double> section{mass, added2, added3, inertia1, inertia2, inertia3_, added_roll};
+    const auto& [drag2, drag3_, drag_roll] = reference::drag;
+    swimmer->sections.inertia = constant(section), swimmer->tail = section;
+    swimmer->sections.resistance = constant(DragSection<double>{drag2, drag3_, drag_roll, 0.0, 0.0, 0.0});
+    swimmer->resistive = true;
+    const LawOnGrid law = bending(reference::bend);
+    const auto& t = reference::twist;
+    Workspace<Space> work(*swimmer);
+    const State y = state_with<Space>(*swimmer, law, 0.0, {{t[0], t[1], t[2]}, {t[3], t[4], t[5]}}, work);
+    ASSERT_TRUE(find_motion(*swimmer, law, {}, 0.0, y, work));
+    EXPECT_NEAR(find_powers(*swimmer, law, work)[0], reference::actuator_power,
+                1e-5 * std::abs(reference::actuator_power));
+    find_accelerations(*swimmer, work);
+    const auto acceleration = components_of(work.head_acceleration);
+    for (std::size_t k = 0; k < acceleration.size(); ++k)
+        EXPECT_NEAR(acceleration[k], reference::acceleration[k], 1e-6 * std::abs(reference::acceleration[0])) << k;
+    for (std::size_t i = 0; i < panel_nodes; ++i) {
+        const Vector3<double> v = work.frame.node(i).local(work.velocity.node(i)),
+                              omega = work.frame.node(i).local(work.omega.node(i));
+        const auto wrench =
+            components_of(wrench_at(*swimmer, work, i) - momentum_flux<Space, double>(section, v, omega));
+        for (std::size_t k = 0; k < wrench.size(); ++k)
+            EXPECT_NEAR(wrench[k], reference::wrench[i][k], 1e-5 * std::abs(reference::wrench[0][5])) << i << ", " << k;
+    }
 }

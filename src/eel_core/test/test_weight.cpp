@@ -17,16 +17,15 @@ Swimmer swimmer()
     Swimmer swimmer;
     swimmer.grid.nodes = nodes, swimmer.grid.blocks = blocks_of(nodes), swimmer.grid.widest = nodes;
     Sections& sections = swimmer.sections;
-    for (Row* row : {&sections.mass, &sections.added2, &sections.added3, &sections.inertia1, &sections.inertia2,
-                     &sections.inertia3, &sections.added_roll, &sections.lever, &sections.net, &swimmer.grid.weight})
-        *row = Row(swimmer.grid.blocks);
+    sections.inertia = Field<Section<double>>(swimmer.grid.blocks);
+    sections.lever = sections.net = swimmer.grid.weight = Row(swimmer.grid.blocks);
     for (std::size_t i = 0; i < nodes; ++i) {
         const double s = static_cast<double>(i);
         swimmer.grid.weight.row(0)[i] = 0.1 + 0.01 * s;
-        sections.mass.row(0)[i] = 2.0 - 0.1 * s;
+        sections.inertia.row(0)[i] = 2.0 - 0.1 * s;  // mass
         sections.lever.row(0)[i] = 0.02 - 0.003 * s;
         sections.net.row(0)[i] = 0.1 * s - 0.3;
-        for (Row* row : {&sections.inertia1, &sections.inertia2, &sections.inertia3}) row->row(0)[i] = 0.01 + 0.002 * s;
+        for (const std::size_t moment : {3u, 4u, 5u}) sections.inertia.row(moment)[i] = 0.01 + 0.002 * s;
     }
     swimmer.righting = swimmer.gravity = 9.8;
     swimmer.offset = true;

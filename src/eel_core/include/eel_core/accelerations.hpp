@@ -138,21 +138,28 @@ double water_on_nose(const Swimmer& swimmer, const Workspace<M>& work)
     return work.flowing ? drag + swimmer.nose_mass * work.flow.nose().acceleration().x : drag;
 }
 
-// Acceleration of the head: eq. (60) in accelerations. `work` holds the true velocities, the loads that go with them
-// and the factored inertia. The accelerations of the sections, the density of the balance and the forces of the fins
-// stay those of a head without any.
+// The load that eq. (60) leaves to accelerate the head, where it has no acceleration; `on_nose` [N]: of the water. Sets
+// the accelerations of the shape, and the `density` of the balance for them.
 template <class M>
-void find_head_acceleration(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
+Wrench<M, double> accelerating_load(const Swimmer& swimmer, const LawOnGrid& law, double on_nose, Workspace<M>& work)
 {
     find_shape_accelerations(swimmer, law, work);
-    const double on_nose = water_on_nose(swimmer, work);
     auto left = work.tail + work.drag - set_inertial_density(swimmer, work.shape_acceleration, work);
     left.linear.x += on_nose;
     if (work.flowing) left = left - add_wrench_of_flow(swimmer, work);
     if (swimmer.weighs()) left += work.weight;
     if constexpr (!M::planar)
         if (!work.fins.empty()) left += wrench_of_fins(swimmer, work.shape_acceleration, work);
-    auto head = components_of(left);
+    return left;
+}
+
+// Acceleration of the head: eq. (60) in accelerations. `work` holds the true velocities, the loads that go with them
+// and the factored inertia. The density of the balance and the forces of the fins stay those of a head without any.
+template <class M>
+void find_head_acceleration(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
+{
+    const double on_nose = water_on_nose(swimmer, work);
+    auto head = components_of(accelerating_load(swimmer, law, on_nose, work));
     work.inertia.solve(head);
     work.head_acceleration = Components<Twist<M, double>>::make([&](std::size_t k) { return head[k]; });
     work.nose_force = on_nose - swimmer.nose_mass * work.head_acceleration.linear.x;

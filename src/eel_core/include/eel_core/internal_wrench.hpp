@@ -40,9 +40,7 @@ Wrench<M, Lanes> loads_on_sections(const Swimmer& swimmer, const Workspace<M>& w
     Wrench<M, Lanes> load{};
     const auto frame = work.frame[k];
     if (swimmer.resistive) {
-        const auto drag =
-            resistive_load(swimmer.sections.drag(k), work.friction_laminar[k], work.friction_excess[k],
-                           load_weights(swimmer, work, k), speeds_from(work, width * k), roll_from(work, width * k));
+        const auto drag = weighed_load(swimmer, work, k);
         load = {frame.parent(drag.angular), frame.parent(drag.linear)};
     }
     if constexpr (!M::planar)

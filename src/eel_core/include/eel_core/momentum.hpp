@@ -20,9 +20,11 @@ struct Inertia<Space, T> {
     Symmetric3<T> angular;
     Vector3<T> by_v1, by_v2, by_v3;
     Symmetric3<T> linear;
+    static constexpr std::tuple members{&Inertia::angular, &Inertia::by_v1, &Inertia::by_v2, &Inertia::by_v3,
+                                        &Inertia::linear};
 
     // Of one section with mass matrix A and inertia matrix about the head's axes, at r: r x A, and r x A x r^T.
-    static Inertia of(const Symmetric3<T>& turning, const Symmetric3<T>& a, const Vector3<T>& r)
+    EEL_CORE_INLINE static Inertia of(const Symmetric3<T>& turning, const Symmetric3<T>& a, const Vector3<T>& r)
     {
         const Vector3<T> c1 = cross(r, Vector3<T>{a.xx, a.xy, a.xz}), c2 = cross(r, Vector3<T>{a.xy, a.yy, a.yz}),
                          c3 = cross(r, Vector3<T>{a.xz, a.yz, a.zz});
@@ -33,10 +35,6 @@ struct Inertia<Space, T> {
                 c2,
                 c3,
                 a};
-    }
-    Inertia& operator+=(const Inertia& o)
-    {
-        return angular += o.angular, by_v1 += o.by_v1, by_v2 += o.by_v2, by_v3 += o.by_v3, linear += o.linear, *this;
     }
     // Of the whole body, with the nose's m_o, which goes with V1.
     Factored<6> whole(double nose_mass) const
@@ -57,15 +55,12 @@ template <Number T>
 struct Inertia<Plane, T> {
     T angular, by_v1, by_v2;
     Symmetric2<T> linear;
+    static constexpr std::tuple members{&Inertia::angular, &Inertia::by_v1, &Inertia::by_v2, &Inertia::linear};
 
     static Inertia of(T turning, const Symmetric2<T>& a, const Vector2<T>& r)
     {
         const T c1 = cross(r, Vector2<T>{a.xx, a.xy}), c2 = cross(r, Vector2<T>{a.xy, a.yy});
         return {turning + (r.x * c2 - r.y * c1), c1, c2, a};
-    }
-    Inertia& operator+=(const Inertia& o)
-    {
-        return angular += o.angular, by_v1 += o.by_v1, by_v2 += o.by_v2, linear += o.linear, *this;
     }
     Factored<3> whole(double nose_mass) const
     {

@@ -5,61 +5,88 @@
 // is a vector in space and a number in the plane. Every formula of the mechanics is written once over both.
 #pragma once
 
+#include <tuple>
+
 #include "eel_core/algebra/numbers.hpp"
 
 namespace eel_core {
 
-// Components of a compound, one after the other: what `Field` and sums over lanes need to know of it.
+// Inlined before anything else is decided, so that members of compounds are in registers.
+#define EEL_CORE_INLINE __attribute__((always_inline))
+
+// Compounds of numbers, or of further compounds, name their members in order; what adds, sums and stores them goes
+// through these.
+template <class T>
+concept Compound = requires { T::members; };
+
+// The same compound of another number.
+// clang-format off
+template <class C, Number B> struct Rebound;
+template <Number T, Number B> struct Rebound<T, B> { using Type = B; };
+template <template <Number> class C, Number T, Number B> struct Rebound<C<T>, B> { using Type = C<B>; };
+template <template <class, Number> class C, class M, Number T, Number B> struct Rebound<C<M, T>, B> { using Type = C<M, B>; };
+// clang-format on
+template <class C, Number B>
+using With = typename Rebound<C, B>::Type;
+
+// Components of a compound, one after the other.
 template <class T>
 struct Components;
 template <Number T>
 struct Components<T> {
     static constexpr std::size_t count = 1;
-    template <Number B>
-    using With = B;  // the same compound of another number
-    template <class Make>
-    static T make(Make component, std::size_t first = 0)
+    EEL_CORE_INLINE static T make(const auto& component, std::size_t first = 0) { return component(first); }
+    EEL_CORE_INLINE static void each(const T& value, const auto& take, std::size_t first = 0) { take(first, value); }
+};
+template <Compound C, std::size_t K>
+inline constexpr auto member = std::get<K>(C::members);
+template <Compound C>
+using Members = std::make_index_sequence<std::tuple_size_v<decltype(C::members)>>;
+template <Compound C>
+struct Components<C> {
+    template <std::size_t K>
+    using Member = Components<std::decay_t<decltype(std::declval<C>().*member<C, K>)>>;
+    static constexpr std::size_t count = []<std::size_t... K>(std::index_sequence<K...>) {
+        return (Member<K>::count + ...);
+    }(Members<C>());
+    EEL_CORE_INLINE static C make(const auto& component, std::size_t first = 0)
     {
-        return component(first);
+        return [&]<std::size_t... K>(std::index_sequence<K...>) EEL_CORE_INLINE {
+            return C{Member<K>::make(component, std::exchange(first, first + Member<K>::count))...};
+        }(Members<C>());
     }
-    template <class Take>
-    static void each(const T& value, Take take, std::size_t first = 0)
+    EEL_CORE_INLINE static void each(const C& value, const auto& take, std::size_t first = 0)
     {
-        take(first, value);
+        [&]<std::size_t... K>(std::index_sequence<K...>) EEL_CORE_INLINE {
+            ((Member<K>::each(value.*member<C, K>, take, first), first += Member<K>::count), ...);
+        }(Members<C>());
     }
 };
+
+template <Compound C>
+EEL_CORE_INLINE inline C& operator+=(C& a, const C& b)
+{
+    [&]<std::size_t... K>(std::index_sequence<K...>)
+        EEL_CORE_INLINE { ((a.*member<C, K> += b.*member<C, K>), ...); }(Members<C>());
+    return a;
+}
 
 template <Number T>
 struct Vector2 {
     T x, y;
-    Vector2& operator+=(const Vector2& other) { return x += other.x, y += other.y, *this; }
+    static constexpr std::tuple members{&Vector2::x, &Vector2::y};
 };
-
 template <Number T>
 struct Vector3 {
     T x, y, z;
-    Vector3& operator+=(const Vector3& other) { return x += other.x, y += other.y, z += other.z, *this; }
+    static constexpr std::tuple members{&Vector3::x, &Vector3::y, &Vector3::z};
 };
-
 template <Number T>
 Vector2(T, T) -> Vector2<T>;  // Clang deduces an aggregate's arguments from version 17 on only
 template <Number T>
 Vector3(T, T, T) -> Vector3<T>;
 
 // clang-format off
-template <Number T> struct Components<Vector2<T>> {
-    static constexpr std::size_t count = 2;
-    template <Number B> using With = Vector2<B>;
-    template <class Make> static Vector2<T> make(Make component, std::size_t first = 0) { return {component(first), component(first + 1)}; }
-    template <class Take> static void each(const Vector2<T>& v, Take take, std::size_t first = 0) { take(first, v.x), take(first + 1, v.y); }
-};
-template <Number T> struct Components<Vector3<T>> {
-    static constexpr std::size_t count = 3;
-    template <Number B> using With = Vector3<B>;
-    template <class Make> static Vector3<T> make(Make component, std::size_t first = 0) { return {component(first), component(first + 1), component(first + 2)}; }
-    template <class Take> static void each(const Vector3<T>& v, Take take, std::size_t first = 0) { take(first, v.x), take(first + 1, v.y), take(first + 2, v.z); }
-};
-
 template <Number A, Number B> auto operator+(Vector2<A> a, Vector2<B> b) { return Vector2{a.x + b.x, a.y + b.y}; }
 template <Number A, Number B> auto operator+(Vector3<A> a, Vector3<B> b) { return Vector3{a.x + b.x, a.y + b.y, a.z + b.z}; }
 template <Number A, Number B> auto operator-(Vector2<A> a, Vector2<B> b) { return Vector2{a.x - b.x, a.y - b.y}; }
@@ -86,6 +113,7 @@ template <Number A, Number B> auto cross(A, B) { return decltype(A() * B())(0.0)
 template <Number T>
 struct Frame3 {
     Vector3<T> axis1, axis2, axis3;
+    static constexpr std::tuple members{&Frame3::axis1, &Frame3::axis2, &Frame3::axis3};
 
     Vector3<T> t1() const { return axis1; }
     template <Number B>
@@ -103,6 +131,7 @@ struct Frame3 {
 template <Number T>
 struct Frame2 {
     T cosine, sine;
+    static constexpr std::tuple members{&Frame2::cosine, &Frame2::sine};
 
     Vector2<T> t1() const { return {cosine, sine}; }
     template <Number B>
@@ -127,35 +156,17 @@ struct Frame2 {
     }
 };
 
-// clang-format off
-template <Number T> struct Components<Frame3<T>> {
-    static constexpr std::size_t count = 9;
-    template <Number B> using With = Frame3<B>;
-    using V = Components<Vector3<T>>;
-    template <class Make> static Frame3<T> make(Make component, std::size_t first = 0) { return {V::make(component, first), V::make(component, first + 3), V::make(component, first + 6)}; }
-    template <class Take> static void each(const Frame3<T>& f, Take take, std::size_t first = 0) { V::each(f.axis1, take, first), V::each(f.axis2, take, first + 3), V::each(f.axis3, take, first + 6); }
-};
-template <Number T> struct Components<Frame2<T>> {
-    static constexpr std::size_t count = 2;
-    template <Number B> using With = Frame2<B>;
-    template <class Make> static Frame2<T> make(Make component, std::size_t first = 0) { return {component(first), component(first + 1)}; }
-    template <class Take> static void each(const Frame2<T>& f, Take take, std::size_t first = 0) { take(first, f.cosine), take(first + 1, f.sine); }
-};
-// clang-format on
-
 // Symmetric matrices.
 template <Number T>
 struct Symmetric2 {
     T xx, xy, yy;
-    Symmetric2& operator+=(const Symmetric2& o) { return xx += o.xx, xy += o.xy, yy += o.yy, *this; }
+    static constexpr std::tuple members{&Symmetric2::xx, &Symmetric2::xy, &Symmetric2::yy};
 };
 template <Number T>
 struct Symmetric3 {
     T xx, xy, xz, yy, yz, zz;
-    Symmetric3& operator+=(const Symmetric3& o)
-    {
-        return xx += o.xx, xy += o.xy, xz += o.xz, yy += o.yy, yz += o.yz, zz += o.zz, *this;
-    }
+    static constexpr std::tuple members{&Symmetric3::xx, &Symmetric3::xy, &Symmetric3::xz,
+                                        &Symmetric3::yy, &Symmetric3::yz, &Symmetric3::zz};
 };
 template <Number T>
 Vector2<T> operator*(const Symmetric2<T>& a, const Vector2<T>& v)
@@ -203,8 +214,8 @@ template <class M, Number T>
 struct Spatial {
     Angular<M, T> angular;
     Vector<M, T> linear;
+    static constexpr std::tuple members{&Spatial::angular, &Spatial::linear};
 
-    Spatial& operator+=(const Spatial& other) { return angular += other.angular, linear += other.linear, *this; }
     template <Number B>
     friend auto operator+(const Spatial& a, const Spatial<M, B>& b)
     {
@@ -229,28 +240,9 @@ using Wrench = Spatial<M, T>;  // torque [N m], force [N]; or per length
 template <class M, Number T>
 using Momentum = Spatial<M, T>;  // [kg m^2/s], [kg m/s]
 
-template <class M, Number T>
-struct Components<Spatial<M, T>> {
-    using AngularPart = Components<Angular<M, T>>;
-    using Linear = Components<Vector<M, T>>;
-    static constexpr std::size_t count = AngularPart::count + Linear::count;
-    template <Number B>
-    using With = Spatial<M, B>;
-    template <class Make>
-    static Spatial<M, T> make(Make component, std::size_t first = 0)
-    {
-        return {AngularPart::make(component, first), Linear::make(component, first + AngularPart::count)};
-    }
-    template <class Take>
-    static void each(const Spatial<M, T>& s, Take take, std::size_t first = 0)
-    {
-        AngularPart::each(s.angular, take, first), Linear::each(s.linear, take, first + AngularPart::count);
-    }
-};
-
 // The wrench about the head of a section at `position` with such axes, from its torque and force in its own axes: Ad*.
 template <class M>
-auto about_head(const auto& frame, const auto& position, const auto& in_section)
+EEL_CORE_INLINE inline auto about_head(const auto& frame, const auto& position, const auto& in_section)
 {
     const auto force = frame.parent(in_section.linear);
     return Wrench<M, decltype(force.x)>{frame.parent(in_section.angular) + cross(position, force), force};
@@ -263,9 +255,6 @@ Wrench<M, T> plus_axial(Wrench<M, T> wrench, T force)
     wrench.linear.x += force;
     return wrench;
 }
-
-template <class S, Number B>
-using With = typename Components<S>::template With<B>;
 
 // Sum of the lanes of each component.
 template <class S>

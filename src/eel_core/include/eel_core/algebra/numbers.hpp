@@ -179,6 +179,15 @@ inline Lanes with_sign_of(Lanes value, Lanes sign)
 
 // -- functions
 
+// What `of` gives for each lane by itself.
+template <class Of>
+Lanes lane_by_lane(Lanes value, const Of& of)
+{
+    Lanes::Native result;
+    for (std::size_t lane = 0; lane < width; ++lane) result[lane] = of(value[lane]);
+    return Lanes(result);
+}
+
 inline double abs(double value) { return std::abs(value); }
 inline Lanes abs(Lanes value) { return with_sign_of(value, Lanes(1.0)); }
 
@@ -190,9 +199,7 @@ inline Lanes sqrt(Lanes value)
 #elif defined(__AVX__)
     return Lanes(_mm256_sqrt_pd(value.native()));
 #else
-    Lanes::Native result;
-    for (std::size_t lane = 0; lane < width; ++lane) result[lane] = std::sqrt(value[lane]);
-    return Lanes(result);
+    return lane_by_lane(value, [](double each) { return std::sqrt(each); });
 #endif
 }
 
@@ -204,9 +211,7 @@ inline Lanes round_down(Lanes value)
 #elif defined(__AVX__)
     return Lanes(_mm256_floor_pd(value.native()));
 #else
-    Lanes::Native result;
-    for (std::size_t lane = 0; lane < width; ++lane) result[lane] = std::floor(value[lane]);
-    return Lanes(result);
+    return lane_by_lane(value, [](double each) { return std::floor(each); });
 #endif
 }
 
@@ -296,18 +301,15 @@ template <Number T>
 T inverse_fifth_root(T x)
 {
     constexpr double offset = 1.2 * (1023.0 - 0.045) * 4503599627370496.0;  // of the exponent's bits
+    const auto guess = [](double each) {
+        const auto number = static_cast<double>(std::bit_cast<std::int64_t>(each));
+        return std::bit_cast<double>(static_cast<std::int64_t>(offset - 0.2 * number));
+    };
     T y;
-    if constexpr (std::same_as<T, double>) {
-        const auto number = static_cast<double>(std::bit_cast<std::int64_t>(x));
-        y = std::bit_cast<double>(static_cast<std::int64_t>(offset - 0.2 * number));
-    } else {
-        Lanes::Native guess;
-        for (std::size_t lane = 0; lane < width; ++lane) {
-            const auto number = static_cast<double>(std::bit_cast<std::int64_t>(x[lane]));
-            guess[lane] = std::bit_cast<double>(static_cast<std::int64_t>(offset - 0.2 * number));
-        }
-        y = Lanes(guess);
-    }
+    if constexpr (std::same_as<T, double>)
+        y = guess(x);
+    else
+        y = lane_by_lane(x, guess);
     for (int step = 0; step < 2; ++step) {
         const T square = y * y, e = 1.0 - x * (square * square * y);
         y += y * e * (0.2 + e * (0.12 + e * 0.088));

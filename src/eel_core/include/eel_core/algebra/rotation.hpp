@@ -33,8 +33,6 @@ struct Quaternion {
 template <Number T>
 struct Components<Quaternion<T>> {
     static constexpr std::size_t count = 4;
-    template <Number B>
-    using With = Quaternion<B>;
     template <class Make>
     static Quaternion<T> make(Make component, std::size_t first = 0)
     {

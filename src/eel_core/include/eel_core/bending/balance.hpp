@@ -79,13 +79,7 @@ class BentBody {
         return singular == Definite::definite;
     }
 
-    // Motion and loads of a configured body, from the momenta of the coordinates.
-    void move_by_momenta(const double* momenta, const double* x)
-    {
-        find_rates_of(momenta);
-        move(x);
-    }
-    // `rate` alone; `move` goes on.
+    // `rate` of a configured body, from the momenta of the coordinates; `move` goes on.
     void find_rates_of(const double* momenta)
     {
         const auto whole = components_of(work.momentum);
@@ -169,14 +163,8 @@ class BentBody {
         for (std::size_t m = 0; m < modes_->modes; ++m) work.factor[law.first_mode + m][1] = rate[m];
         for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k)
             work.curvature_rate.store(k, law.law.combine_both(law.law.tables->node, work.factor, 1, k));
-        find_shape_accelerations(*swimmer_, law.law, work);
         const double on_nose = water_on_nose(*swimmer_, work);
-        auto left = work.tail + work.drag - set_inertial_density(*swimmer_, work.shape_acceleration, work);
-        left.linear.x += on_nose;
-        if (work.flowing) left = left - add_wrench_of_flow(*swimmer_, work);
-        if (swimmer_->weighs()) left += work.weight;
-        if constexpr (!M::planar)
-            if (!work.fins.empty()) left += wrench_of_fins(*swimmer_, work.shape_acceleration, work);
+        const auto left = accelerating_load(*swimmer_, law.law, on_nose, work);
         imposed_at_rest_ = power_of_shape(*swimmer_, work);
         for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {  // about the sections, weighed
             Wrench<M, Lanes> taken = work.density[k];

@@ -2,24 +2,33 @@
 // A swimmer with modes on its way: as `March`, with the coordinates, their rates, and what drives them besides.
 #pragma once
 
+#include <numeric>
+
 #include "eel_core/bending/rosenbrock.hpp"
 #include "eel_core/march/marching.hpp"
 
 namespace eel_core {
 
-// Where the numbers of an instant's coordinates lie: in one row of doubles.
+// Where the numbers of an instant's coordinates lie: in one row of doubles. The moment of a mode is the integral of B .
+// C.
 struct CoordinateRow {
-    enum Single : std::size_t { elastic, rotors, motor_power, damping_power, damping_work, singles };
-    std::size_t coordinates, modes, servos;
+    // clang-format off
+    enum Quantity : std::size_t {
+        x, rate, acceleration, moment, torque, pushing, elastic, rotors, motor_power, damping_power, damping_work, quantities
+    };
+    static constexpr std::array<const char*, quantities> names{
+        "x", "rate", "acceleration", "moment", "torque", "pushing", "elastic", "rotors", "motor_power", "damping_power",
+        "damping_work"};
+    // clang-format on
+    std::array<std::size_t, quantities + 1> begin{};  // of each quantity; the last: the size of the row
 
-    std::size_t x() const { return 0; }
-    std::size_t rate() const { return coordinates; }
-    std::size_t acceleration() const { return 2 * coordinates; }
-    std::size_t moment() const { return 3 * coordinates; }  // of the modes: integral of B . C
-    std::size_t torque() const { return moment() + modes; }
-    std::size_t pushing() const { return torque() + servos; }
-    std::size_t single() const { return pushing() + coordinates; }  // energies [J], powers [W] and a work [J]
-    std::size_t size() const { return single() + singles; }
+    explicit CoordinateRow(const Modes& modes)
+    {
+        const std::size_t c = modes.coordinates;
+        const std::array<std::size_t, quantities> count{c, c, c, modes.modes, modes.servos.size(), c, 1, 1, 1, 1, 1};
+        std::partial_sum(count.begin(), count.end(), begin.begin() + 1);
+    }
+    std::size_t size() const { return begin.back(); }
 };
 
 class BentMarch : public Marching<BentMarch, BentStepper> {
@@ -42,7 +51,7 @@ class BentMarch : public Marching<BentMarch, BentStepper> {
         const std::size_t work = std::visit([](const auto& stepper) { return stepper.body().bytes(); }, stepper_);
         return work + swimmer_->grid.from_nose.bytes();
     }
-    CoordinateRow row() const { return {modes_->coordinates, modes_->modes, modes_->servos.size()}; }
+    CoordinateRow row() const { return CoordinateRow(*modes_); }
 
     // Goes on in another grid, with the same coordinates at the same rates; the next step begins anew.
     void change(const std::shared_ptr<const Swimmer>& swimmer, std::shared_ptr<const Modes> modes, bool planar)
@@ -127,7 +136,7 @@ class BentMarch : public Marching<BentMarch, BentStepper> {
         const bool found = std::visit([&](auto& stepper) { return show(stepper, numbers, actuators); }, stepper_);
         if (!found) return false;
         Workspace<Space>& work = workspace();
-        set_shape(numbers + row().acceleration(), work);
+        set_shape(numbers + row().begin[CoordinateRow::acceleration], work);
         const Observer observer(*swimmer_, profiles, whole);
         if (!observer.observe(settings_.law.law, water(), time_, state_, sample, work, here_)) return false;
         profiles.at(whole, Profiles::energies, sample)[0] += rotors();
@@ -202,19 +211,19 @@ class BentMarch : public Marching<BentMarch, BentStepper> {
         body.find_rates(settings_.law, settings_.water.current, state_);
         body.find_accelerations_and_drift(settings_.law);
         actuators = body.powers()[0];
-        const CoordinateRow at = row();
-        std::ranges::copy(x_, numbers + at.x());
-        std::ranges::copy(rate_, numbers + at.rate());
-        std::ranges::copy(body.acceleration, numbers + at.acceleration());
+        using Of = CoordinateRow;
+        const auto at = row().begin;
+        std::ranges::copy(x_, numbers + at[Of::x]);
+        std::ranges::copy(rate_, numbers + at[Of::rate]);
+        std::ranges::copy(body.acceleration, numbers + at[Of::acceleration]);
         for (std::size_t m = 0; m < modes_->modes; ++m)
-            numbers[at.moment() + m] = body.forces.total[m] + modes_->inertia[m] * body.acceleration[m];
-        std::ranges::copy(body.forces.torque, numbers + at.torque());
-        std::ranges::copy(body.forces.pushing, numbers + at.pushing());
-        double* const single = numbers + at.single();
-        single[CoordinateRow::elastic] = elastic_, single[CoordinateRow::rotors] = rotors();
-        single[CoordinateRow::motor_power] = body.forces.motor_power;
-        single[CoordinateRow::damping_power] = body.forces.damping_power;
-        single[CoordinateRow::damping_work] = works_.back();
+            numbers[at[Of::moment] + m] = body.forces.total[m] + modes_->inertia[m] * body.acceleration[m];
+        std::ranges::copy(body.forces.torque, numbers + at[Of::torque]);
+        std::ranges::copy(body.forces.pushing, numbers + at[Of::pushing]);
+        numbers[at[Of::elastic]] = elastic_, numbers[at[Of::rotors]] = rotors();
+        numbers[at[Of::motor_power]] = body.forces.motor_power;
+        numbers[at[Of::damping_power]] = body.forces.damping_power;
+        numbers[at[Of::damping_work]] = works_.back();
         return true;
     }
 

@@ -9,7 +9,6 @@
 #pragma once
 
 #include "eel_core/algorithm.hpp"
-#include "eel_core/bending/dense.hpp"
 #include "eel_core/bending/modes.hpp"
 
 namespace eel_core {
@@ -78,8 +77,7 @@ class Columns {
         for (std::size_t m = 0; m < modes.modes; ++m) {
             set_column(swimmer, modes, law, m, work);
             set_momentum(swimmer, m, work);
-            for (std::size_t other = 0; other <= m; ++other)
-                mass.at(head + m, head + other) = product(swimmer, m, other);
+            for (std::size_t other = 0; other <= m; ++other) mass.at(head + m, head + other) = product(m, other);
         }
         for (std::size_t i = modes.modes; i < modes.coordinates; ++i)
             for (std::size_t j = 0; j < head + i; ++j) mass.at(head + i, j) = 0.0;
@@ -105,16 +103,16 @@ class Columns {
         }
         return total(sum);
     }
+    // A wrench on the section of a `node`, about it, times the column's motion there.
+    double work_at(std::size_t node, std::size_t m, const Wrench<M, double>& wrench) const
+    {
+        return dot(column[m].omega.node(node), wrench.angular) + dot(column[m].velocity.node(node), wrench.linear);
+    }
 
     // Motion of a column at the centre of pressure of a fin.
     Vector3<double> at(const FinMotion& fin, std::size_t node, std::size_t m) const
     {
         return column[m].velocity.node(node) + cross(column[m].omega.node(node), fin.arm);
-    }
-    // A wrench on the section of a `node`, about it, times the column's motion there.
-    double work_at(std::size_t node, std::size_t m, const Wrench<M, double>& wrench) const
-    {
-        return dot(column[m].omega.node(node), wrench.angular) + dot(column[m].velocity.node(node), wrench.linear);
     }
 
   private:
@@ -158,6 +156,10 @@ class Columns {
         const std::size_t begin = stretches[own.first_stretch].begin / width,
                           end = (stretches[own.last_stretch - 1].end + width - 1) / width;
         const std::size_t behind = own.last_stretch * FromNose::parts;
+        const auto integrate = [&]<class Value>(std::size_t first_row, Field<Value>& result) {
+            swimmer.grid.from_nose.integrate(work.integrand, first_row, Value{}, result, result, own.first_stretch,
+                                             own.last_stretch);
+        };
         if constexpr (M::planar) {
             for (std::size_t k = own.first_block; k < blocks_; ++k)
                 own.omega.store(k, law.law.tables->angle.at(law.first_mode + m, k)[0]);
@@ -168,13 +170,12 @@ class Columns {
                 const auto turned = modes.axis[m] == LawOnGrid::pitch ? b * frame.axis2 : b * frame.axis3;
                 work.integrand.store(k, {turned, Vector<M, Lanes>{}});
             }
-            swimmer.grid.from_nose.integrate_within(work.integrand, 0, own.first_stretch, own.last_stretch, own.omega);
+            integrate(0, own.omega);
         }
         constexpr std::size_t linear = Components<Angular<M, Lanes>>::count;
         for (std::size_t k = begin; k < end; ++k)
             work.integrand.store(k, {own.omega[k], cross(own.omega[k], work.frame[k].t1())});
-        swimmer.grid.from_nose.integrate_within(work.integrand, linear, own.first_stretch, own.last_stretch,
-                                                own.velocity);
+        integrate(linear, own.velocity);
         if (behind >= blocks_) return;
         const std::size_t last = behind * width - 1;
         const auto omega = own.omega.node(last);
@@ -206,7 +207,7 @@ class Columns {
         momentum[head + m] = total(imposed);
     }
 
-    double product(const Swimmer&, std::size_t m, std::size_t other) const
+    double product(std::size_t m, std::size_t other) const
     {
         const std::size_t later = column[m].first_block >= column[other].first_block ? m : other;
         return work_of(later, column[later == m ? other : m].momentum);

@@ -33,22 +33,10 @@ struct Stop {
     double stiffness, damping;
 };
 
-// A torque that is given over time: by a function, or by cubics between knots, whose ends are held.
+// A torque that is given over time.
 struct GivenTorque {
     std::size_t coordinate;
-    std::vector<double> knots, cubics;  // [s]; (pieces, 4), from the highest power on
-    std::function<double(double)> function;
-
-    double at(double time) const
-    {
-        if (function) return function(time);
-        const double t = std::clamp(time, knots.front(), knots.back());
-        const auto behind = std::upper_bound(knots.begin() + 1, knots.end() - 1, t);
-        const auto piece = static_cast<std::size_t>(behind - knots.begin()) - 1;
-        const double* const c = cubics.data() + 4 * piece;
-        const double s = t - knots[piece];
-        return ((c[0] * s + c[1]) * s + c[2]) * s + c[3];
-    }
+    std::function<double(double)> at;
 };
 
 struct Modes {

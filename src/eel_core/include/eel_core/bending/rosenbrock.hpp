@@ -32,6 +32,11 @@ struct BentSettings {
 inline constexpr std::size_t bent_works = std::tuple_size_v<Powers> + 1;
 using BentPowers = std::array<double, bent_works>;  // [W]: `Powers`, and that of the dampers
 
+inline void add_scaled(double factor, const std::vector<double>& x, std::vector<double>& y)
+{
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] += factor * x[i];
+}
+
 struct Ros34Pw2 {
     static constexpr std::size_t stages = 4;
     using Rows = std::array<std::array<double, stages>, stages>;
@@ -57,7 +62,7 @@ struct BentPoint {
     double time = 0.0;
     BentState y;
     State head_rate{};
-    std::vector<double> momentum_rate, rate, acceleration, drift, force;
+    std::vector<double> momentum_rate, rate, drift, force;
     std::vector<double> stiffness, damping, in_time;  // of the forces
     Frame<M, double> head{};                          // axes of the head
     Definite mass;
@@ -195,7 +200,8 @@ class BentStepper {
     {
         ++counts_.evaluations;
         if (!body_.configure_at(settings.law, settings.water, time, y.head, y.x.data())) return false;
-        body_.move_by_momenta(y.momentum.data(), y.x.data());
+        body_.find_rates_of(y.momentum.data());
+        body_.move(y.x.data());
         body_.find_rates(settings.law, settings.water.current, y.head);
         return true;
     }
@@ -225,7 +231,7 @@ class BentStepper {
         body_.find_rates(settings.law, settings.water.current, point.y.head);
         body_.find_accelerations_and_drift(settings.law);
         point.head_rate = body_.head_rate, point.momentum_rate = body_.momentum_rate, point.rate = body_.rate;
-        point.acceleration = body_.acceleration, point.drift = body_.drift, point.head = body_.work.head;
+        point.drift = body_.drift, point.head = body_.work.head;
         point.force = body_.forces.total;
         point.mass = body_.columns.mass;
         linearise(*modes_, body_.target, point.y.x.data(), point.rate.data(), point.stiffness, point.damping,
@@ -252,17 +258,26 @@ class BentStepper {
             for (std::size_t k = 0; k < 3; ++k)
                 if (k != j) weight[j] *= (time[3] - time[k]) / (time[j] - time[k]);
         }
-        const double g = Tableau::diagonal * (point.time - before_.time);
-        std::vector<double> apart(c), right(head + c);
+        std::vector<double> apart(c);
         for (std::size_t i = 0; i < c; ++i) {
             apart[i] = -body_.rate[i];
             for (std::size_t j = 0; j < 4; ++j) apart[i] += weight[j] * x[j][i];
         }
-        for (std::size_t i = 0; i < c; ++i)
-            for (std::size_t j = 0; j < c; ++j) right[head + i] += g * before_.damping[i * c + j] * apart[j];
-        matrix_.solve(right.data());
-        for (std::size_t i = 0; i < c; ++i) body_.rate[i] += right[head + i];
+        const std::vector<double> smoothed = filtered(point.time - before_.time, before_.damping, apart);
+        for (std::size_t i = 0; i < c; ++i) body_.rate[i] += smoothed[head + i];
         return true;
+    }
+
+    // (M + g D + g^2 K)^-1 g D x of the last step, for head and coordinates.
+    std::vector<double> filtered(double length, const std::vector<double>& damping, const std::vector<double>& x) const
+    {
+        constexpr std::size_t head = M::freedoms;
+        std::vector<double> right(head + x.size());
+        for (std::size_t i = 0; i < x.size(); ++i)
+            for (std::size_t j = 0; j < x.size(); ++j)
+                right[head + i] += Tableau::diagonal * length * damping[i * x.size() + j] * x[j];
+        matrix_.solve(right.data());
+        return right;
     }
 
     // Makes the start of the last step one of the past ends.
@@ -288,7 +303,7 @@ class BentStepper {
             for (std::size_t j = 0; j <= i; ++j)
                 matrix.at(head + i, head + j) += g * (here_.damping[i * c + j] + g * here_.stiffness[i * c + j]);
         if (matrix.factor() != Definite::definite) return Status::singular;
-        std::vector<double> right(n), bx(c), sum_x(c), sum_u(c);
+        std::vector<double> right(n), bx(c), sum_x, sum_u;
         for (std::size_t stage = 0; stage < Tableau::stages; ++stage) {
             const State* head_rate = &here_.head_rate;
             const std::vector<double>*momentum_rate = &here_.momentum_rate, *rate = &here_.rate;
@@ -300,12 +315,11 @@ class BentStepper {
                 head_rate = &body_.head_rate, momentum_rate = &body_.momentum_rate, rate = &body_.rate;
             }
             const double g_time = length * length * (Tableau::diagonal + Tableau::sum(Tableau::gamma, stage));
-            std::fill(sum_x.begin(), sum_x.end(), 0.0), std::fill(sum_u.begin(), sum_u.end(), 0.0);
-            for (std::size_t j = 0; j < stage; ++j)
-                for (std::size_t i = 0; i < c; ++i) {
-                    sum_x[i] += Tableau::gamma[stage][j] * step_x_[j][i];
-                    sum_u[i] += Tableau::gamma[stage][j] * step_u_[j][i];
-                }
+            sum_x.assign(c, 0.0), sum_u.assign(c, 0.0);
+            for (std::size_t j = 0; j < stage; ++j) {
+                add_scaled(Tableau::gamma[stage][j], step_x_[j], sum_x);
+                add_scaled(Tableau::gamma[stage][j], step_u_[j], sum_u);
+            }
             const auto of_head = components_of(momentum_in_head(*head_rate, here_.head));
             for (std::size_t i = 0; i < head; ++i) right[i] = length * of_head[i];
             for (std::size_t i = 0; i < c; ++i) bx[i] = length * ((*rate)[i] + sum_u[i]) + g_time * here_.drift[i];
@@ -343,10 +357,8 @@ class BentStepper {
     {
         if (factor == 0.0) return;
         add_scaled(factor, step_head_[stage], trial_.head);
-        for (std::size_t i = 0; i < trial_.x.size(); ++i) {
-            trial_.x[i] += factor * step_x_[stage][i];
-            trial_.momentum[i] += factor * step_p_[stage][i];
-        }
+        add_scaled(factor, step_x_[stage], trial_.x);
+        add_scaled(factor, step_p_[stage], trial_.momentum);
     }
 
     // The difference of the two results over the tolerance: of the head as elsewhere; of the coordinates as angles, and
@@ -357,19 +369,15 @@ class BentStepper {
         std::array<double, Tableau::stages> weight;
         for (std::size_t j = 0; j < weight.size(); ++j) weight[j] = Tableau::weight[j] - Tableau::embedded[j];
         State defect{};
-        for (std::size_t j = 0; j < weight.size(); ++j) add_scaled(weight[j] / length, step_head_[j], defect);
         std::vector<double> dx(c), du(c);
-        for (std::size_t j = 0; j < weight.size(); ++j)
-            for (std::size_t i = 0; i < c; ++i) dx[i] += weight[j] * step_x_[j][i], du[i] += weight[j] * step_u_[j][i];
+        for (std::size_t j = 0; j < weight.size(); ++j) {
+            add_scaled(weight[j] / length, step_head_[j], defect);
+            add_scaled(weight[j], step_x_[j], dx), add_scaled(weight[j], step_u_[j], du);
+        }
         // Of continuous parts, less what the rates at the step's end are smoothed by: their high modes are stiff.
-        constexpr std::size_t head = M::freedoms;
-        std::vector<double> right(head + c);
-        for (std::size_t i = 0; i < c; ++i)
-            for (std::size_t j = 0; j < c; ++j)
-                right[head + i] += Tableau::diagonal * length * here_.damping[i * c + j] * du[j];
-        matrix_.solve(right.data());
+        const std::vector<double> smoothed = filtered(length, here_.damping, du);
         for (std::size_t i = 0; i < modes_->modes; ++i)
-            if (modes_->continuous[i]) du[i] -= right[head + i];
+            if (modes_->continuous[i]) du[i] -= smoothed[M::freedoms + i];
         double worst = 0.0;
         const double scale = std::max(torque_scale_, settings.torque_floor);
         for (std::size_t i = 0; i < c; ++i) {

@@ -13,6 +13,7 @@ struct Jacobian;
 template <Number T>
 struct Jacobian<Space, T> {
     Vector3<T> x, y, z;
+    static constexpr std::tuple members{&Jacobian::x, &Jacobian::y, &Jacobian::z};
 
     template <Number B>
     auto times(const Vector3<B>& v) const  // g v
@@ -30,7 +31,6 @@ struct Jacobian<Space, T> {
     {
         return axis.x * (z.y - y.z) + axis.y * (x.z - z.x) + axis.z * (y.x - x.y);
     }
-    Jacobian& operator+=(const Jacobian& o) { return x += o.x, y += o.y, z += o.z, *this; }
     // R^T g R: the same tensor in the axes of `frame`.
     Jacobian in(const Frame3<double>& frame) const
     {
@@ -43,6 +43,7 @@ struct Jacobian<Space, T> {
 template <Number T>
 struct Jacobian<Plane, T> {
     Vector2<T> x, y;
+    static constexpr std::tuple members{&Jacobian::x, &Jacobian::y};
 
     template <Number B>
     auto times(const Vector2<B>& v) const
@@ -59,7 +60,6 @@ struct Jacobian<Plane, T> {
     {
         return T(0.0);
     }
-    Jacobian& operator+=(const Jacobian& o) { return x += o.x, y += o.y, *this; }
     Jacobian in(const Frame2<double>& frame) const
     {
         const Vector2<T> a = frame.local(x), b = frame.local(y);
@@ -84,8 +84,7 @@ struct FlowSample {
     Vector<M, T> u;    // [m/s]
     Vector<M, T> u_t;  // [m/s^2]
     Jacobian<M, T> g;  // [1/s]
-
-    FlowSample& operator+=(const FlowSample& o) { return u += o.u, u_t += o.u_t, g += o.g, *this; }
+    static constexpr std::tuple members{&FlowSample::u, &FlowSample::u_t, &FlowSample::g};
 
     // Acceleration [m/s^2] of the water, a_u = u_t + g u.
     Vector<M, T> acceleration() const { return u_t + g.times(u); }
@@ -102,59 +101,5 @@ FlowSample<Space, T> part_in(Space, const FlowSample<Space, T>& s)
 {
     return s;
 }
-
-template <Number T>
-struct Components<Jacobian<Space, T>> {
-    static constexpr std::size_t count = 9;
-    template <Number B>
-    using With = Jacobian<Space, B>;
-    using V = Components<Vector3<T>>;
-    template <class Make>
-    static Jacobian<Space, T> make(Make component, std::size_t first = 0)
-    {
-        return {V::make(component, first), V::make(component, first + 3), V::make(component, first + 6)};
-    }
-    template <class Take>
-    static void each(const Jacobian<Space, T>& g, Take take, std::size_t first = 0)
-    {
-        V::each(g.x, take, first), V::each(g.y, take, first + 3), V::each(g.z, take, first + 6);
-    }
-};
-template <Number T>
-struct Components<Jacobian<Plane, T>> {
-    static constexpr std::size_t count = 4;
-    template <Number B>
-    using With = Jacobian<Plane, B>;
-    using V = Components<Vector2<T>>;
-    template <class Make>
-    static Jacobian<Plane, T> make(Make component, std::size_t first = 0)
-    {
-        return {V::make(component, first), V::make(component, first + 2)};
-    }
-    template <class Take>
-    static void each(const Jacobian<Plane, T>& g, Take take, std::size_t first = 0)
-    {
-        V::each(g.x, take, first), V::each(g.y, take, first + 2);
-    }
-};
-template <class M, Number T>
-struct Components<FlowSample<M, T>> {
-    using V = Components<Vector<M, T>>;
-    using G = Components<Jacobian<M, T>>;
-    static constexpr std::size_t count = 2 * V::count + G::count;
-    template <Number B>
-    using With = FlowSample<M, B>;
-    template <class Make>
-    static FlowSample<M, T> make(Make component, std::size_t first = 0)
-    {
-        return {V::make(component, first), V::make(component, first + V::count),
-                G::make(component, first + 2 * V::count)};
-    }
-    template <class Take>
-    static void each(const FlowSample<M, T>& s, Take take, std::size_t first = 0)
-    {
-        V::each(s.u, take, first), V::each(s.u_t, take, first + V::count), G::each(s.g, take, first + 2 * V::count);
-    }
-};
 
 }  // namespace eel_core

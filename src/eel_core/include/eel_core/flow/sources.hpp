@@ -35,19 +35,16 @@ struct View {
     }
 };
 
-// The same everywhere.
+// The same velocity and rate everywhere, of the head's axes.
 template <class M>
-struct EverywhereAlike {
-    Vector<M, double> u, u_t;
-
-    template <Number T>
-    FlowSample<M, T> operator()(const Vector<M, T>& r) const
-    {
+auto everywhere(const Vector<M, double>& u, const Vector<M, double>& u_t)
+{
+    return [=]<Number T>(const Vector<M, T>& r) {
         FlowSample<M, T> water{};
         water.u = 0.0 * r + u, water.u_t = 0.0 * r + u_t;
         return water;
-    }
-};
+    };
+}
 
 // `velocity` [m/s], times the sum of the ramps f_r of eq. (64), or times 1 where there are none.
 struct RampedFlow {
@@ -55,31 +52,24 @@ struct RampedFlow {
     std::vector<Ramp> ramps;
 
     template <class M>
-    EverywhereAlike<M> at(double time, const View<M>& view) const
+    auto at(double time, const View<M>& view) const
     {
         Jet factor{ramps.empty() ? 1.0 : 0.0};
         for (const Ramp& ramp : ramps) ramp.add_to(factor, time);
         const Vector<M, double> along = view.local(velocity);
-        return {factor[0] * along, factor[1] * along};
+        return everywhere<M>(factor[0] * along, factor[1] * along);
     }
 };
 
-// Cubics in time between knots [s], ascending; held before the first and after the last.
+// The same everywhere, over time.
 struct SplineFlow {
-    std::vector<double> knots;
-    std::vector<std::array<Vector3<double>, 4>> pieces;  // by powers of the time since the knot, from the constant on
+    Cubics<Vector3<double>> velocity;
 
     template <class M>
-    EverywhereAlike<M> at(double time, const View<M>& view) const
+    auto at(double time, const View<M>& view) const
     {
-        const double within = std::clamp(time, knots.front(), knots.back());
-        const auto behind = std::upper_bound(knots.begin() + 1, knots.end() - 1, within);
-        const auto piece = static_cast<std::size_t>(behind - knots.begin()) - 1;
-        const double s = within - knots[piece];
-        const auto& c = pieces[piece];
-        const Vector3<double> rate = c[1] + s * (2.0 * c[2] + 3.0 * s * c[3]);
-        return {view.local(c[0] + s * (c[1] + s * (c[2] + s * c[3]))),
-                view.local(within == time ? rate : Vector3<double>{})};
+        const auto [u, rate] = velocity.at(time);
+        return everywhere<M>(view.local(u), view.local(rate));
     }
 };
 
@@ -91,29 +81,20 @@ struct ShearFlow {
     bool linear;
 
     template <class M>
-    struct Now {
-        Vector<M, double> velocity, across;  // the latter by the width
-        double middle, passed;               // of d / width: where d is 0; the current's part per time
-        bool linear;
-
-        template <Number T>
-        FlowSample<M, T> operator()(const Vector<M, T>& r) const
-        {
-            const T s = dot(across, r) - middle;
+    auto at(double, const View<M>& view) const
+    {
+        const double inverse = 1.0 / width, middle_by_width = inverse * (middle - dot(across, view.nose)),
+                     passed = inverse * dot(across, view.current);  // of d / width: the current's part per time
+        return [=, along = view.local(velocity), by_width = inverse * view.local(across),
+                linear = linear]<Number T>(const Vector<M, T>& r) {
+            const T s = dot(by_width, r) - middle_by_width;
             T value = s, slope(1.0);
             if (!linear) {
-                const T e = exponential(-2.0 * abs(s)), inverse = 1.0 / (1.0 + e);
-                value = with_sign_of((1.0 - e) * inverse, s), slope = 4.0 * e * (inverse * inverse);
+                const T e = exponential(-2.0 * abs(s)), part = 1.0 / (1.0 + e);
+                value = with_sign_of((1.0 - e) * part, s), slope = 4.0 * e * (part * part);
             }
-            return {value * velocity, (passed * slope) * velocity, outer(velocity, slope * across)};
-        }
-    };
-    template <class M>
-    Now<M> at(double, const View<M>& view) const
-    {
-        const double inverse = 1.0 / width;
-        return {view.local(velocity), inverse * view.local(across), inverse * (middle - dot(across, view.nose)),
-                inverse * dot(across, view.current), linear};
+            return FlowSample<M, T>{value * along, (passed * slope) * along, outer(along, slope * by_width)};
+        };
     }
 };
 
@@ -129,18 +110,15 @@ struct VortexFlow {
     Vector3<double> drift;         // [m/s]
 
     template <class M>
-    struct Now {
-        const VortexFlow& flow;
-        Vector<M, double> axis_x, axis_y;  // of the world
-        Vector2<double> nose, drift;       // in the world: of the head less the way of the drift; less the current
-
-        template <Number T>
-        FlowSample<M, T> operator()(const Vector<M, T>& r) const
-        {
-            const double by_core = 1.0 / (flow.core * flow.core);
+    auto at(double time, const View<M>& view) const
+    {
+        const Vector<M, double> axis_x = view.local({1.0, 0.0, 0.0}), axis_y = view.local({0.0, 1.0, 0.0});
+        const Vector2 nose{view.nose.x - time * drift.x, view.nose.y - time * drift.y};  // less the way of the drift
+        const Vector2 passing{drift.x - view.current.x, drift.y - view.current.y};
+        return [=, this, by_core = 1.0 / (core * core)]<Number T>(const Vector<M, T>& r) {
             const T place_x = dot(axis_x, r) + nose.x, place_y = dot(axis_y, r) + nose.y;
             T u(0.0), v(0.0), shear(0.0), along(0.0), across(0.0);
-            for (const Vortex& vortex : flow.vortices) {
+            for (const Vortex& vortex : vortices) {
                 const T x = place_x - vortex.x, y = place_y - vortex.y;
                 const T square = x * x + y * y;
                 const auto [swirl, slope] = swirl_and_slope(square * by_core);
@@ -152,20 +130,11 @@ struct VortexFlow {
             const Vector<M, T> of_u = -(shear * axis_x + across * axis_y), of_v = along * axis_x + shear * axis_y;
             FlowSample<M, T> water{
                 u * axis_x + v * axis_y,
-                (shear * drift.x + across * drift.y) * axis_x - (along * drift.x + shear * drift.y) * axis_y,
+                (shear * passing.x + across * passing.y) * axis_x - (along * passing.x + shear * passing.y) * axis_y,
                 outer(axis_x, of_u)};
             water.g += outer(axis_y, of_v);
             return water;
-        }
-    };
-    template <class M>
-    Now<M> at(double time, const View<M>& view) const
-    {
-        return {*this,
-                view.local({1.0, 0.0, 0.0}),
-                view.local({0.0, 1.0, 0.0}),
-                {view.nose.x - time * drift.x, view.nose.y - time * drift.y},
-                {drift.x - view.current.x, drift.y - view.current.y}};
+        };
     }
 
     // f = (1 - exp(-s)) / s and its derivative: by the series where s is small, and without the exponential where that
@@ -200,36 +169,21 @@ struct WaveFlow {
     Vector3<double> direction;
 
     template <class M>
-    struct Now {
-        Vector<M, double> along, up;            // d and E3
-        double size, wavenumber, phase, depth;  // of the velocity; phase and k times the depth at the head
-        double rate, rise;                      // w, less k times the current along d; k times the current along E3
-
-        template <Number T>
-        FlowSample<M, T> operator()(const Vector<M, T>& r) const
-        {
-            const double k = wavenumber;
+    auto at(double time, const View<M>& view) const
+    {
+        constexpr double turn = 2.0 * std::numbers::pi;
+        const double k = wavenumber, size = amplitude * frequency;
+        const double phase = std::fmod(start - frequency * time, turn) + k * dot(direction, view.nose),
+                     depth = k * (surface - view.nose.z);  // at the head
+        const double rate = frequency - k * dot(direction, view.current), rise = k * view.current.z;
+        return [=, along = view.local(direction), up = view.local({0.0, 0.0, 1.0})]<Number T>(const Vector<M, T>& r) {
             const auto [s, c] = sine_and_cosine(k * dot(along, r) + phase);
             const T speed = size * exponential(k * dot(up, r) - depth), us = speed * s, uc = speed * c;
             FlowSample<M, T> water{uc * along + us * up, (rate * us + rise * uc) * along + (rise * us - rate * uc) * up,
                                    outer(along, (k * uc) * up - (k * us) * along)};
             water.g += outer(up, (k * uc) * along + (k * us) * up);
             return water;
-        }
-    };
-    template <class M>
-    Now<M> at(double time, const View<M>& view) const
-    {
-        constexpr double turn = 2.0 * std::numbers::pi;
-        const double k = wavenumber;
-        return {view.local(direction),
-                view.local({0.0, 0.0, 1.0}),
-                amplitude * frequency,
-                k,
-                std::fmod(start - frequency * time, turn) + k * dot(direction, view.nose),
-                k * (surface - view.nose.z),
-                frequency - k * dot(direction, view.current),
-                k * view.current.z};
+        };
     }
 };
 

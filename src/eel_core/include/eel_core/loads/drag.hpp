@@ -37,8 +37,9 @@ struct LoadSigns {
 };
 
 // THE resistive load, in section axes: per length, or integrated over the length that the signs are weighed by.
-inline Wrench<Space, Lanes> resistive_load(const DragSection<Lanes>& section, Lanes laminar, Lanes excess,
-                                           const LoadSigns<Lanes>& sign, const Vector3<Lanes>& v, Lanes roll)
+EEL_CORE_INLINE inline Wrench<Space, Lanes> resistive_load(const DragSection<Lanes>& section, Lanes laminar,
+                                                           Lanes excess, const LoadSigns<Lanes>& sign,
+                                                           const Vector3<Lanes>& v, Lanes roll)
 {
     return {{-(sign.roll * section.drag_roll * roll * roll), 0.0, 0.0},
             {-((sign.laminar * laminar + sign.excess * excess) * v.x), -(sign.lateral * section.drag2 * v.y * v.y),
@@ -114,13 +115,14 @@ void set_load_weights(const Swimmer& swimmer, Workspace<M>& work)
 inline Lanes roll_torque(const Wrench<Space, Lanes>& load) { return load.angular.x; }
 inline Lanes roll_torque(const Wrench<Plane, Lanes>&) { return 0.0; }
 
-// The integration weights, with the signs of the loads, of a block.
+// The load of a block in section axes, integrated over the length by the weights with their signs.
 template <class M>
-LoadSigns<Lanes> load_weights(const Swimmer& swimmer, const Workspace<M>& work, std::size_t k)
+EEL_CORE_INLINE inline Wrench<M, Lanes> weighed_load(const Swimmer& swimmer, const Workspace<M>& work, std::size_t k)
 {
     LoadSigns<Lanes> sign{swimmer.grid.weight[k], work.turbulent_weight[k], work.load_weight[lateral][k], 0.0, 0.0};
     if constexpr (!M::planar) sign.vertical = work.load_weight[vertical][k], sign.roll = work.load_weight[roll][k];
-    return sign;
+    return resistive_load(swimmer.sections.drag(k), work.friction_laminar[k], work.friction_excess[k], sign,
+                          speeds_from(work, width * k), roll_from(work, width * k));
 }
 
 // Wrench of the drag along the body about the head, and its power, by the weights.
@@ -130,11 +132,8 @@ void integrate_resistive_load(const Swimmer& swimmer, Workspace<M>& work)
     Wrench<M, Lanes> wrench{};
     Lanes power(0.0);
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-        const auto v = speeds_from(work, width * k);
-        const Lanes turning = roll_from(work, width * k);
-        const auto load = resistive_load(swimmer.sections.drag(k), work.friction_laminar[k], work.friction_excess[k],
-                                         load_weights(swimmer, work, k), v, turning);
-        power += dot(load.linear, v) + roll_torque(load) * turning;
+        const auto load = weighed_load(swimmer, work, k);
+        power += dot(load.linear, speeds_from(work, width * k)) + roll_torque(load) * roll_from(work, width * k);
         wrench += about_head<M>(work.frame[k], work.position[k], load);
     }
     work.drag = total_of(wrench);

@@ -69,7 +69,7 @@ EEL_CORE_APART std::pair<Wrench<M, double>, double> total_of_gradient(const Swim
 // The flow's part of the load on the momentum of a block, about the sections and weighed by their length:
 // rho_f A a_u - g^T p, with the torque U x p besides.
 template <class M>
-Wrench<M, Lanes> load_of_flow(const Swimmer& swimmer, const Workspace<M>& work, std::size_t k)
+EEL_CORE_INLINE inline Wrench<M, Lanes> load_of_flow(const Swimmer& swimmer, const Workspace<M>& work, std::size_t k)
 {
     const auto section = swimmer.sections[k].weighed(swimmer.grid.weight[k]);
     const Lanes displaced = swimmer.grid.weight[k] * swimmer.sections.displaced[k];
@@ -162,9 +162,7 @@ EEL_CORE_APART double drag_power_of_flow(const Swimmer& swimmer, const Workspace
     for (std::size_t k = 0; swimmer.resistive && k < swimmer.grid.blocks; ++k) {
         const auto frame = work.frame[k];
         const FlowSample<M, Lanes> water = work.flow[k];
-        const auto load =
-            resistive_load(swimmer.sections.drag(k), work.friction_laminar[k], work.friction_excess[k],
-                           load_weights(swimmer, work, k), speeds_from(work, width * k), roll_from(work, width * k));
+        const auto load = weighed_load(swimmer, work, k);
         sum += dot(load.linear, Vector<M, Lanes>(frame.local(water.u))) +
                roll_torque(load) * (0.5 * water.g.curl_along(frame.t1()));
     }

@@ -48,8 +48,7 @@ class Instant {
         for (std::size_t k = 0; swimmer_->resistive && k < swimmer_->grid.blocks; ++k) {
             auto v = speeds_from(work_, width * k);
             Lanes turning = roll_from(work_, width * k);
-            const auto load = resistive_load(swimmer_->sections.drag(k), work_.friction_laminar[k],
-                                             work_.friction_excess[k], load_weights(*swimmer_, work_, k), v, turning);
+            const auto load = weighed_load(*swimmer_, work_, k);
             if (work_.flowing) {  // the power is that of the true velocities
                 const auto frame = work_.frame[k];
                 v += frame.local(work_.flow[k].u);

@@ -67,7 +67,7 @@ class MissedWrench {
     void set_drag_units(const Swimmer& swimmer, const Workspace<Space>& work)
     {
         for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-            const DragSection<Lanes> rough{0.0, 0.0, 0.0, 1.0, 1.0, swimmer.sections.by_critical_speed[k]};
+            const DragSection<Lanes> rough{0.0, 0.0, 0.0, 1.0, 1.0, swimmer.sections.drag(k).by_critical_speed};
             const auto v = speeds_from(work, width * k);
             const AxialFriction friction = axial_friction(rough, swimmer.friction, v);
             const Lanes turned = jumps(swimmer.friction) ? Lanes(1.0) : friction.turbulent_share;

@@ -3,29 +3,11 @@
 // of one evaluation. Ours, not the paper's.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
-#include "eel_core/algebra/motion.hpp"
+#include "eel_core/algebra/cubics.hpp"
 
 namespace eel_core {
 
-// An angle [rad] in time: cubics between knots [s], from the constant coefficient on; constant beyond the ends.
-struct AngleLaw {
-    std::vector<double> knots{0.0, 1.0};
-    std::vector<std::array<double, 4>> pieces{{}};
-
-    std::array<double, 2> at(double time) const  // value and rate
-    {
-        const double inside = std::clamp(time, knots.front(), knots.back());
-        const auto next = std::upper_bound(knots.begin() + 1, knots.end() - 1, inside);
-        const auto piece = static_cast<std::size_t>(next - knots.begin()) - 1;
-        const auto& c = pieces[piece];
-        const double s = inside - knots[piece], rate = c[1] + s * (2.0 * c[2] + s * 3.0 * c[3]);
-        return {c[0] + s * (c[1] + s * (c[2] + s * c[3])), inside == time ? rate : 0.0};
-    }
-};
+using AngleLaw = Cubics<double>;  // [rad]
 
 // What turns one fin, or two alike. Its angle is a state with the rate (limit tanh(command / limit) - angle) / tau.
 struct FinServo {

@@ -59,11 +59,7 @@ AxialFriction axial_friction(const DragSection<Lanes>& section, Friction law, co
     const Lanes ratio = speed * section.by_critical_speed;
     const Lanes turbulent = section.turbulent * ratio * inverse_fifth_root(ratio + 1e-30);
     Lanes share = select(ratio > Lanes(1.0), 1.0, 0.0);
-    if (law == Friction::blended) {
-        std::array<double, width> shares;
-        for (std::size_t lane = 0; lane < width; ++lane) shares[lane] = turbulent_share(ratio[lane]);
-        share = Lanes::load(shares.data());
-    }
+    if (law == Friction::blended) share = lane_by_lane(ratio, turbulent_share);
     return {laminar, turbulent - laminar, share, ratio - 1.0};
 }
 

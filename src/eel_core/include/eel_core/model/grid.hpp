@@ -65,19 +65,24 @@ class FromNose {
 
     // `result` at the points, from components of `integrand` at the nodes, those from `first_row` on; `known` is the
     // integral at the nodes (the result itself, where these are the points), and `at_nose` the value that it starts
-    // from.
+    // from. Over the stretches from `begin` up to `end` alone, if the integrand is zero before them and so is `known`.
+    template <class Value, class Source>
+    void integrate(const Field<Source>& integrand, std::size_t first_row, const Value& at_nose,
+                   const Field<Value>& known, Field<Value>& result, std::size_t begin, std::size_t end) const
+    {
+        for (std::size_t s = begin; s < end; ++s) {
+            const auto here = within<Value>(integrand, first_row, stretches_[s]);
+            const std::size_t first = stretches_[s].begin;
+            const Value before = first > 0 ? known.node(first - 1) : at_nose;
+            for (std::size_t part = 0; part < parts; ++part) result.store(parts * s + part, before + here[part]);
+        }
+    }
     template <class Value, class Source>
     void integrate(const Field<Source>& integrand, std::size_t first_row, const Value& at_nose,
                    const Field<Value>& known, Field<Value>& result) const
     {
-        for (std::size_t s = 0; s < stretches_.size(); ++s) {
-            const auto here = within<Value>(integrand, first_row, stretches_[s]);
-            const std::size_t begin = stretches_[s].begin;
-            const Value before = begin > 0 ? known.node(begin - 1) : at_nose;
-            for (std::size_t part = 0; part < parts; ++part) result.store(parts * s + part, before + here[part]);
-        }
+        integrate(integrand, first_row, at_nose, known, result, 0, stretches_.size());
     }
-
     // The integral from the nose, at the nodes, from zero on.
     template <class Value, class Source>
     void integrate(const Field<Source>& integrand, Field<Value>& result, std::size_t first_row = 0) const
@@ -94,20 +99,6 @@ class FromNose {
         for (std::size_t s = 0; s < stretches_.size(); ++s) {
             for (; node < stretches_[s].begin; ++node) before += weight.node(node) * integrand.node(node);
             const auto here = within<Value>(integrand, 0, stretches_[s]);
-            for (std::size_t part = 0; part < parts; ++part) result.store(parts * s + part, before + here[part]);
-        }
-    }
-
-    // The same over the stretches from `begin` up to `end` alone, of an integrand that is zero before them; so must be
-    // the `result` there.
-    template <class Value, class Source>
-    void integrate_within(const Field<Source>& integrand, std::size_t first_row, std::size_t begin, std::size_t end,
-                          Field<Value>& result) const
-    {
-        const Value none = Components<Value>::make([](std::size_t) { return 0.0; });
-        for (std::size_t s = begin; s < end; ++s) {
-            const auto here = within<Value>(integrand, first_row, stretches_[s]);
-            const Value before = stretches_[s].begin > 0 ? result.node(stretches_[s].begin - 1) : none;
             for (std::size_t part = 0; part < parts; ++part) result.store(parts * s + part, before + here[part]);
         }
     }

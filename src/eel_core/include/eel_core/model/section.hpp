@@ -17,6 +17,8 @@ struct Section {
     T added2, added3;                // [kg/m], of the water along axes 2 and 3
     T inertia1, inertia2, inertia3;  // [kg m], of body and water
     T added_roll;                    // [kg m], of the water about axis 1
+    static constexpr std::tuple members{&Section::mass,     &Section::added2,   &Section::added3,    &Section::inertia1,
+                                        &Section::inertia2, &Section::inertia3, &Section::added_roll};
 
     // Momentum of body and water, (M V; J Omega).
     template <Number B>
@@ -94,31 +96,21 @@ struct DragSection {
     T drag_roll;           // [kg], 1/2 rho_f k4
     T laminar, turbulent;  // friction per V1: laminar |V1|^(1/2), turbulent (Re / 8e4)^(4/5), or Taylor's, |Vn|^(1/2)
     T by_critical_speed;   // [s/m], Re / 8e4 per |V1|
+    static constexpr std::tuple members{&DragSection::drag2,     &DragSection::drag3,
+                                        &DragSection::drag_roll, &DragSection::laminar,
+                                        &DragSection::turbulent, &DragSection::by_critical_speed};
 };
 
 // The sections at the nodes, or at the stations.
 struct Sections {
-    Row mass, added2, added3, inertia1, inertia2, inertia3, added_roll;
+    Field<Section<double>> inertia;
     Row lever;      // [kg], m h of the weight; see weight.hpp
     Row net;        // [kg/m], of the displaced water less the body, where bodies weigh
     Row displaced;  // [kg/m], of the water that the section displaces
-    Row drag2, drag3, drag_roll, laminar, turbulent, by_critical_speed;
+    Field<DragSection<double>> resistance;
 
-    Section<Lanes> operator[](std::size_t k) const
-    {
-        return {mass[k], added2[k], added3[k], inertia1[k], inertia2[k], inertia3[k], added_roll[k]};
-    }
-    Section<double> node(std::size_t i) const
-    {
-        return {mass.node(i),     added2.node(i),   added3.node(i),    inertia1.node(i),
-                inertia2.node(i), inertia3.node(i), added_roll.node(i)};
-    }
-    DragSection<Lanes> drag(std::size_t k) const { return drag_from(width * k); }
-    DragSection<Lanes> drag_from(std::size_t i) const
-    {
-        return {drag2.from(i),   drag3.from(i),     drag_roll.from(i),
-                laminar.from(i), turbulent.from(i), by_critical_speed.from(i)};
-    }
+    Section<Lanes> operator[](std::size_t k) const { return inertia[k]; }
+    DragSection<Lanes> drag(std::size_t k) const { return resistance[k]; }
 };
 
 }  // namespace eel_core

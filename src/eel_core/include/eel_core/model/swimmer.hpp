@@ -15,23 +15,12 @@ enum Speed : std::size_t { axial = 0, lateral = 1, vertical = 2, roll = 3, above
 // Numbers of a section in which its inertial wrench, its weight, the undisturbed pressure of a flow and, from `drag2`
 // on, its drag are linear.
 struct SectionPart {
+    // clang-format off
     enum : std::size_t {
-        mass,
-        added2,
-        added3,
-        lever,
-        net,
-        inertia1,
-        inertia2,
-        inertia3,
-        displaced,
-        drag2,
-        drag3,
-        drag_roll,
-        laminar,
-        turbulent
+        mass, added2, added3, lever, net, inertia1, inertia2, inertia3, displaced,
+        drag2, drag3, drag_roll, laminar, turbulent, count
     };
-    static constexpr std::size_t count = 14;
+    // clang-format on
 };
 
 struct Swimmer {

@@ -97,7 +97,7 @@ def _given(coordinate: int, sign: float, torque: Torque) -> tuple[Any, ...]:
     """A torque over time for the compiled mechanics."""
     if torque.spline is None:
         return coordinate, lambda time: sign * float(torque.at(time))
-    cubics = np.ascontiguousarray(sign * torque.spline.c.T)
+    cubics = np.ascontiguousarray(sign * torque.spline.c[::-1].T)
     return coordinate, np.array(torque.spline.x, dtype=float), cubics
 
 

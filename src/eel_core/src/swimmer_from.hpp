@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// A swimmer and the tables of its law, from objects of Python with arrays for attributes.
+#pragma once
+
+#include <string>
+
+#include "from_python.hpp"
+
+namespace eel_core {
+
+// Of each of n points, a number or a compound, whose components are attributes with these names.
+template <class Value = double>
+Field<Value> field_from(const py::handle& object, std::initializer_list<const char*> names, std::size_t n)
+{
+    Field<Value> field(blocks_of(n));
+    for (std::size_t row = 0; const char* const name : names) {
+        const auto numbers = Numbers::sized(object.attr(name), name, n);
+        std::copy_n(numbers.data(), n, field.row(row++));
+    }
+    return field;
+}
+
+inline Sections sections_from(const py::handle& s, std::size_t n)
+{
+    return {field_from<Section<double>>(
+                s, {"mass", "added2", "added3", "inertia1", "inertia2", "inertia3", "added_roll"}, n),
+            field_from(s, {"lever"}, n), field_from(s, {"net"}, n), field_from(s, {"displaced"}, n),
+            field_from<DragSection<double>>(
+                s, {"drag2", "drag3", "drag_roll", "laminar", "turbulent", "by_critical_speed"}, n)};
+}
+
+// `matrix`: rows for the `points`, as those of `PanelRows`.
+inline FromNose from_nose(const py::handle& points, const py::handle& matrix, const Row& weight, std::size_t nodes)
+{
+    const auto fraction = array_of<double>(points, "fraction");
+    const auto rows = Numbers::sized(matrix, "matrix", array_of<double>(points, "matrix").size());
+    const auto first = array_of<std::uint64_t>(points, "first"), count = array_of<std::uint64_t>(points, "count");
+    return FromNose({rows.span(), first.span(), count.span(), fraction.span()}, {weight.row(0), nodes});
+}
+
+inline Grid grid_from(const py::handle& g)
+{
+    Grid grid;
+    const auto first = array_of<std::uint64_t>(g, "first"), count = array_of<std::uint64_t>(g, "count");
+    const auto series = array_of<double>(g, "series");
+    const std::size_t n = first.size();
+    if (n == 0) throw py::value_error("grid must have nodes, got none");
+    grid.nodes = n, grid.blocks = blocks_of(n), grid.widest = array_of<double>(g, "matrix").length(1);
+    grid.first = first.vector<std::size_t>(), grid.count = count.vector<std::size_t>();
+    grid.weight = field_from(g, {"weight"}, n);
+    grid.from_nose = from_nose(g, g.attr("matrix"), grid.weight, n);
+    grid.fraction = field_from(g, {"fraction"}, n);
+    grid.barycentric = field_from(g, {"barycentric"}, n);
+    grid.set_steps();
+    for (std::size_t degree = 0; degree <= grid.widest; ++degree) {
+        Row row(grid.blocks);
+        std::copy_n(series.data() + degree * n, n, row.row(0));
+        grid.series.push_back(row);
+    }
+    return grid;
+}
+
+// Gives the swimmer its fins: (node, normal (3,), centre (3,), pressure, lift slope, induced drag, normal drag,
+// friction drag, added mass, servo, sign, first station there or behind); and the servos: (time constant, limit, roll
+// gain, rate gain, node, initial angle).
+inline void add_fins(Swimmer& swimmer, const py::list& fins, const py::list& servos)
+{
+    std::size_t slot = state_size;
+    for (const py::handle each : servos) {
+        const auto [tau, limit, roll, rate, node, initial] =
+            each.cast<std::tuple<double, double, double, double, std::size_t, double>>();
+        if (tau > 0.0 && slot == state_space)
+            throw py::value_error("servos with a time constant must be " + std::to_string(most_servos) + " at most");
+        swimmer.servos.push_back({tau, limit, roll, rate, node, tau > 0.0 ? slot++ : 0, initial});
+    }
+    for (const py::handle each : fins) {
+        const auto t = each.cast<py::tuple>();
+        const auto number = [&](std::size_t i) { return t[i].cast<double>(); };
+        const auto vector = [&](std::size_t i) {
+            const auto v = t[i].cast<std::array<double, 3>>();
+            return Vector3{v[0], v[1], v[2]};
+        };
+        const auto node = t[0].cast<std::size_t>(), servo = t[9].cast<std::size_t>();
+        if (node >= swimmer.grid.nodes || servo >= swimmer.servos.size())
+            throw py::value_error("fins must have a node of the grid and a servo of those given");
+        swimmer.fins.push_back({node, vector(1), vector(2), number(3), number(4), number(5), number(6), number(7),
+                                number(8), servo, node + 1, t[11].cast<std::size_t>(), number(10)});
+    }
+}
+
+// Which physics is on, and its numbers, by their names in Python.
+inline constexpr std::pair<const char*, bool Swimmer::*> switches[] = {
+    {"resistive", &Swimmer::resistive},
+    {"flow_gradient", &Swimmer::flow_gradient},
+    {"distributed_pressure", &Swimmer::distributed_pressure},
+    {"offset", &Swimmer::offset}};
+inline constexpr std::pair<const char*, double Swimmer::*> quantities[] = {
+    {"wake", &Swimmer::wake},           {"inertia_of_water", &Swimmer::inertia_of_water},
+    {"nose_mass", &Swimmer::nose_mass}, {"nose_drag", &Swimmer::nose_drag},
+    {"righting", &Swimmer::righting},   {"gravity", &Swimmer::gravity}};
+
+inline std::shared_ptr<Swimmer> swimmer_from(const py::object& grid, const py::object& sections,
+                                             const py::object& stations, const py::kwargs& physics)
+{
+    auto swimmer = std::make_shared<Swimmer>();
+    swimmer->grid = grid_from(grid);
+    const std::size_t n = swimmer->grid.nodes;
+    swimmer->sections = sections_from(sections, n);
+    const auto friction = physics["friction"].cast<std::string>();
+    const auto name = std::find(friction_names.begin(), friction_names.end(), friction);
+    if (name == friction_names.end())
+        throw py::value_error("friction is none of FRICTION_LAWS, got '" + friction + "'");
+    swimmer->friction = static_cast<Friction>(name - friction_names.begin());
+    swimmer->first_watched = physics["first_watched"].cast<std::size_t>();
+    for (const auto& [key, member] : switches) swimmer.get()->*member = physics[key].cast<bool>();
+    for (const auto& [key, member] : quantities) swimmer.get()->*member = physics[key].cast<double>();
+    const auto water = row_from<3>(physics["tail_water"], "tail_water");
+    swimmer->tail.added2 = water[0], swimmer->tail.added3 = water[1], swimmer->tail.added_roll = water[2];
+
+    for (std::size_t speed = lateral; const py::handle each : physics["missed_drag"]) {
+        const auto table = Numbers::sized(each, "missed_drag", n * Numbers(each, "missed_drag").length(0));
+        if (table.length(0) < 2) throw py::value_error("missed_drag must have two rows or more");
+        for (std::size_t place = 0; place < table.length(0); ++place) {
+            swimmer->missed_drag.at(speed).emplace_back(blocks_of(n));
+            std::copy_n(table.data() + place * n, n, swimmer->missed_drag[speed].back().row(0));
+        }
+        ++speed;
+    }
+
+    const auto before = array_of<std::uint64_t>(stations, "nodes_before");
+    const std::size_t m = swimmer->stations = before.size();
+    swimmer->nodes_before = before.vector<std::size_t>();
+    swimmer->at_station = sections_from(stations.attr("sections"), m);
+    swimmer->added2_slope = field_from(stations, {"added2_slope"}, m);
+    swimmer->added3_slope = field_from(stations, {"added3_slope"}, m);
+    swimmer->added_roll_slope = field_from(stations, {"added_roll_slope"}, m);
+    const py::object places = stations.attr("points");
+    swimmer->to_station = from_nose(places, places.attr("matrix"), swimmer->grid.weight, n);
+    const Row none(swimmer->grid.blocks);
+    for (const py::handle rows : stations.attr("missed")) swimmer->missed.push_back(from_nose(places, rows, none, n));
+    if (!swimmer->missed.empty() && swimmer->missed.size() != SectionPart::count)
+        throw py::value_error("stations must have missed rows for each part of a section, or none");
+    add_fins(*swimmer, physics["fins"], physics["servos"]);
+    return swimmer;
+}
+
+// rows (m, 4 (n + s)), as `LawTables::set` takes them.
+inline std::shared_ptr<LawTables> tables_from(const std::vector<std::size_t>& axis, const py::object& rows,
+                                              std::size_t n, std::size_t s)
+{
+    const auto numbers = Numbers::sized(rows, "rows", 4 * axis.size() * (n + s));
+    auto tables = std::make_shared<LawTables>(axis, n, s);
+    for (std::size_t row = 0; row < axis.size(); ++row) tables->set(row, numbers.data() + row * tables->columns());
+    return tables;
+}
+
+}  // namespace eel_core
