@@ -18,7 +18,7 @@ WORDS = {
     "eel": ("simulate",),
     "simulate": ("--duration", "2000", "--accuracy", "reference"),  # longer than the test
 }
-FIRST = {"record": "rclpy"}  # module at whose import it is stopped, where that is not numpy
+FIRST = {"record": "rclpy", "render": "PIL"}  # module at whose import it is stopped, where that is not numpy
 # Stands still where the module that the variable names is imported, or at the interpreter's start; LIMIT is far above
 # what a signal takes to end a process.
 STANDSTILL = """

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bad input anywhere in the library: one `ValueError` in one short line that names the argument."""
 
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -55,7 +56,7 @@ def calls():
     yield "spline knots", lambda bad: natural_spline([0.0, bad], [1.0, 2.0], [0.5])
     yield "spline values", lambda bad: natural_spline([0.0, 1.0], [1.0, bad], [0.5])
     yield "spline x", lambda bad: natural_spline([0.0, 1.0], [1.0, 2.0], [bad])
-    for name in Scene.__dataclass_fields__:
+    for name in (item.name for item in fields(Scene)):
         yield f"Scene {name}", lambda bad, name=name: Scene(**{name: bad})
     for name in ("x", "half_width", "half_height", "kinks", "nose", "density", "length", "roll_drag", "name"):
         yield f"Body {name}", lambda bad, name=name: Body(**{**BODY, name: bad})
