@@ -27,7 +27,7 @@ from eel_dynamics.accuracy.step_bounds import step_bounds_of
 from eel_dynamics.curvature.curvature_samples import CurvatureSample
 from eel_dynamics.curvature.law_follower import LawFollower
 from eel_dynamics.simulation.bending.joint_motion import JointMotion
-from eel_dynamics.simulation.bending.modes_on_grid import RobotTables
+from eel_dynamics.simulation.bending.modes_on_grid import ModesOnGrid
 from eel_dynamics.simulation.discretisation import Discretisation, discretise
 from eel_dynamics.simulation.observations import Observations, Snapshot
 from eel_dynamics.simulation.sample_check import first_bad_sample
@@ -73,9 +73,9 @@ class March:
                 raise self._left_grid(self.core.outside)
             raise SimulationStopped(0.0, "kinetic energy", self.energy_at_start, "start slower")
 
-    def _on_grid(self, settings: GridSettings) -> tuple[Discretisation, RobotTables | None]:
+    def _on_grid(self, settings: GridSettings) -> tuple[Discretisation, ModesOnGrid | None]:
         here, table = discretise(self.setup, settings), self.setup.modes
-        return here, None if table is None else RobotTables.of(table, here.grid, here.tabulation)
+        return here, None if table is None else ModesOnGrid(table, here.grid, here.tabulation)
 
     @property
     def _mechanics(self) -> tuple[Any, ...]:
@@ -277,7 +277,7 @@ class March:
         if self.robot is None:
             return stopped
         singular = self.core.singular_mode() if status == SINGULAR else None
-        part = shown(self.robot.on_grid.part_of(self.core.hardest if singular is None else singular))
+        part = shown(self.robot.part_of(self.core.hardest if singular is None else singular))
         if status == SINGULAR:
             hint = f"{part} has no inertia of its own: give it an armature, or a support apart from the others"
         else:
@@ -302,12 +302,12 @@ class March:
 
     def _motion(self, rows: np.ndarray) -> JointMotion:
         assert self.robot is not None
-        return JointMotion(self.robot.on_grid, self.core.row, rows)
+        return JointMotion(self.robot, self.core.row, rows)
 
     def command(self, joint: str, kind: str, value: float) -> None:
         """As `Simulation.command`. kind: angle [rad], rate [rad/s], torque [N m], or law."""
         assert self.robot is not None
-        modes, table = [motor.mode for motor in self.robot.on_grid.motors], self.robot.on_grid.table
+        modes, table = [motor.mode for motor in self.robot.motors], self.robot.table
         mode = table.name.index(joint)
         self.core.command(modes.index(mode), kind, float(table.sign[mode] * value))
 

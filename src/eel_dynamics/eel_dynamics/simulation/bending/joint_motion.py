@@ -52,15 +52,15 @@ class Motion(NamedTuple):
 class JointMotion:
     """The motion of a robot's coordinates at T instants: as `Motion`, computed when it is asked for.
 
-    rows: (T, R), as the core writes them at the `places` of their names. on_grid: the robot's modes.
+    rows: (T, R), as the core writes them at the `places` of their names.
     """
 
-    def __init__(self, on_grid: ModesOnGrid, places: dict[str, tuple[int, int]], rows: np.ndarray):
-        self._on_grid, self._places, self._rows = on_grid, places, rows
+    def __init__(self, robot: ModesOnGrid, places: dict[str, tuple[int, int]], rows: np.ndarray):
+        self._robot, self._places, self._rows = robot, places, rows
 
     def every(self, count: int) -> "JointMotion":
         """That at every so many of the instants."""
-        return JointMotion(self._on_grid, self._places, self._rows[::count])
+        return JointMotion(self._robot, self._places, self._rows[::count])
 
     def _of(self, name: str) -> np.ndarray:
         return self._rows[:, slice(*self._places[name])]
@@ -73,16 +73,16 @@ class JointMotion:
     @property
     def arrays(self) -> dict[str, np.ndarray]:
         """The arrays of `JOINT_ARRAYS`."""
-        table, x, rate = self._on_grid.table, self._of("x"), self._of("rate")
+        table, x, rate = self._robot.table, self._of("x"), self._of("rate")
         joints, soft = np.flatnonzero(table.degree == HINGE), np.flatnonzero(table.degree != HINGE)
         coordinate = joints.copy()  # of each joint's motor
         torque = self._of("pushing")[:, joints].copy()
         place = {mode: index for index, mode in enumerate(joints.tolist())}
-        for column, motor in enumerate(self._on_grid.motors):
+        for column, motor in enumerate(self._robot.motors):
             coordinate[place[motor.mode]] = motor.coordinate
             torque[:, place[motor.mode]] += self._of("torque")[:, column]
         on_joint = torque.copy()
-        for servo, mode, own in self._on_grid.sprung:
+        for servo, mode, own in self._robot.sprung:
             between, slip = x[:, own] - x[:, mode], rate[:, own] - rate[:, mode]
             on_joint[:, place[mode]] = servo.series_stiffness * between + servo.series_damping * slip
         sign = table.sign[joints]

@@ -30,11 +30,16 @@ class Motor(NamedTuple):
 
 
 class ModesOnGrid:
-    """The M modes of `table` on a `grid`, whose panels end at their edges. C coordinates: modes, then motors.
+    """The M modes of `table` on a `grid`, whose panels end at their edges, and at the points of a `tabulation`.
+
+    C coordinates: modes, then motors. It never changes.
 
     Attributes:
         motors: the servos.
-        As `eel_core.Modes` takes them:
+        rows: (M, width) of the modes.
+        mask: (2, width) 1 where the law is imposed in pitch, yaw.
+        drive, push: the law of the muscles' moments, and (C, its rows) what it does to the coordinates.
+        modes: the following for the compiled mechanics.
         axis, first, last: (M,) 0 pitch, 1 yaw; first node of the support, and the node behind its last.
         continuous: (M,) 1 for a mode of a tail or muscle, 0 for a joint.
         span, moment: (M,) integral of |B| [1, or m]; internal torque for a unit of the mode's force [1, or 1/m].
@@ -44,7 +49,7 @@ class ModesOnGrid:
         torques: (coordinate, function of the time), or (coordinate, knots [s], cubics).
     """
 
-    def __init__(self, table: ModeTable, grid: Grid):
+    def __init__(self, table: ModeTable, grid: Grid, tabulation: Tabulation):
         self.table = table
         joints = table.degree == HINGE
         self.axis = (table.axis - 1).astype(np.uint64)
@@ -81,6 +86,15 @@ class ModesOnGrid:
             for mode, actuator in table.motors
             if isinstance(actuator, Torque)
         ]
+        self.modes = eel_core.Modes(self)
+        self.rows = tabulation.columns(table.shape(tabulation.x))
+        imposed, n, s = table.imposed(tabulation.x).astype(float), tabulation.nodes, tabulation.stations
+        nodes, stations, further = imposed[:, :n], imposed[:, n : n + s], np.ones((2, tabulation.further))
+        self.mask = np.concatenate((nodes, np.tile(nodes, 3), stations, np.tile(stations, 3), further), axis=1)
+        self.drive, self.push = _muscles(table, size)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> "ModesOnGrid":
+        return self
 
     @property
     def sprung(self) -> list[Motor]:
@@ -92,44 +106,12 @@ class ModesOnGrid:
         count = len(self.table)
         return self.table.name[coordinate if coordinate < count else self.sprung[coordinate - count].mode]
 
-
-def _given(coordinate: int, sign: float, torque: Torque) -> tuple[Any, ...]:
-    """A torque over time for the compiled mechanics."""
-    if torque.spline is None:
-        return coordinate, lambda time: sign * float(torque.at(time))
-    cubics = np.ascontiguousarray(sign * torque.spline.c[::-1].T)
-    return coordinate, np.array(torque.spline.x, dtype=float), cubics
-
-
-class RobotTables(NamedTuple):
-    """What does not change with the law: on one grid."""
-
-    modes: eel_core.Modes
-    on_grid: ModesOnGrid
-    rows: np.ndarray  # (M, width) of the modes
-    mask: np.ndarray  # (2, width) 1 where the law is imposed in pitch, yaw
-    drive: eel_core.LawOnGrid | None  # of muscles
-    push: np.ndarray  # (C, rows of `drive`)
-
-    @staticmethod
-    def of(table: ModeTable, grid: Grid, tabulation: Tabulation) -> "RobotTables":
-        """The tables of a robot on a grid and the points of a `tabulation`."""
-        on_grid, x = ModesOnGrid(table, grid), tabulation.x
-        rows = tabulation.columns(table.shape(x))
-        imposed, n, s = table.imposed(x).astype(float), tabulation.nodes, tabulation.stations
-        nodes, stations = imposed[:, :n], imposed[:, n : n + s]
-        mask = np.concatenate(
-            (nodes, np.tile(nodes, 3), stations, np.tile(stations, 3), np.ones((2, tabulation.further))), axis=1
-        )
-        drive, push = _muscles(table, len(on_grid.inertia))
-        return RobotTables(eel_core.Modes(on_grid), on_grid, rows, mask, drive, push)
-
     def at_start(self, law: eel_core.LawOnGrid, reference: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Coordinates (C,) and rates under a `law`: as given, as the servos' `reference` is, or where springs rest."""
-        factors, given = np.array(law.factors(0.0)), self.on_grid.table.initial
-        first, rate = self.on_grid.rest.copy(), np.zeros(len(self.on_grid.rest))
+        factors, given = np.array(law.factors(0.0)), self.table.initial
+        first, rate = self.rest.copy(), np.zeros(len(self.rest))
         first[: len(given)] = np.where(np.isnan(given), first[: len(given)], given)
-        for (_, mode, coordinate), row in zip(self.on_grid.motors, reference, strict=True):
+        for (_, mode, coordinate), row in zip(self.motors, reference, strict=True):
             there = factors[:2, : len(row)] @ row if np.isnan(given[mode]) else (given[mode], 0.0)
             first[[coordinate, mode]], rate[[coordinate, mode]] = there
         return first, rate
@@ -137,14 +119,22 @@ class RobotTables(NamedTuple):
     def law(self, follower: LawFollower, tabulation: Tabulation) -> tuple[eel_core.LawOnGrid, np.ndarray]:
         """The law in force with the modes' rows, and what the servos follow: (servos, rows of the law)."""
         rows, axis = follower.rows()
-        table = self.on_grid.table
+        table = self.table
         bent = np.concatenate((rows * self.mask[axis], self.rows))
         tables = tabulation.law_tables(bent, np.concatenate((axis, table.axis - 1)))
         at_points = rows[:, tabulation.width - tabulation.further :]
-        modes = [motor.mode for motor in self.on_grid.motors]
+        modes = [motor.mode for motor in self.motors]
         same = (table.axis[modes] - 1)[:, None] == axis
         reference = np.where(same, table.projection[modes] @ at_points.T, 0.0)
         return follower.on_tables(tables), np.ascontiguousarray(reference)
+
+
+def _given(coordinate: int, sign: float, torque: Torque) -> tuple[Any, ...]:
+    """A torque over time for the compiled mechanics."""
+    if torque.spline is None:
+        return coordinate, lambda time: sign * float(torque.at(time))
+    cubics = np.ascontiguousarray(sign * torque.spline.c[::-1].T)
+    return coordinate, np.array(torque.spline.x, dtype=float), cubics
 
 
 def _muscles(table: ModeTable, coordinates: int) -> tuple[eel_core.LawOnGrid | None, np.ndarray]:
@@ -170,7 +160,7 @@ def shapes_of_run(run: Any, table: ModeTable, here: Discretisation) -> Iterator[
     """For each sample of a robot's `run` a law whose curvature and rate at that time are the run's, on the grid `here`:
     for what is evaluated after the run."""
     tabulation = here.tabulation
-    tables = RobotTables.of(table, here.grid, tabulation)
+    robot = ModesOnGrid(table, here.grid, tabulation)
     joints, sign = table.degree == HINGE, table.sign[table.degree == HINGE]
     motion = np.zeros((2, len(run.time), len(table)))  # coordinates, and their rates
     motion[0][:, joints], motion[1][:, joints] = run.joint_angle * sign, run.joint_rate * sign
@@ -185,8 +175,8 @@ def shapes_of_run(run: Any, table: ModeTable, here: Discretisation) -> Iterator[
             imposed, own = axis == each, table.axis - 1 == each
             for derivative in (0, 1):
                 ends[each, derivative] = (
-                    factors[derivative, imposed] @ rows[imposed] * tables.mask[each]
-                    + motion[derivative, sample, own] @ tables.rows[own]
+                    factors[derivative, imposed] @ rows[imposed] * robot.mask[each]
+                    + motion[derivative, sample, own] @ robot.rows[own]
                 )
         law_tables = tabulation.law_tables(ends.reshape(12, -1), SEGMENT_AXES)
         yield eel_core.LawOnGrid(law_tables, 0.0, [], (0, time, time + 1.0), None)
