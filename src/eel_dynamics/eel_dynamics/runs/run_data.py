@@ -20,11 +20,9 @@ from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
-from eel_dynamics.runs.storage.variables import fields_of_arrays
+from eel_dynamics.runs.storage.variables import ENERGY, LEDGER, OWN, fields_of_arrays
 from eel_dynamics.simulation.energy import EnergyLedger
-from eel_dynamics.simulation.observations import OBSERVED, Snapshot
-
-WHOLE = "energies", "powers", "closure"  # of what is observed: a run has the ledger, and the closures one by one
+from eel_dynamics.simulation.observations import Snapshot
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -96,17 +94,16 @@ class RunData(ObservedArrays):
 
         law: the one that the swimmer follows. others: further fields of the run. Its numbers of steps are 0.
         """
-        names = (*(name for name in OBSERVED if name not in WHOLE), "time", "closure_torque", "closure_force")
-        rows = {name: [getattr(each, name) for each in snapshots] for name in names}
-        rows |= {name: [each.joints[name] for each in snapshots] for name in snapshots[0].joints}
-        found: dict[str, Any] = {name: None if row[0] is None else np.array(row) for name, row in rows.items()}
-        found |= {name: getattr(swimmer, name) for name in ("body", "scene", "accuracy", "x")}
-        found |= {name: getattr(swimmer, name, none) for name, none in (("robot", None), ("flow", None), ("fins", ()))}
-        found |= {"energy": None, "steps": 0, "evaluations": 0, "nodes": 0}
+        first = snapshots[0]
+        names = [name for name in OWN if name not in ("x", *first.joints) and getattr(first, name, None) is not None]
+        arrays = {name: np.array([getattr(each, name) for each in snapshots]) for name in names}
+        arrays |= {name: np.array([each.joints[name] for each in snapshots]) for name in first.joints}
         if ledgers := [each.energy for each in snapshots if each.energy is not None]:
-            parts = EnergyLedger.keys()
-            found["energy"] = EnergyLedger(*(np.array([each[part] for each in ledgers]) for part in parts))
-        return cls(law=law, **found | others)
+            arrays |= {ENERGY + name: np.array([each[name] for each in ledgers]) for name in LEDGER}
+        own = {name: getattr(swimmer, name, none) for name, none in (("robot", None), ("flow", None), ("fins", ()))}
+        own |= {name: getattr(swimmer, name) for name in ("body", "scene", "accuracy")}
+        found = fields_of_arrays(arrays | {"x": swimmer.x}, own["robot"])
+        return cls(law=law, **found | own | {"steps": 0, "evaluations": 0, "nodes": 0} | others)
 
     def __eq__(self, other: object) -> bool:
         return self is other or same_fields(self, other)

@@ -317,16 +317,14 @@ class March:
         """As `Simulation.observe`."""
         scene = self.setup.scene
         wrench, load = bool(wrench and scene.internal_wrench), bool(load)
-        snapshot = Snapshot(self.time, self.setup.x, wrench, load, len(self.setup.fins))
         rows = () if self.robot is None else (self._empty_rows(1),)
-        for row in rows:
-            snapshot.keep_joints(self._motion(row))
+        ledger = (np.array(self.core.works), self.energy_at_start) if scene.ledger else None
+        joints = self._motion(*rows) if rows else None
+        snapshot = Snapshot(self.time, self.setup.x, wrench, load, len(self.setup.fins), ledger, joints)
         if not self.core.observe(snapshot.whole, *rows, wrench, load):
             raise self._stopped(SINGULAR)
         if self.setup.flow is not None and self.core.outside is not None:
             raise self._left_grid(self.core.outside)
-        if scene.ledger:
-            snapshot.keep_ledger(np.array(self.core.works), self.energy_at_start)
         return snapshot
 
     @property

@@ -125,49 +125,49 @@ FINS = ("fin_angle", "fin_force")
 class Snapshot(Observations):
     """One instant: the quantities have no dimension "time", and are None where they were not asked for.
 
-    The arrays are views: copy what is to be kept.
+    The arrays are views: copy what is to be kept. ledger: the works (6,) [J] since the start, and the energy [J] there.
+    joints: the `JointMotion` of the instant.
 
     Attributes:
         time: [s].
         x: (M,) [m], the stations.
     """
 
-    __slots__ = ("_energy", "_energy_at_start", "_joints", "_works", "time", "x")
+    __slots__ = ("_energy", "_joints", "_ledger", "time", "x")
 
-    def __init__(self, time: float, x: np.ndarray, wrench: bool, load: bool, fins: int = 0):
+    def __init__(
+        self,
+        time: float,
+        x: np.ndarray,
+        wrench: bool,
+        load: bool,
+        fins: int = 0,
+        ledger: tuple[np.ndarray, float] | None = None,
+        joints: Any = None,
+    ):
         places, size = _places_of_instant(len(x), wrench, load, fins)
         super().__init__(np.zeros(size), places)
-        self.time, self.x = time, x
-        self._works: np.ndarray | None = None
-        self._joints: Any = None
-        self._energy_at_start = 0.0
+        self.time, self.x, self._joints = time, x, joints
+        self._ledger = ledger
         self._energy: EnergyLedger | None = None
-
-    def keep_joints(self, joints: Any) -> None:
-        """Have the `JointMotion` of the instant."""
-        self._joints = joints
 
     @property
     def joints(self) -> dict[str, np.ndarray]:
         """The arrays of `JOINT_ARRAYS` at the instant, without the dimension "time"; empty without a robot."""
         return {} if self._joints is None else {name: row[0] for name, row in self._joints.arrays.items()}
 
-    def keep_ledger(self, works: np.ndarray, energy_at_start: float) -> None:
-        """Have a ledger, from the `works` (6,) [J] since the start and the energy [J] there."""
-        self._works, self._energy_at_start = works, energy_at_start
-
     @property
     def energy(self) -> EnergyLedger | None:
         """One float per field; None without a ledger."""
-        if self._energy is None and self._works is not None:
+        if self._energy is None and self._ledger is not None:
             robot = None if self._joints is None else self._joints.ledger[0]
-            self._energy = EnergyLedger.of(self.energies, self.powers, self._works, self._energy_at_start, robot)
+            self._energy = EnergyLedger.of(self.energies, self.powers, *self._ledger, robot)
         return self._energy
 
     @property
     def actuator_work(self) -> float | None:
         """[J] since the start; None without a ledger."""
-        return None if self._works is None else float(self._works[0])
+        return None if self._ledger is None else float(self._ledger[0][0])
 
     @property
     def closure_torque(self) -> float | None:

@@ -147,11 +147,10 @@ class SampledSwimmers:
         """The snapshot of a swimmer at present, as of `Simulation.observe`."""
         wrench, load = bool(wrench and self.scene.internal_wrench), bool(load)
         time, works, _ = self._marches.present(index)
-        snapshot = Snapshot(time, self.x, wrench, load)
+        ledger = (np.array(works), float(self._energy_at_start[index])) if self.scene.ledger else None
+        snapshot = Snapshot(time, self.x, wrench, load, ledger=ledger)
         if not self._marches.observe(index, snapshot.whole, wrench, load):
             raise self._stopped(index, SINGULAR)
-        if self.scene.ledger:
-            snapshot.keep_ledger(np.array(works), float(self._energy_at_start[index]))
         return snapshot
 
     def evaluations(self, index: int) -> tuple[int, int, int]:

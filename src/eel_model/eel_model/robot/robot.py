@@ -186,20 +186,17 @@ def _place(part: Joint | PassiveTail | Muscle) -> float:
 
 def _named(parts: list[Any]) -> tuple[Any, ...]:
     """The `parts`, each with a name of its own."""
-    taken = {part.name for part in parts if part.name}
-    names: list[str] = []
-    count = 0
+    taken, count = {part.name for part in parts if part.name}, 0
+    named: list[Any] = []
     for part in parts:
         if isinstance(part, Joint):
             count += 1
-            if not part.name:
-                while f"joint_{count}" in taken:
-                    count += 1
-        name = part.name or f"joint_{count}"
-        if name in names:
-            raise ValueError(f"each part of a robot must have a name of its own, got {shown(name)} twice")
-        names.append(name)
-    return tuple(part if part.name else replace(part, name=name) for part, name in zip(parts, names, strict=True))
+            while not part.name and f"joint_{count}" in taken:
+                count += 1
+        if any(other.name == part.name for other in named):
+            raise ValueError(f"each part of a robot must have a name of its own, got {shown(part.name)} twice")
+        named.append(part if part.name else replace(part, name=f"joint_{count}"))
+    return tuple(named)
 
 
 def _with_actuator(part: Any) -> tuple[Any, ...]:
