@@ -23,11 +23,12 @@ the printed load of the nose, change the momentum of body and water, and the thr
 a run shows how much of a motion is due to the wake. It is no model of a fish.
 """
 
-from dataclasses import dataclass
-from typing import ClassVar
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any, ClassVar, Self
 
 from eel_base.quantity import Quantities, documented, quantity
-from eel_base.wording import shown
+from eel_base.wording import did_you_mean, shown
 
 import eel_core
 
@@ -97,6 +98,15 @@ class Scene(Quantities):
     )
     fluid_density: float = quantity(1000.0, "kg/m^3", "density of the water", 0.0)
     viscosity: float = quantity(1e-6, "m^2/s", "kinematic viscosity of the water", 0.0)
+
+    def changed(self, values: Mapping[str, Any]) -> Self:
+        """The same with these `values` of fields by name. `ValueError` names one that there is not."""
+        known = [item.name for item in fields(self)]
+        for name in values:
+            if name not in known:
+                hint = did_you_mean(name, known)
+                raise ValueError(f"scene has no field {shown(name)}{hint}, it has: {', '.join(known)}")
+        return replace(self, **values)
 
     def __post_init__(self) -> None:
         super().__post_init__()

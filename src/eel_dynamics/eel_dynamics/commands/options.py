@@ -7,12 +7,12 @@ A value of NAME=VALUE is a number, true or false (on or off), or a word.
 import argparse
 import inspect
 from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
 from eel_base.command.command_line import Parser
-from eel_base.wording import did_you_mean, shown
+from eel_base.wording import shown
 from eel_gaits.gaits.registry import GAITS, find
 from eel_model.body.body import NAMED
 from eel_model.flow.text import NAMES
@@ -107,21 +107,19 @@ def duration_option(text: str) -> float | str:
 
 
 def scene_of(texts: list[str], base: Scene | None = None) -> Scene:
-    """The scene `base`, or the default one, with what --scene gives. `ValueError` as of `scene_fields`."""
-    return replace(base or Scene(), **scene_fields(texts))
+    """The scene `base`, or the default one, with what --scene gives. `ValueError` names a field that there is not."""
+    return (base or Scene()).changed(scene_fields(texts))
 
 
 def scene_fields(texts: list[str]) -> dict[str, Any]:
-    """The fields of a `Scene` that --scene gives, by name. `ValueError` names one that there is not."""
+    """What --scene gives by name; the names are not checked."""
     known = {item.name: item for item in fields(Scene)}
     found: dict[str, Any] = {}
     for name, text in named_texts("--scene", texts):
-        if name not in known:
-            hint = did_you_mean(name, known)
-            raise ValueError(f"scene has no field {shown(name)}{hint}, it has: {', '.join(known)}")
-        if isinstance(known[name].default, bool):
+        item = known.get(name)
+        if item is not None and isinstance(item.default, bool):
             found[name] = {"1": True, "0": False, **TRUTH}.get(text.lower(), text)
-        elif "choices" in known[name].metadata:
+        elif item is not None and "choices" in item.metadata:
             found[name] = text
         else:
             values = [value_of(part) for part in text.split(",")]

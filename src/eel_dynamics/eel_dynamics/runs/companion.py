@@ -83,7 +83,8 @@ def with_error_estimate(swim: Any, request: Any) -> Any:
         finer = _finished(request, tightened, swim.run.nodes)
         if finer is None:
             break
-        companion, swim = swim, _for_target(finer, target)
+        settings = replace(finer.run.accuracy, target=target)
+        companion, swim = swim, finer._replace(run=replace(finer.run, accuracy=settings))
     return swim._replace(run=_with_resampling(swim.run, marching, others))
 
 
@@ -123,10 +124,6 @@ def _for_comparison(request):
         times = times[(len(times) - 1) % COMPARED_EVERY :: COMPARED_EVERY]
     request = request.changed(scene=replace(request.setup.scene, ledger=False))
     return request._replace(load=False, times=times, every=1)
-
-
-def _for_target(swim, target: float | None):
-    return swim._replace(run=replace(swim.run, accuracy=replace(swim.run.accuracy, target=target))) if target else swim
 
 
 def _finished(request, accuracy: Accuracy, nodes: int | None = None):

@@ -19,7 +19,7 @@ A further word is a line of `WORDS`.
 
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import fields, replace
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -109,11 +109,7 @@ def _plain_body(swim: Swim) -> str:
 
 
 def _scene(swim: Swim, value: Any) -> dict[str, Any]:
-    known, given = [item.name for item in fields(Scene)], checked_instance("scene", value, Mapping)
-    for name in given:
-        if name not in known:
-            raise ValueError(f"scene has no field {shown(name)}{did_you_mean(name, known)}, it has: {', '.join(known)}")
-    return {"scene": replace(swim.scene, **given)}
+    return {"scene": swim.scene.changed(checked_instance("scene", value, Mapping))}
 
 
 def _plain_scene(swim: Swim) -> dict[str, Any]:

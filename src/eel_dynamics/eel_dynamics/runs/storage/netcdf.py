@@ -48,14 +48,6 @@ def attributes_of(contents: Contents) -> dict[str, Any]:
     }
 
 
-def checked_path(argument: str, path: Any) -> Path:
-    """`path`, where a file can be written. `ValueError` names the `argument`."""
-    if not isinstance(path, (str, os.PathLike)) or Path(path).suffix != SUFFIX:
-        raise ValueError(f"{argument} must be a path that ends in {SUFFIX}, got {shown(path)}")
-    check_output(argument, path)
-    return Path(path)
-
-
 def write(contents: Contents, path: Any) -> None:
     """Write `contents` to the file `path`, which has its name when it is complete.
 
@@ -63,7 +55,10 @@ def write(contents: Contents, path: Any) -> None:
     """
     from scipy.io import netcdf_file
 
-    path, sizes, attributes = checked_path("path", path), sizes_of(contents), attributes_of(contents)
+    if not isinstance(path, (str, os.PathLike)) or Path(path).suffix != SUFFIX:
+        raise ValueError(f"path must be a path that ends in {SUFFIX}, got {shown(path)}")
+    check_output("path", path)
+    path, sizes, attributes = Path(path), sizes_of(contents), attributes_of(contents)
     from_json(attributes["eel"])  # what is saved can be loaded
     for name, values in contents.arrays.items():
         if values.nbytes > MOST_BYTES:
@@ -78,9 +73,8 @@ def write(contents: Contents, path: Any) -> None:
             file.createDimension(name, size)
         for name, values in contents.arrays.items():
             about = contents.variable(name)
-            variable = file.createVariable(
-                name, "f8" if values.dtype.kind == "f" else _integer(values), about.dimensions
-            )
+            whole = values.dtype.kind != "f" and values.max(initial=0) < 2**31
+            variable = file.createVariable(name, "i4" if whole else "f8", about.dimensions)
             variable[...] = values
             variable.units, variable.long_name = about.unit.encode(), about.description.encode()
         add_digest(file)
@@ -102,7 +96,8 @@ def read(path: Any, kind: str) -> Contents:
         of_sweep = about["kind"] is None and hasattr(file, "sweep")
         ours = {} if of_sweep else {name: file.variables[name] for name in KNOWN if name in file.variables}
         axes = getattr(file, "axes", PAPER.encode())
-        arrays = {name: _native(np.asarray(each.data)) for name, each in ours.items()}
+        arrays = {name: np.asarray(each.data) for name, each in ours.items()}
+        arrays = {name: each.astype(float if each.dtype.kind == "f" else int) for name, each in arrays.items()}
         if not of_sweep and None not in about.values():
             check_digest(file, named)
     if of_sweep:
@@ -143,11 +138,3 @@ def sizes_of(contents: Contents) -> dict[str, int]:
         if not fit:
             raise ValueError(f"{name} must have the shape ({', '.join(dimensions)}), got {values.shape}")
     return sizes
-
-
-def _integer(values: np.ndarray) -> str:
-    return "i4" if values.max(initial=0) < 2**31 else "f8"
-
-
-def _native(values: np.ndarray) -> np.ndarray:
-    return values.astype(float) if values.dtype.kind == "f" else values.astype(int)
