@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from draws import few, numbers
 from eel_dynamics.runs.companion import relative_errors
-from eel_dynamics.simulation.sample_check import first_bad_sample
+from eel_dynamics.simulation.stopping import first_bad_sample
 from hypothesis import given
 from hypothesis import strategies as st
 from random_scenes import fixed, pointed

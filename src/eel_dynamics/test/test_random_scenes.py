@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.simulation.energy import WORKS
-from eel_dynamics.simulation.sample_check import OPEN
+from eel_dynamics.simulation.stopping import OPEN
 from random_scenes import anywhere, robots_anywhere, with_weight_and_fins
 
 from eel_dynamics import Scene, Simulation, simulate, simulate_batch

@@ -5,8 +5,7 @@ import argparse
 
 from eel_base.command.command_line import Parser
 from eel_base.wording import shown
-from eel_dynamics.commands.options import add_options, named_texts, set_numbers
-from eel_dynamics.commands.scene_options import add_changes, swim_from
+from eel_dynamics.commands.options import add_changes, add_options, named_texts, set_numbers, swim_from
 
 from eel_dynamics import Swim
 from eel_studies.points import point_at

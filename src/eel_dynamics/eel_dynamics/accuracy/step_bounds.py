@@ -4,6 +4,7 @@
 Within them the core chooses each step by its error: `time_step_size` in eel_core/steppers/step_control.hpp.
 """
 
+import math
 from functools import lru_cache
 
 from eel_base.wording import shown
@@ -75,7 +76,7 @@ def step_bounds_of(
     part_of_span = PART_OF_RAMP if ledger else PART_OF_SPAN
     slowest = max(SLOWEST * length / min(scale, 10.0), PART_OF_SPEED * speed)
     return eel_core.StepBounds(
-        tolerance=accuracy.tolerance,
+        tolerance=math.inf if accuracy.method == "classical" else accuracy.tolerance,  # infinite: steps of one length
         longest=fixed or longest,
         smallest=1e-11 * min(scale, 1.0),
         length=length,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The options that commands share: each stands here once, with its words. Their values, checked.
+"""The options that commands share: each stands here once, with its words. Their values, checked, and the scene of them.
 
 A value of NAME=VALUE is a number, true or false (on or off), or a word.
 """
@@ -20,8 +20,12 @@ from eel_model.robot.ready import READY
 from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import PRESETS
+from eel_dynamics.runs.scene_file import SUFFIXES, load_scene, swim_of
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, until_settled
+from eel_dynamics.runs.swim import Swim
 
+CHANGES = "--scene", "--body", "--flow", "--robot", "--fins", "--duration", "--accuracy", "--sample-period"
+FIELDS = "body", "flow", "robot", "fins", "duration", "accuracy", "sample_period", "stations"  # words of a file
 TRUTH = {"true": True, "on": True, "false": False, "off": False}
 
 
@@ -153,6 +157,26 @@ def value_of(text: str) -> Any:
         return float(text)
     except ValueError:
         return text
+
+
+def add_changes(parser: Parser, *left_out: str, **defaults: Any) -> None:
+    """Add the options that `swim_from` takes to the `parser` of a command, but those `left_out`.
+
+    defaults: as in `add_options`.
+    """
+    own = dict.fromkeys(("body", "accuracy", "duration", "sample_period"), (None, "the scene's"))
+    add_options(parser, *(each for each in CHANGES if each not in left_out), **own | defaults)
+
+
+def swim_from(name: str, options: argparse.Namespace, **words: Any) -> Swim:
+    """The swim of the file called `name`, or of the gait, with what the `options` of `add_changes` change.
+
+    words: further ones of a file, before those of the options.
+    """
+    swim = load_scene(name) if name.endswith(SUFFIXES) else swim_of({"gait": name})
+    given = {field: getattr(options, field, None) for field in FIELDS}
+    words |= {field: value for field, value in given.items() if value not in (None, "")}
+    return swim_of({**words, "scene": {**words.get("scene", {}), **scene_fields(options.scene)}}, swim)
 
 
 OPTIONS = {  # what argparse takes

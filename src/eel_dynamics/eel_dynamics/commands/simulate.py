@@ -35,8 +35,7 @@ from eel_model.scene import Scene
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.joint_demand import MOST_JOINTS
 from eel_dynamics.commands.filmed import EEL, add_film_options, beat_from, body_for, effect_of_fit
-from eel_dynamics.commands.options import add_options, set_numbers
-from eel_dynamics.commands.scene_options import swim_from
+from eel_dynamics.commands.options import add_options, set_numbers, swim_from
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.scene_file import SUFFIXES as SCENES
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, until_settled

@@ -30,9 +30,15 @@ from eel_dynamics.simulation.bending.joint_motion import JointMotion
 from eel_dynamics.simulation.bending.modes_on_grid import ModesOnGrid
 from eel_dynamics.simulation.discretisation import Discretisation, discretise
 from eel_dynamics.simulation.observations import Observations, Snapshot
-from eel_dynamics.simulation.sample_check import first_bad_sample
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
-from eel_dynamics.simulation.stopping import SimulationStopped, left_grid, not_begun, remedy, stopped_by
+from eel_dynamics.simulation.stopping import (
+    SimulationStopped,
+    first_bad_sample,
+    left_grid,
+    not_begun,
+    remedy,
+    stopped_by,
+)
 
 UNCUT = 2**62  # nodes that a march evaluates before it comes back: all
 UNCUT = 2**62  # nodes that a march evaluates before it comes back: all
@@ -184,7 +190,7 @@ class March:
     def _step_bounds(self) -> eel_core.StepBounds:
         setup, follower, here = self.setup, self.follower, self.discretisation
         of_flow = np.inf if setup.flow is None else setup.flow.time_scale
-        bounds = step_bounds_of(
+        return step_bounds_of(
             accuracy=setup.settings,
             ledger=bool(setup.scene.ledger),
             between_samples=follower.between_samples,
@@ -195,9 +201,6 @@ class March:
             scale=min(follower.time_scale, self._time_scale, here.weight_time, of_flow, servo_time(setup.fins)),
             most_evaluations=setup.most_evaluations,
         )
-        if self.robot is not None and setup.settings.method == "classical":  # steps of one length
-            return with_tolerance(bounds, np.inf)
-        return bounds
 
     # -- march
 
@@ -356,9 +359,3 @@ class March:
         self._hand_over_law()
         self.core.set_state(state.position, state.orientation, relative)
         self.energy_at_start += energy - present
-
-
-def with_tolerance(bounds: eel_core.StepBounds, tolerance: float) -> eel_core.StepBounds:
-    """The same `bounds` with another tolerance; infinite: steps of one length."""
-    names = ["longest", "smallest", "length", "momentum_floor", "part_of_span", "most_steps", "spare_steps"]
-    return eel_core.StepBounds(tolerance=tolerance, **{name: getattr(bounds, name) for name in names})

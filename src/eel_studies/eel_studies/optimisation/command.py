@@ -15,8 +15,7 @@ from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
 from eel_base.wording import shown
 from eel_dynamics.analysis.measures import MEASURES
-from eel_dynamics.commands.options import add_options, add_repeated, set_numbers, varied_values
-from eel_dynamics.commands.scene_options import add_changes, swim_from
+from eel_dynamics.commands.options import add_changes, add_options, add_repeated, set_numbers, swim_from, varied_values
 from eel_dynamics.runs.scene_file import SUFFIXES as SCENES
 from eel_dynamics.runs.storage.tables import write_columns
 

@@ -18,14 +18,15 @@ from eel_base.command.progress import Progress
 from eel_base.files.output_file import written_as
 from eel_dynamics.analysis.measures import MEASURES
 from eel_dynamics.commands.options import (
+    add_changes,
     add_options,
     add_repeated,
     check_names,
     named_texts,
     set_numbers,
+    swim_from,
     varied_values,
 )
-from eel_dynamics.commands.scene_options import add_changes, swim_from
 from eel_dynamics.runs.scene_file import SUFFIXES
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED
 
