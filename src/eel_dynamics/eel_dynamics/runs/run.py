@@ -195,11 +195,7 @@ class Run(RunData):
         The run itself where that cannot be: it was recorded elsewhere, is another swim when simulated again, begins
         after t = 0, or has no internal wrench.
         """
-        if self.fluid_force is not None or not self.steps or not self.scene.internal_wrench:
-            return self
-        try:
-            again = simulated_again(self, self.law, self.accuracy.as_it_is(), load=True)
-        except (SimulationStopped, ValueError):
+        if self.fluid_force is not None or not self.scene.internal_wrench or (again := self._again(load=True)) is None:
             return self
         alike = again.position.shape == self.position.shape and np.allclose(again.position, self.position, atol=1e-9)
         return replace(self, **{name: getattr(again, name) for name in LOAD}) if alike else self
@@ -211,12 +207,14 @@ class Run(RunData):
         begins after t = 0.
         """
         finer = min(FINER, MOST_SAMPLES // max(1, len(self.time)))
-        if not self.steps or finer < 2 or len(self.time) < 2:
-            return self
+        return (self._again(finer=finer) if finer > 1 and len(self.time) > 1 else None) or self
+
+    def _again(self, **how: Any) -> "Run | None":
+        """The run, simulated anew as `simulated_again` has it; None where that cannot be."""
         try:
-            return simulated_again(self, self.law, self.accuracy.as_it_is(), finer=finer)
+            return simulated_again(self, self.law, self.accuracy.as_it_is(), **how) if self.steps else None
         except (SimulationStopped, ValueError):
-            return self
+            return None
 
     @cached_property
     def smoothing(self) -> SmoothingEffect | None:

@@ -55,7 +55,7 @@ class Robot:
         body: Body | None = None,
         notes: Iterable[str] = (),
     ) -> None:
-        given = [parts] if isinstance(parts, (Joint, PassiveTail, Muscle)) else parts
+        given = [parts] if isinstance(parts, KINDS) else parts
         if isinstance(given, (str, bytes)) or not isinstance(given, Iterable):
             raise ValueError(f"robot parts must be joints, passive tails and muscles, got {shown(parts)}")
         listed = sorted((checked_instance("a robot's part", each, KINDS) for each in given), key=_place)
