@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names and types of the swimmer's topics, and fields of its ledger, as texts: no ROS is imported.
 
-A new topic has its name here. `FIELDS` (eel_dynamics/runs/exchange/message_fields.py) says what its fields hold,
-`SampleMessages` (eel_dynamics/ros/messages.py) makes its message, and `PARTS` (eel_dynamics/ros/publishers.py) names
-what is costly to find for it. `READERS` (eel_viz/recording/dispatcher.py) reads it, and the methods of its name in the
-classes of `Loggers` draw it.
+A new topic has its name here; a new type of message is a file of eel_msgs/msg, named in eel_msgs/CMakeLists.txt.
+`SampleMessages` (eel_dynamics/ros/messages.py) makes its message. `FIELDS`
+(eel_dynamics/runs/exchange/message_fields.py) says which quantity each field holds; what is no quantity of a sample is
+filled by `SampleMessages`, and for runs by `_sample` (eel_dynamics/runs/exchange/messages_of_run.py). `PARTS` and
+`NOT_AWAITED` (eel_dynamics/ros/publishers.py) name what is costly to find for it, and topics whose subscribers the
+start does not wait for. A topic of `INPUTS` has a subscription of its own, as eel_dynamics/ros/current_subscription.py.
+`READERS` (eel_viz/recording/dispatcher.py) reads it, and the methods of its name in the classes of `Loggers` draw it.
 """
 
 OWN = {  # relative: below the swimmer's namespace

@@ -2,11 +2,13 @@
 """The base class of the environments: control steps of a swimmer, or of many side by side."""
 
 import copy
+import math
 from collections.abc import Callable
 from typing import Any, Self
 
 import gymnasium
 import numpy as np
+from eel_base.quantity import positive
 from eel_base.wording import not_one_of, one_line, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.simulation.commanded_robots import CommandedRobots
@@ -22,6 +24,13 @@ from eel_gym.episode_recording import EpisodeRecording
 from eel_gym.joint_action import JointAction
 from eel_gym.picture import picture
 from eel_gym.task import Action, MeanHeading, Start, Task
+
+
+def checked_count(name: str, count: Any) -> int:
+    """`count` as an int of 1 or more."""
+    if positive(name, count) != int(count):
+        raise ValueError(f"{name} must be a whole number, got {shown(count)}")
+    return int(count)
 
 
 class SwimmerEnv(Task):
@@ -62,16 +71,17 @@ class SwimmerEnv(Task):
         flow: Flow | Callable[[np.random.Generator], Flow | None] | None = None,
         **numbers: Any,
     ):
-        super().__init__(body, scene, action, () if swimmers is None else (swimmers,), numbers)
+        shape = () if swimmers is None else (checked_count("swimmers", swimmers),)
+        super().__init__(body, scene, action, shape, numbers)
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(not_one_of("render_mode", render_mode, self.metadata["render_modes"]))
         if not (flow is None or isinstance(flow, Flow) or callable(flow)):
             raise ValueError(f"flow must be a Flow, or a function of random numbers that draws one, got {shown(flow)}")
         self.render_mode, self.flow = render_mode, flow
         self.metadata = self.metadata | {"render_fps": round(1.0 / self.numbers.control_period)}
-        count, stations = swimmers or 1, 51 if render_mode else 2
+        count, stations = math.prod(shape), 51 if render_mode else 2
         swims: dict[str, Any] = {"body": self.body, "scene": self.scene, "accuracy": accuracy}
-        swims |= {"stations": stations, "threads": threads}
+        swims |= {"stations": stations, "threads": checked_count("threads", threads)}
         self.swimmers: SampledSwimmers | CommandedRobots
         if isinstance(self.action, JointAction):
             joints, kind = self.action.names, self.action.kind

@@ -5,7 +5,6 @@ from typing import Any, ClassVar
 
 import gymnasium
 import numpy as np
-from eel_base.quantity import positive
 from eel_base.wording import shown
 from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
@@ -13,7 +12,7 @@ from gymnasium.vector.utils import batch_space
 
 from eel_gym.depth import DepthEnv
 from eel_gym.heading import HeadingEnv
-from eel_gym.swimmer_env import SwimmerEnv
+from eel_gym.swimmer_env import SwimmerEnv, checked_count
 from eel_gym.way_points import WayPointsEnv
 
 
@@ -46,16 +45,13 @@ class ThreadedVectorEnv(VectorEnv[Any, Any, Any]):
         max_episode_steps: int | None = None,
         **settings: Any,
     ):
-        for name, count in (("num_envs", num_envs), ("threads", threads)):
-            if positive(name, count) != int(count):
-                raise ValueError(f"{name} must be a whole number, got {shown(count)}")
         try:
             self._mode = AutoresetMode(autoreset_mode)
         except ValueError:
             known = ", ".join(mode.value for mode in AutoresetMode)
             raise ValueError(f"autoreset_mode must be one of {known}, got {shown(autoreset_mode)}") from None
-        self.num_envs = int(num_envs)
-        self.swimmers = (task or self.task)(swimmers=self.num_envs, threads=int(threads), **settings)
+        self.num_envs = checked_count("num_envs", num_envs)
+        self.swimmers = (task or self.task)(swimmers=self.num_envs, threads=threads, **settings)
         first, self._limit = self.swimmers, max_episode_steps
         self.metadata = {**first.metadata, "autoreset_mode": self._mode}
         self.render_mode = first.render_mode

@@ -33,6 +33,7 @@ from eel_base.wording import did_you_mean, shown
 import eel_core
 
 FRICTION = (*eel_core.FRICTION_LAWS, "none")
+ROUGH_FRICTION = ("blended", "taylor")  # laws that are not analytic along the body: their grids have more points
 PERIMETER = ("ellipse", "printed")
 ADDED_MASS = ("corrected", "printed")
 TAIL_PRESSURE = ("lumped", "distributed")

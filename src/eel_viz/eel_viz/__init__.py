@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Shows a swimmer in Rerun and records its topics. Topics are the only connection to the other packages.
 
-`ros` holds the visualiser node. `recording` turns messages into Rerun recordings: dispatcher, loggers, destinations,
-blueprint, and the reader of recordings. `scene3d` draws in three dimensions, `plots` draws curves, maps and texts.
-`bags` records, prints and replays bags. `pictures` renders recordings. Only `ros`, and `record`, `echo` and
-`definitions` in `bags`, import ROS.
+`ros` holds the nodes visualiser, markers and record, and `echo`. `recording` turns messages into Rerun recordings, and
+reads these. `views` arranges what is seen. `scene3d` draws in three dimensions, `plots` curves, maps and texts,
+`robots` fins, joints and motors. `bags` reads bags, replays them, and writes those that grow. `pictures` renders
+recordings. Only `ros`, and `definitions` in `bags`, import ROS.
 
 Nothing else is imported here, so that `import eel_viz` costs nothing.
 """

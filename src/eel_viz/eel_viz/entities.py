@@ -2,7 +2,8 @@
 """The entity paths of a recording, shared by loggers and blueprints.
 
 A new curve begins here with its path. Then come its name, colour and values (`SERIES`, and the method of its topic, in
-plots/series.py), and its place in an arrangement (views/blueprint.py).
+plots/series.py; for motors robots/motor_plots.py, for fins and joints robots/parts.py), and its place in an arrangement
+(views/blueprint.py). `TIME_SERIES` in test/test_viz_loggers.py lists the curves.
 
 Three trees: `/world` (three-dimensional, metres, the world frame of the messages, z up), `/profiles` and `/heat_map`
 (two-dimensional drawings against the abscissa X), `/plots` (scalars over time). `/numbers` holds the profiles of the

@@ -3,7 +3,9 @@
 //
 //     alpha' = R Kddot + omega x R Kdot        acc' = alpha x t1 + omega x (omega x t1)
 //
-// Both are linear in the head's acceleration, which makes the wrench on the whole body vanish.
+// Both are linear in the head's acceleration, which makes the wrench on the whole body vanish. Observations and the
+// ledger need them; marching takes the head's momentum, not its acceleration (momentum.hpp). The head's and the joints'
+// accelerations of robots: `find_accelerations_and_drift` in bending/balance.hpp.
 #pragma once
 
 #include "eel_core/loads/drag_kinks.hpp"

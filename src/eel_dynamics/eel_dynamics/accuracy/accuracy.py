@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 from eel_base.quantity import is_finite, number, positive
 from eel_base.wording import did_you_mean, not_one_of, shown
-from eel_model.scene import Scene
+from eel_model.scene import ROUGH_FRICTION, Scene
 from eel_model.section_data import WATCHED
 
 from eel_dynamics.accuracy.budget import Budget
@@ -169,7 +169,7 @@ class Accuracy:
             return self
         decades = math.log10(1.0 / self.target)
         points = POINTS_PER_DECADE * decades
-        if self.refinable and scene.friction not in ("blended", "taylor"):  # which are not analytic along the body
+        if self.refinable and scene.friction not in ROUGH_FRICTION:
             points = min(points, COARSE_POINTS[0] * decades + COARSE_POINTS[1])
         resolution = max(LEAST_POINTS, points)
         if self.fixed is not None:

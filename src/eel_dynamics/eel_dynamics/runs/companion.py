@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Judges the error of a run: its distance from a companion, a run of the same swimmer with coarser settings.
 
+For a swimmer that goes on, as in the node, `ErrorMeter` does so (eel_dynamics/simulation/error_meter.py).
+
 Where the estimate exceeds the target, the run becomes the next companion of a finer one, up to `MOST_REFINEMENTS`
 times. A warning names what is then still above the target.
 """
@@ -10,6 +12,7 @@ from typing import Any
 
 import numpy as np
 from eel_gaits.sources.sampled_law import SampledLaw
+from eel_model.scene import ROUGH_FRICTION
 
 from eel_dynamics.accuracy.accuracy import OTHER_GRIDS, Accuracy
 from eel_dynamics.accuracy.error_estimate import SMALL, ErrorEstimate, growth_rate_of, least_torque
@@ -68,7 +71,7 @@ def with_error_estimate(swim: Any, request: Any) -> Any:
             error = relative_errors(swim.compared, companion.compared, share)
         if refinement and companion is not None:  # it falls no faster than this: else the two agree by chance
             share = swim.run.accuracy.tolerance / companion.run.accuracy.tolerance
-            if request.setup.scene.friction in ("blended", "taylor"):
+            if request.setup.scene.friction in ROUGH_FRICTION:
                 share = max(share, (companion.run.nodes / swim.run.nodes) ** BLENDED_ORDER)
             error = error.at_least(share, companion.run.error_estimate)
         others += [] if companion is None else [companion.run]

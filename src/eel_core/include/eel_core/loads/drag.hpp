@@ -5,8 +5,9 @@
 //
 // k1 is a friction law: model/friction.hpp. Another law of cross flow (k2, k3) or of roll (k4) is a change of
 // `resistive_load` here, of its kinks (drag_kinks.hpp), and of `sections_of` in
-// eel_model/section_data.py. Where a speed changes its sign within a panel, the load has a
-// kink there; `drag_kinks` integrates it exactly.
+// eel_model/section_data.py. Where a speed changes its sign within a panel, the load has a kink there; `drag_kinks`
+// integrates it exactly. The nose's drag stands in tail_and_nose.hpp, that of fins in fins.hpp; march/missed.hpp knows
+// which coefficient each part of the drag goes with.
 #pragma once
 
 #include "eel_core/model/workspace.hpp"

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The laws of the axial friction c_f(Re), section 7.2.1: all that depends on the law stands here.
+// The laws of the axial friction c_f(Re), section 7.2.1.
 //
 // A new law is an entry of `Friction` and `friction_names`, and a case of `axial_friction`; `Scene.friction` takes its
-// name. Its coefficients come from `sections_of` in eel_model/section_data.py. One that is not analytic along
-// the body, as `blended`, wants more points: `Accuracy.in_scene`, and eel_dynamics/runs/companion.py.
+// name. Its coefficients come from `sections_of` in eel_model/section_data.py. One that is not analytic along the body
+// is named in `ROUGH_FRICTION` (eel_model/scene.py), which asks for more points. One that is no sum of a laminar and a
+// turbulent part, as `taylor`, has a case in `set_drag_units` (march/missed.hpp) too.
 //
 // `taylor`: flow across a cylinder keeps its boundary layer thin, so that the friction along it is
 // 1/2 rho_f 5.4 (nu d)^(1/2) V1 |Vn|^(1/2), with the diameter d and the speed Vn across (Taylor, Proc. R. Soc. A 214

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What sets the time step: `error_by_tolerance` judges the error of the last one, `time_step_size` gives the next one
-// by it and by what lies ahead, within `StepBounds`. The bounds come from the accuracy and the law:
+// What sets the time step. `error_by_tolerance` judges the error of the last one, `growth_factor` proposes the next one
+// by it (called by `Stepper::growth`, and for robots in bending/rosenbrock.hpp), and `time_step_size` fits the proposal
+// to `StepBounds` and to what lies ahead. The bounds come from the accuracy and the law: `step_bounds_of` in
 // eel_dynamics/accuracy/step_bounds.py.
 #pragma once
 
