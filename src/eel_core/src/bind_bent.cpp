@@ -11,7 +11,7 @@
 namespace eel_core {
 namespace {
 
-// Its attributes are those of `ModesOnGrid` (eel_model/robot/on_grid.py).
+// Its attributes are those of `ModesOnGrid` (eel_dynamics/simulation/bending/modes_on_grid.py).
 std::shared_ptr<Modes> modes_from(const py::object& m)
 {
     auto modes = std::make_shared<Modes>();

@@ -291,6 +291,10 @@ def test_unknown_and_bad_parameters_are_named_in_one_line():
         LawAction(straight(), {"bend": (0.0, 1.0)})
     with pytest.raises(ValueError, match=r"num_envs must be a whole number, got 2\.5"):
         gymnasium.make_vec("Eel/Heading-v0", num_envs=2.5)
+    with pytest.raises(ValueError, match=r"threads must be a whole number, got 1\.5"):
+        HeadingEnv(threads=1.5)
+    with pytest.raises(ValueError, match="swimmers must be > 0, got 0"):
+        HeadingEnv(swimmers=0)
     envs = gymnasium.make_vec("Eel/Heading-v0", num_envs=2)
     envs.reset(seed=1)
     with pytest.raises(gymnasium.error.InvalidAction, match="actions must be 2 x 1 finite numbers"):
