@@ -9,8 +9,8 @@
 
 namespace eel_core {
 
-// Where the numbers of an instant's coordinates lie: in one row of doubles. The moment of a mode is the integral of B .
-// C.
+// Where the numbers of an instant's coordinates lie: in one row of doubles. Energies and works are in J, powers in W;
+// the moment of a mode is the integral of B . C.
 struct CoordinateRow {
     // clang-format off
     enum Quantity : std::size_t {
