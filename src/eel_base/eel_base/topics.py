@@ -3,11 +3,12 @@
 
 A new topic has its name here; a new type of message is a file of eel_msgs/msg, named in eel_msgs/CMakeLists.txt.
 `SampleMessages` (eel_dynamics/ros/messages.py) makes its message. `FIELDS`
-(eel_dynamics/runs/exchange/message_fields.py) says which quantity each field holds; what is no quantity of a sample is
+(eel_dynamics/runs/exchange/message_fields.py) says which quantity of `Observations` each field holds; what is none is
 filled by `SampleMessages`, and for runs by `_sample` (eel_dynamics/runs/exchange/messages_of_run.py). `PARTS` and
 `NOT_AWAITED` (eel_dynamics/ros/publishers.py) name what is costly to find for it, and topics whose subscribers the
-start does not wait for. A topic of `INPUTS` has a subscription of its own, as eel_dynamics/ros/current_subscription.py.
-`READERS` (eel_viz/recording/dispatcher.py) reads it, and the methods of its name in the classes of `Loggers` draw it.
+start does not wait for. A topic of `INPUTS` has a subscription of its own, as eel_dynamics/ros/current_subscription.py;
+one of `LATCHED` is published once, as the body is. `READERS` (eel_viz/recording/dispatcher.py) reads it, and the
+methods of its name in the classes of `Loggers` draw it.
 """
 
 OWN = {  # relative: below the swimmer's namespace

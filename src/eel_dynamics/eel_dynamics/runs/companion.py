@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Judges the error of a run: its distance from a companion, a run of the same swimmer with coarser settings.
 
-For a swimmer that goes on, as in the node, `ErrorMeter` does so (eel_dynamics/simulation/error_meter.py).
+For a swimmer that goes on, as in the node, `ErrorMeter` does so (eel_dynamics/simulation/error_meter.py), and
+`ErrorMonitor` tells what misses the target (eel_dynamics/ros/loop/error_monitor.py).
 
 Where the estimate exceeds the target, the run becomes the next companion of a finer one, up to `MOST_REFINEMENTS`
 times. A warning names what is then still above the target.
