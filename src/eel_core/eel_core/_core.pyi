@@ -324,7 +324,7 @@ class BentMarch:
     def set_state(self, position: Buffer, orientation: Buffer, twist: Buffer) -> float: ...
     def set_twist(self, twist: Buffer) -> float: ...
     def twist(self) -> list[float]: ...
-    def set_slice(self, nodes: int) -> None: ...
+    def set_slice(self, nodes: int) -> int: ...
     def advance(self, time: float) -> int: ...
     def record(
         self,
@@ -424,8 +424,8 @@ class March:
     def twist(self) -> list[float]:
         """Twist (6,) in the present state. `ValueError` where the inertia is not positive definite."""
 
-    def set_slice(self, nodes: int) -> None:
-        """How many nodes are evaluated before a march comes back unfinished."""
+    def set_slice(self, nodes: int) -> int:
+        """Sets how many nodes are evaluated before a march comes back unfinished; what it was."""
 
     def advance(self, time: float) -> int:
         """Marches to a time [s]; the number of a status. "unfinished" comes at the end of a step, when a slice has been

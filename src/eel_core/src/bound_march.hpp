@@ -61,10 +61,10 @@ class BoundMarch {
         const py::gil_scoped_release unlocked;
         return static_cast<int>(march_.advance(time));
     }
-    void set_slice(std::int64_t nodes)
+    std::int64_t set_slice(std::int64_t nodes)
     {
         const InUse in_use(in_use_);
-        march_.set_slice(nodes);
+        return march_.set_slice(nodes);
     }
     std::size_t memory()
     {

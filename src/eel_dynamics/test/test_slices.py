@@ -4,6 +4,7 @@
 import itertools
 import math
 import re
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -83,6 +84,13 @@ def test_a_march_in_a_thread_of_a_batch_is_not_cut(monkeypatch):
         simulate_batch([straight(), straight(period=1.2)], 10.0, stations=51, estimate=False, threads=threads)
         counts.append(len(calls))
     assert counts[0] > 4 and counts[1] == 2
+
+
+def test_what_was_recorded_in_a_thread_can_be_interrupted_afterwards():
+    swimmer = Simulation(law=falling(), stations=2)
+    with ThreadPoolExecutor(1) as pool:
+        pool.submit(swimmer.record, np.array([0.0, 0.1]), True, False).result()
+    assert swimmer.advance(1000.0, lambda: True) is False and swimmer.time < 1000.0
 
 
 def test_another_law_can_be_adopted_where_a_march_was_interrupted(monkeypatch):

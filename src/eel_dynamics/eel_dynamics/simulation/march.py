@@ -41,7 +41,6 @@ from eel_dynamics.simulation.stopping import (
 )
 
 UNCUT = 2**62  # nodes that a march evaluates before it comes back: all
-UNCUT = 2**62  # nodes that a march evaluates before it comes back: all
 MARCHED, SINGULAR, UNFINISHED = (eel_core.STATUSES.index(name) for name in ("marched", "singular", "unfinished"))
 
 
@@ -241,8 +240,10 @@ class March:
         done, status = 0, MARCHED
         self._rows = None if self.robot is None else self._empty_rows(len(times))
         rows = () if self._rows is None else (self._rows,)
-        if look is None and threading.current_thread() is not threading.main_thread():
-            self.core.set_slice(UNCUT)  # no signal arrives here, and each return may wait for Python's lock
+        alone = look is None and threading.current_thread() is not threading.main_thread()
+        slice_before = (
+            self.core.set_slice(UNCUT) if alone else None
+        )  # no signal arrives, returns wait for Python's lock
         while status == MARCHED and done < len(times):
             event, status = self._pass_event(), UNFINISHED
             while status == UNFINISHED:
@@ -252,6 +253,8 @@ class March:
                 if look is not None and status == UNFINISHED:
                     look(self.core.time)
             self.time = self.core.time
+        if slice_before is not None:
+            self.core.set_slice(slice_before)
         checked = bool(self.setup.scene.ledger) and self.setup.settings.method == "classical"
         floor = self._bounds.momentum_floor**2 / self.discretisation.mass if checked else np.inf
         ledger = None if self.joints is None else self.joints.ledger

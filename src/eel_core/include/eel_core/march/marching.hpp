@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <variant>
 
 #include "eel_core/march/observe.hpp"
@@ -26,8 +27,8 @@ class Marching {
     }
     const Swimmer& swimmer() const { return *swimmer_; }
 
-    // Nodes that are evaluated before a march comes back unfinished.
-    void set_slice(std::int64_t nodes) { slice_ = nodes; }
+    // Sets the nodes that are evaluated before a march comes back unfinished; returns what they were.
+    std::int64_t set_slice(std::int64_t nodes) { return std::exchange(slice_, nodes); }
 
     // The head's twist relative to the water, in the present state. Throws where the inertia is not positive definite.
     Twist<Space, double> twist()
