@@ -100,8 +100,17 @@ def batch_of_points(
 
 def run_of_point(point: Swim, how: SwimSettings) -> Run:
     """Simulate one `point`. `SimulationStopped` where it does not come to its end."""
-    swimmer = point.body, point.scene, point.accuracy, how.stations, *point.start, point.flow, point.robot, point.fins
-    setup = SimulationSetup.of(*swimmer, how.most_evaluations)
+    setup = SimulationSetup.of(
+        body=point.body,
+        scene=point.scene,
+        accuracy=point.accuracy,
+        stations=how.stations,
+        **point.start._asdict(),
+        flow=point.flow,
+        robot=point.robot,
+        fins=point.fins,
+        most_evaluations=how.most_evaluations,
+    )
     seconds = duration_of(how.duration, [(point.law, setup)])
     law = law_from(point.law, seconds, setup.body.length)
     request = SwimRequest.of(Run, law, setup, seconds, how.sample_period, load=False)

@@ -119,16 +119,19 @@ class Batch(ObservedArrays):
         """Swimmer `index` as a `Run`, with the samples that it has."""
         index = range(len(self))[index]
         scene, robot, done = self.scenes[index], self.robots[index], int(self.samples[index])
-        swimmer = Swimmer(
-            *(self.laws[index], self.bodies[index], scene, self.x[index]),
-            *(self.flows[index], robot, self.fins[index]),
-        )
+        law, body, flow, fins = self.laws[index], self.bodies[index], self.flows[index], self.fins[index]
+        swimmer = Swimmer(law, body, scene, self.x[index], flow, robot, fins)
         parts = () if robot is None else robot.parts
         modes = [part.modes for part in parts if not isinstance(part, Joint)]
-        most = {"fin": len(swimmer.fins), "joint": len(parts) - len(modes), "mode": sum(modes)}
-        absent = {*(() if scene.internal_wrench and self.backbone is not None else WRENCH)}
-        absent |= {*(() if self.fluid_force is not None else LOAD), *(() if scene.ledger else VARIABLES.keys() - OWN)}
-        absent |= {*(() if swimmer.fins else FINS), *(JOINT_ARRAYS if robot is None else ())}
+        most = {"fin": len(fins), "joint": len(parts) - len(modes), "mode": sum(modes)}
+        there = (  # arrays, and whether this swimmer has them
+            (WRENCH, scene.internal_wrench and self.backbone is not None),
+            (LOAD, self.fluid_force is not None),
+            (VARIABLES.keys() - OWN, scene.ledger),
+            (FINS, bool(fins)),
+            (JOINT_ARRAYS, robot is not None),
+        )
+        absent = {name for names, present in there if not present for name in names}
         arrays = {}
         for name, array in self._arrays.items():
             if name not in absent:
@@ -138,7 +141,7 @@ class Batch(ObservedArrays):
             swimmer,
             self.time[:done],
             arrays,
-            law=self.laws[index],
+            law=law,
             accuracy=self.accuracies[index],
             steps=int(self.steps[index]),
             evaluations=int(self.evaluations[index]),

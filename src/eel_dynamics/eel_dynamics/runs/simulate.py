@@ -72,8 +72,19 @@ def simulate(
             and `Run.joint_angle` and the like are what they do; None: the law is imposed.
         fins: a list of `Fin`, and of pairs of them (`Fin.pair`); None: none.
     """
-    swimmer = body, scene, accuracy, stations, position, orientation, twist, flow, robot, fins
-    setup = SimulationSetup.of(*swimmer, most_evaluations)
+    setup = SimulationSetup.of(
+        body=body,
+        scene=scene,
+        accuracy=accuracy,
+        stations=stations,
+        position=position,
+        orientation=orientation,
+        twist=twist,
+        flow=flow,
+        robot=robot,
+        fins=fins,
+        most_evaluations=most_evaluations,
+    )
     duration = settling_time(law, setup) if until_settled(duration) else duration
     seconds: Any = duration  # a text is refused below
     law = law_from(law, seconds, setup.body.length)

@@ -80,8 +80,20 @@ class Simulation(Present):
         robot: Robot | None = None,
         fins: Iterable[Any] | None = None,
     ) -> None:
-        swimmer = body, scene, accuracy, stations, position, orientation, twist, flow, robot, fins
-        setup = SimulationSetup.of(*swimmer, most_evaluations, default_transition)
+        setup = SimulationSetup.of(
+            body=body,
+            scene=scene,
+            accuracy=accuracy,
+            stations=stations,
+            position=position,
+            orientation=orientation,
+            twist=twist,
+            flow=flow,
+            robot=robot,
+            fins=fins,
+            most_evaluations=most_evaluations,
+            default_transition=default_transition,
+        )
         if isinstance(setup.accuracy, Budget):
             start = tuple(tuple(each.tolist()) for each in setup.initial_state)
             water = setup.flow, setup.robot, setup.fins, start

@@ -56,10 +56,20 @@ class SimulationSetup:
 
     @staticmethod
     def of(
-        body=None, scene=None, accuracy="standard", stations=51,
-        position=(0.0, 0.0, 0.0), orientation=(0.0, 0.0, 0.0, 1.0), twist=(0.0,) * 6,
-        flow=None, robot=None, fins=None, most_evaluations=MOST_EVALUATIONS, default_transition=DEFAULT_TRANSITION,
-    ) -> "SimulationSetup":  # fmt: skip
+        *,
+        body=None,
+        scene=None,
+        accuracy="standard",
+        stations=51,
+        position=(0.0, 0.0, 0.0),
+        orientation=(0.0, 0.0, 0.0, 1.0),
+        twist=(0.0,) * 6,
+        flow=None,
+        robot=None,
+        fins=None,
+        most_evaluations=MOST_EVALUATIONS,
+        default_transition=DEFAULT_TRANSITION,
+    ) -> "SimulationSetup":
         """The set-up from the arguments of `Simulation`. `ValueError` names the one that does not fit."""
         robot = checked_robot(robot)
         body = checked_body(robot.body if body is None and robot is not None else body)
