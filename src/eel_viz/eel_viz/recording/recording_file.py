@@ -26,7 +26,7 @@ FILE_TICK = 0.6  # s: a process that is killed loses no more; each batch of an e
 AGAIN_TICK = 60.0  # s: where the data can be recorded again; few large batches make a catalogue of files open fast
 ROOM = 2**18  # bytes that must be free: Rerun writes 170 kB at once, and may block for ever if that fails
 REMINDER = 30.0  # s between two warnings that nothing is saved
-FLUSH_TIMEOUT = 1.0  # s for one flush to a file during a run
+FILE_FLUSH_TIMEOUT = 1.0  # s for one flush to a file during a run
 
 
 class FileDestination(Destination):
@@ -143,7 +143,7 @@ class FileDelivery(Delivery):
 
     def _arrived(self) -> bool:
         try:
-            return self.flushed(FLUSH_TIMEOUT)
+            return self.flushed(FILE_FLUSH_TIMEOUT)
         except RuntimeError:
             self._fail()
             return False

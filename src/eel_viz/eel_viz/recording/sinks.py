@@ -32,7 +32,7 @@ from eel_viz.viewer import display, end_process, free_port, listening, open_wind
 
 LIVE_TICK = 0.16  # s: short enough for smooth motion in a viewer
 ANSWER_LIMIT = 1.0  # s until a listening viewer must answer
-FLUSH_TIMEOUT = 0.1  # s for one flush to a viewer
+VIEWER_FLUSH_TIMEOUT = 0.1  # s for one flush to a viewer
 
 
 class ViewerDelivery(Delivery):
@@ -71,7 +71,7 @@ class ViewerDelivery(Delivery):
 
     def _arrived(self) -> bool:
         try:
-            return self.flushed(FLUSH_TIMEOUT)
+            return self.flushed(VIEWER_FLUSH_TIMEOUT)
         except RuntimeError:
             self.disconnected = True
             return False

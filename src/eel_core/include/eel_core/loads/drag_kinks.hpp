@@ -88,8 +88,8 @@ inline double zero_between(const Grid& grid, const Row& values, std::size_t i, d
 }
 
 // Weights [m] of the nodes of a panel for the integral from its start to its fraction `t`, by Clenshaw's recurrence.
-inline void set_weights_upto(const Grid& grid, std::size_t first, std::size_t count, double t,
-                             std::vector<double>& weights)
+inline void set_weights_ahead(const Grid& grid, std::size_t first, std::size_t count, double t,
+                              std::vector<double>& weights)
 {
     const double z = 2.0 * t - 1.0;
     for (std::size_t k = 0; k < count; k += width) {
@@ -132,15 +132,15 @@ void add_kink(const Swimmer& swimmer, Speed speed, std::size_t i, double at_nose
     kink.first = first;
     kink.fraction = zero_between(grid, values, i, before, of_friction && swimmer.first_watched <= lateral);
     kink.jump = (of_friction ? 1.0 : 2.0) * (value >= 0.0 ? 1.0 : -1.0);
-    set_weights_upto(grid, first, count, kink.fraction, kink.weights);
+    set_weights_ahead(grid, first, count, kink.fraction, kink.weights);
     if (const auto& missed = swimmer.missed_drag[speed]; !missed.empty())
         add_missed_weights(missed, first, count, kink.fraction, kink.weights);
     Row& weight = of_friction ? work.turbulent_weight : work.load_weight[speed];
     for (std::size_t k = 0; k < count; k += width) {
         const std::size_t node = first + k;
         const Lanes passed = select(Mask::below(i > node ? i - node : 0), grid.weight.from(node), 0.0);
-        const Lanes upto_kink = select(Mask::below(count - k), Lanes::load(kink.weights.data() + k), 0.0);
-        weight.store_from(node, weight.from(node) + kink.jump * (passed - upto_kink));
+        const Lanes ahead_of_kink = select(Mask::below(count - k), Lanes::load(kink.weights.data() + k), 0.0);
+        weight.store_from(node, weight.from(node) + kink.jump * (passed - ahead_of_kink));
     }
 }
 
@@ -247,10 +247,10 @@ inline void add_jumps(const Swimmer& swimmer, const Workspace<Space>& work, Unsi
             for (std::size_t k = 0; k < count; k += width)
                 sum += select(Mask::below(count - k), Lanes::load(kink.weights.data() + k), 0.0) *
                        own.density.from(first + k);
-            const Wrench<Space, double> upto_kink = total_of(sum);
+            const Wrench<Space, double> ahead_of_kink = total_of(sum);
             for (std::size_t k = 0; k < blocks_of(swimmer.stations); ++k)
-                integral.store(
-                    k, integral[k] + jump_behind(kink, swimmer.to_station.place()[k]) * (own.integral[k] - upto_kink));
+                integral.store(k, integral[k] + jump_behind(kink, swimmer.to_station.place()[k]) *
+                                                    (own.integral[k] - ahead_of_kink));
         }
     }
 }
