@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from eel_dynamics.accuracy.accuracy import BUDGET_TARGETS
 from eel_dynamics.runs.companion import relative_errors
-from eel_dynamics.simulation.simulation import swim_time
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
+from eel_dynamics.simulation.time_budget import swim_time
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.term import Term
 
@@ -66,8 +67,8 @@ def test_an_order_that_does_not_exist():
 def test_a_budget_buys_the_finest_target_that_keeps_within_it(monkeypatch):
     """The timings are given here, so that no machine decides: 1 ms at 1e-2, ten times that for each hundredth."""
     monkeypatch.setattr(
-        "eel_dynamics.simulation.simulation.swim_time",
-        lambda *swimmer: 1e-3 * (1e-2 / swimmer[-1]) ** 0.5,
+        "eel_dynamics.simulation.time_budget.swim_time",
+        lambda setup: 1e-3 * (1e-2 / float(setup.accuracy.name)) ** 0.5,
     )
     bought = Simulation(accuracy="fastest within 5 ms per second").accuracy
     affordable = [target for target in BUDGET_TARGETS if 1e-3 * (1e-2 / target) ** 0.5 <= 5e-3]
@@ -80,11 +81,11 @@ def test_a_budget_is_measured_for_the_body_scene_and_stations_at_hand(monkeypatc
     """A body of many panels takes longer, so the same time affords less. The timings are given here."""
     asked = []
 
-    def swim_time(body, scene, stations, *others):
-        asked.append((body, scene, stations))
-        return 1e-3 * (len(body.panel_ends) / 3.0) ** 4 * (1e-2 / others[-1]) ** 0.5
+    def swim_time(setup):
+        asked.append((setup.body, setup.scene, setup.x.tobytes()))
+        return 1e-3 * (len(setup.body.panel_ends) / 3.0) ** 4 * (1e-2 / float(setup.accuracy.name)) ** 0.5
 
-    monkeypatch.setattr("eel_dynamics.simulation.simulation.swim_time", swim_time)
+    monkeypatch.setattr("eel_dynamics.simulation.time_budget.swim_time", swim_time)
     body, scene, x = Body.kern2006(0.3), Scene(density=700.0), np.array([0.0, 0.1])
     few = Simulation(body, scene, "fastest within 5 ms per second", x).accuracy
     assert set(asked) == {(body, scene, x.tobytes())}
@@ -92,12 +93,10 @@ def test_a_budget_is_measured_for_the_body_scene_and_stations_at_hand(monkeypatc
     assert few.tolerance < many.tolerance and few.target is many.target is None
 
 
-AT_REST = ((0.0,) * 3, (0.0, 0.0, 0.0, 1.0), (0.0,) * 6)
-
-
 def test_the_time_of_a_swim_is_of_that_body():
-    still = None, None, (), AT_REST
-    assert swim_time(Body.kern2006(0.3), Scene(planar=True), np.zeros(1).tobytes(), *still, 1e-1) > 0.0
+    coarse = Accuracy(name="coarse", resolution=8.0, tolerance=1e-4)
+    setup = SimulationSetup.of(body=Body.kern2006(0.3), scene=Scene(planar=True), stations=[0.0], accuracy=coarse)
+    assert swim_time(setup) > 0.0
 
 
 def test_a_budget_is_measured_in_the_water_and_with_the_fins_and_the_robot_at_hand(monkeypatch):
@@ -107,18 +106,16 @@ def test_a_budget_is_measured_in_the_water_and_with_the_fins_and_the_robot_at_ha
         places.append(len(x))
         return 0.0 * x
 
-    fast = "fastest within 900 s per second"
-    swim_time(Body.boyer2010(), Scene(planar=True), np.zeros(1).tobytes(), FlowField(water), None, (), AT_REST, 1e-1)
+    fast, coarse = "fastest within 900 s per second", Accuracy(name="coarse", resolution=8.0, tolerance=1e-4)
+    swim_time(SimulationSetup.of(scene=Scene(planar=True), flow=FlowField(water), stations=[0.0], accuracy=coarse))
     assert len(places) > 4 * 40  # four swims of two seconds
-    monkeypatch.setattr(
-        "eel_dynamics.simulation.simulation.swim_time", lambda *swimmer: asked.append(swimmer[3:]) or 1e-3
-    )
+    monkeypatch.setattr("eel_dynamics.simulation.time_budget.swim_time", lambda setup: asked.append(setup) or 1e-3)
     fins, robot = Fin.pair(0.2, 1e-3, 2.5, angle=RollHold(2.0, 0.15), time_constant=0.05), Robot.named("eight_servos")
     Simulation(accuracy=fast, fins=[fins], flow=Shear(), position=(1.0, 0.0, 0.0))
     Simulation(accuracy=fast, robot=robot)
-    assert {each[:-1] for each in asked} == {
-        (Shear(), None, fins, ((1.0, 0.0, 0.0), *AT_REST[1:])),
-        (None, robot, (), AT_REST),
+    assert {(each.flow, each.robot, each.fins, *each.initial_state.position.tolist()) for each in asked} == {
+        (Shear(), None, fins, 1.0, 0.0, 0.0),
+        (None, robot, (), 0.0, 0.0, 0.0),
     }
 
 

@@ -26,9 +26,8 @@ from eel_base.quantity import checked_instance, number
 from eel_base.wording import did_you_mean, shown
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import measures_of
-from eel_dynamics.batches.simulate_batch import swim_of
-from eel_dynamics.runs.motions import law_from
-from eel_dynamics.runs.settled_duration import duration_of
+from eel_dynamics.batches.broadcast import numbered
+from eel_dynamics.batches.simulate_batch import swim_of, swum
 from eel_dynamics.runs.swim_request import SwimRequest
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_gaits.gaits.registry import find
@@ -40,7 +39,7 @@ from eel_model.flow.text import flow_from_text
 from eel_model.initial_state import InitialState
 from eel_model.robot.robot import Robot, checked_robot, robot_of
 
-from eel_dynamics import Accuracy, Batch, Flow, Run, Scene, Swim, simulate_batch
+from eel_dynamics import Accuracy, Batch, Flow, Run, Scene, Swim
 from eel_gaits import Law
 
 Gait = str | Callable[..., Law] | Swim  # its name, a function of numbers, or a whole swim, as of a scene's file
@@ -77,44 +76,16 @@ def batch_of_points(
     progress: Callable[[int, int], None] | None = None,
 ) -> Batch:
     """Simulate the `points`. threads, progress: as in `simulate_batch`."""
-    return simulate_batch(
-        [point.law for point in points],
-        how.duration,
-        bodies=[point.body for point in points],
-        scenes=[point.scene for point in points],
-        accuracy=[point.accuracy for point in points],
-        sample_period=how.sample_period,
-        stations=how.stations,
-        positions=np.array([point.start.position for point in points]),
-        orientations=np.array([point.start.orientation for point in points]),
-        twists=np.array([point.start.twist for point in points]),
-        flows=[point.flow for point in points],
-        fins=[list(point.fins) for point in points],
-        robots=[point.robot for point in points],
-        estimate=how.estimate,
-        threads=threads,
-        progress=progress,
-        most_evaluations=how.most_evaluations,
-    )
+    own = {"stations": how.stations, "most_evaluations": how.most_evaluations}
+    swimmers = [numbered(index, point.law, point.swimmer | own) for index, point in enumerate(points)]
+    return swum(swimmers, how.duration, how.sample_period, estimate=how.estimate, threads=threads, progress=progress)
 
 
 def run_of_point(point: Swim, how: SwimSettings) -> Run:
     """Simulate one `point`. `SimulationStopped` where it does not come to its end."""
-    setup = SimulationSetup.of(
-        body=point.body,
-        scene=point.scene,
-        accuracy=point.accuracy,
-        stations=how.stations,
-        **point.start._asdict(),
-        flow=point.flow,
-        robot=point.robot,
-        fins=point.fins,
-        most_evaluations=how.most_evaluations,
-    )
-    seconds = duration_of(how.duration, [(point.law, setup)])
-    law = law_from(point.law, seconds, setup.body.length)
-    request = SwimRequest.of(Run, law, setup, seconds, how.sample_period, load=False)
-    swim = swim_of(request.to_refine() if how.estimate else request, how.estimate)
+    own = {"stations": how.stations, "most_evaluations": how.most_evaluations}
+    setup = SimulationSetup.of(**point.swimmer | own)
+    swim = swim_of(SwimRequest.of(Run, point.law, setup, how.duration, how.sample_period, estimate=how.estimate))
     if swim.stopped is not None:
         raise swim.stopped
     return swim.run

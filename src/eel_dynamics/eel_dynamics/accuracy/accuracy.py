@@ -15,7 +15,6 @@ One rule leads from a target to settings, and `simulate` measures the error that
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from typing import Any
@@ -302,13 +301,3 @@ class Accuracy:
 
 
 _of_number = lru_cache(maxsize=64)(Accuracy._of)
-
-
-def within_budget(budget: Budget, scene: Scene, swim_time: Callable[[float], float]) -> Accuracy:
-    """The finest settings of the `BUDGET_TARGETS` that keep within the `budget` in `scene`. `ValueError` if none do.
-
-    They have no target: the error of such a run is measured, and not compared with one.
-    swim_time(target): wall time [s] per simulated second.
-    """
-    best = budget.finest(BUDGET_TARGETS, swim_time)
-    return replace(Accuracy.of(best).in_scene(scene), name=budget.name, target=None)

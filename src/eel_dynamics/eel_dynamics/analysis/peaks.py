@@ -13,9 +13,7 @@ recorded elsewhere its own: those of power may then be 2 % off at 20 samples in 
 import numpy as np
 from eel_model.axes import REP103
 
-from eel_dynamics.simulation.energy import WORKS
 from eel_dynamics.simulation.march import March
-from eel_dynamics.simulation.observations import Observations
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 
 DEGREE = 5
@@ -119,8 +117,7 @@ def _swum_anew(run, time: float, station: int) -> tuple[np.ndarray, np.ndarray, 
         **run.swimmer,
     )
     march = March.from_start(setup, run.law, -float(start))
-    out = Observations.empty(len(times), len(x), load=False, fins=len(setup.fins))
-    _, stopped = march.record(times - start, out, np.zeros((len(times), len(WORKS))), True, False, None)
+    out, _, _, stopped = march.record(times - start, True, False)
     if stopped is not None:
         raise stopped
     return times, x, out.torque

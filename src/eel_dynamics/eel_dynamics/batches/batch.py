@@ -2,8 +2,9 @@
 """Many swimmers at once: what `simulate_batch` returns."""
 
 import os
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from eel_base.cell import cell_of
@@ -29,11 +30,30 @@ from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.storage.netcdf import loaded, write
 from eel_dynamics.runs.storage.run_contents import contents_of_batch, fins_of, with_warnings
 from eel_dynamics.runs.storage.tables import dataset_of, frame_of_all, needed
-from eel_dynamics.runs.storage.variables import COUNTS, OWN, VARIABLES, Contents, documented_arrays, fields_of_arrays
+from eel_dynamics.runs.storage.variables import (
+    COUNTS,
+    OWN,
+    PARTS,
+    Contents,
+    documented_arrays,
+    fields_of_arrays,
+    names_with,
+    shape_of,
+)
 from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS
-from eel_dynamics.simulation.observations import FINS, LOAD, WRENCH
 from eel_dynamics.simulation.stopping import SimulationStopped
 
+OF_EACH = {  # fields of a run, and of a batch, whose swimmers have their own
+    "law": "laws",
+    "body": "bodies",
+    "scene": "scenes",
+    "flow": "flows",
+    "robot": "robots",
+    "fins": "fins",
+    "accuracy": "accuracies",
+    "error_estimate": "error_estimates",
+}
+OF_SWIMMER = tuple(OF_EACH.values())[:6]  # in the order of a pickle's arguments
 ALONG = "backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force"
 
 
@@ -78,8 +98,7 @@ class Batch(ObservedArrays):
         return hash((self.laws, self.bodies, self.scenes))
 
     def __reduce__(self) -> tuple[Any, ...]:  # each array once
-        more = self.flows, self.robots, self.fins
-        return _batch_from, (self._contents, self.laws, self.bodies, self.scenes, *more)
+        return _batch_from, (self._contents, *(getattr(self, name) for name in OF_SWIMMER))
 
     def __repr__(self) -> str:
         return (
@@ -118,36 +137,25 @@ class Batch(ObservedArrays):
     def __getitem__(self, index: int) -> Run:
         """Swimmer `index` as a `Run`, with the samples that it has."""
         index = range(len(self))[index]
-        scene, robot, done = self.scenes[index], self.robots[index], int(self.samples[index])
-        law, body, flow, fins = self.laws[index], self.bodies[index], self.flows[index], self.fins[index]
-        swimmer = Swimmer(law, body, scene, self.x[index], flow, robot, fins)
-        parts = () if robot is None else robot.parts
-        modes = [part.modes for part in parts if not isinstance(part, Joint)]
-        most = {"fin": len(fins), "joint": len(parts) - len(modes), "mode": sum(modes)}
-        there = (  # arrays, and whether this swimmer has them
-            (WRENCH, scene.internal_wrench and self.backbone is not None),
-            (LOAD, self.fluid_force is not None),
-            (VARIABLES.keys() - OWN, scene.ledger),
-            (FINS, bool(fins)),
-            (JOINT_ARRAYS, robot is not None),
+        done, x = int(self.samples[index]), self.x[index]
+        own: dict[str, Any] = {one: getattr(self, several)[index] for one, several in OF_EACH.items()}
+        own |= {name: int(getattr(self, name)[index]) for name in COUNTS}
+        scene, fins, robot = own["scene"], own["fins"], own["robot"]
+        names = names_with(
+            wrench=scene.internal_wrench and self.backbone is not None,
+            load=self.fluid_force is not None,
+            ledger=scene.ledger,
+            fins=fins,
+            robot=robot is not None,
         )
-        absent = {name for names, present in there if not present for name in names}
-        arrays = {}
-        for name, array in self._arrays.items():
-            if name not in absent:
-                own = most.get("".join(VARIABLES[name].dimensions[1:2]))  # of fins, joints and modes
-                arrays[name] = array[index, :done] if own is None else array[index, :done, :own]
-        return Run.of(
-            swimmer,
-            self.time[:done],
-            arrays,
-            law=law,
-            accuracy=self.accuracies[index],
-            steps=int(self.steps[index]),
-            evaluations=int(self.evaluations[index]),
-            nodes=int(self.nodes[index]),
-            error_estimate=self.error_estimates[index],
-        )
+        sizes = {"time": done, "station": len(x), "fin": len(fins)} | coordinates_of(robot)
+        arrays = {
+            name: self._arrays[name][index][tuple(map(slice, shape_of(name, sizes)))]
+            for name in names
+            if name in self._arrays
+        }
+        found = fields_of_arrays(arrays | {"time": self.time[:done], "x": x}, robot)
+        return Run(**found, **own)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the whole batch to a netCDF file (.nc), as `Run.save` does a run."""
@@ -180,90 +188,58 @@ class Batch(ObservedArrays):
         return frame.assign(error=[str(error or "") for error in self.error])
 
 
-class Swimmer(NamedTuple):
-    """A swimmer of a batch: its law, its body in a scene, its stations (M,) [m], the flow of its water, what bends by
-    itself, and its fins."""
-
-    law: Law | SampledLaw
-    body: Body
-    scene: Scene
-    x: np.ndarray
-    flow: Flow | None
-    robot: Robot | None
-    fins: tuple[Fin, ...] = ()
+def coordinates_of(robot: Robot | None) -> dict[str, int]:
+    """How many joints and modes a `robot` has, as sizes of these dimensions."""
+    parts = () if robot is None else robot.parts
+    modes = [part.modes for part in parts if not isinstance(part, Joint)]
+    return {"joint": len(parts) - len(modes), "mode": sum(modes)}
 
 
 def batch_of(
-    swimmers: list[Swimmer],
-    found: tuple[Any, ...],
-    times: np.ndarray,
+    own: dict[str, Any],
+    counts: dict[str, np.ndarray],
+    time: np.ndarray,
+    x: np.ndarray,
     arrays: dict[str, np.ndarray],
     start: np.ndarray,
     stations: bool,
 ) -> Batch:
-    """The batch of these `swimmers`: what was `found` of each, and all `arrays` of them.
+    """The batch of B swimmers: what each has of its `own`, by the names of fields, its `counts` and all `arrays`.
 
     start (B,) [J]: the energies there. stations: whether there are profiles.
     """
-    settings, errors, estimates, (samples, steps, evaluations, nodes) = found
-    scenes = tuple(each.scene for each in swimmers)
-    wrench = all(each.internal_wrench for each in scenes)
+    wrench = all(each.internal_wrench for each in own["scenes"])
     none = [*(() if stations else ALONG), *(() if wrench else ("torque", "force"))]
-    if any(each.robot for each in swimmers):
+    if any(own["robots"]):
         arrays = dict.fromkeys(JOINT_ARRAYS, np.zeros((*arrays["position"].shape[:2], 0))) | arrays
-    energy = fields_of_arrays(arrays, None)["energy"] if all(each.ledger for each in scenes) else None
+    energy = fields_of_arrays(arrays, None)["energy"] if all(each.ledger for each in own["scenes"]) else None
     names = {item.name for item in fields(Batch)} & OWN.keys() - {"time", "x"}
-    return Batch(
-        laws=tuple(each.law for each in swimmers),
-        bodies=tuple(each.body for each in swimmers),
-        scenes=scenes,
-        accuracies=tuple(settings),
-        time=times,
-        samples=samples,
-        error=tuple(errors),
-        steps=steps,
-        evaluations=evaluations,
-        nodes=nodes,
-        error_estimates=tuple(estimates),
-        x=np.array([each.x for each in swimmers]),
-        energy=energy,
-        flows=tuple(each.flow for each in swimmers),
-        robots=tuple(each.robot for each in swimmers),
-        fins=tuple(each.fins for each in swimmers),
-        _arrays={name: array for name, array in arrays.items() if array.size},
-        _energy_at_start=start,
-        **dict.fromkeys(names) | {name: arrays[name] for name in names & arrays.keys()} | dict.fromkeys(none),
-    )
+    found: dict[str, Any] = {name: tuple(values) for name, values in own.items()} | counts
+    found |= dict.fromkeys(names) | {name: arrays[name] for name in names & arrays.keys()} | dict.fromkeys(none)
+    full = {name: array for name, array in arrays.items() if array.size}
+    return Batch(time=time, x=x, energy=energy, _arrays=full, _energy_at_start=start, **found)
 
 
-def _batch_from(
-    contents: Contents,
-    laws: Any = None,
-    bodies: Any = None,
-    scenes: Any = None,
-    flows: Any = None,
-    robots: Any = None,
-    fins: Any = None,
-) -> Batch:
-    """The batch of these contents; the others too, where they are at hand."""
+def _batch_from(contents: Contents, *at_hand: Any) -> Batch:
+    """The batch of these contents. at_hand: what need not be made of them, of `OF_SWIMMER`."""
     values, arrays = contents.values, contents.arrays
-    laws = laws or plain.row_of(values["laws"], plain.law_of)
-    bodies = bodies or plain.row_of(values["bodies"], plain.body_of)
-    scenes = scenes or plain.row_of(values["scenes"], lambda each: Scene(**each))
-    settings = plain.row_of(values["accuracies"], plain.accuracy_of)
-    errors = [plain.stop_of(each) for each in values["errors"]]
-    estimates = [each and ErrorEstimate(**each) for each in values["error_estimates"]]
-    counts = [arrays[name].astype(int) for name in ("samples", *COUNTS)]
-    count = len(arrays["samples"])
-    if any(len(each) != count for each in (laws, bodies, scenes, settings, errors, estimates)):
+    count, own = len(arrays["samples"]), dict(zip(OF_SWIMMER, at_hand, strict=False))
+    readers: dict[str, Callable[[], Sequence[Any]]] = {
+        "laws": lambda: plain.row_of(values["laws"], plain.law_of),
+        "bodies": lambda: plain.row_of(values["bodies"], plain.body_of),
+        "scenes": lambda: plain.row_of(values["scenes"], lambda each: Scene(**each)),
+        "flows": lambda: [flow_of(each) for each in values.get("flows", count * [None])],
+        "fins": lambda: [fins_of(each) for each in values.get("fins", count * [()])],
+        "robots": lambda: list(map(plain.robot_of, values.get("robots", count * [None]), own["bodies"])),
+        "accuracies": lambda: plain.row_of(values["accuracies"], plain.accuracy_of),
+        "error": lambda: [plain.stop_of(each) for each in values["errors"]],
+        "error_estimates": lambda: [each and ErrorEstimate(**each) for each in values["error_estimates"]],
+    }
+    for name, read in readers.items():
+        own[name] = own.get(name) or read()
+    if any(len(each) != count for each in own.values()):
         raise ValueError(f"there must be a law, a body, a scene and settings for each of {count} swimmers")
-    flows = flows or [flow_of(each) for each in values.get("flows", count * [None])]
-    fins = fins or [fins_of(each) for each in values.get("fins", count * [()])]
-    robots = robots or [
-        plain.robot_of(each, body) for each, body in zip(values.get("robots", count * [None]), bodies, strict=True)
-    ]
-    swum = list(map(Swimmer, laws, bodies, scenes, arrays["x"], flows, robots, fins))
-    absent = {name for group in (WRENCH, LOAD, FINS) if group[0] not in arrays for name in group}  # 0 in older files
-    ours = {name: each for name, each in arrays.items() if name in VARIABLES.keys() - absent - {"time", "x"}}
-    found = settings, errors, estimates, counts
-    return batch_of(swum, found, arrays["time"], ours, arrays["energy_at_start"], bool(values["stations"]))
+    there = {part: PARTS[part][0] in arrays for part in ("wrench", "load", "fins")}  # 0 in older files
+    ours = {name: arrays[name] for name in names_with(**there) if name in arrays}
+    counts = {name: arrays[name].astype(int) for name in ("samples", *COUNTS)}
+    return batch_of(own, counts, arrays["time"], arrays["x"], ours, arrays["energy_at_start"], bool(values["stations"]))

@@ -19,6 +19,8 @@ from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.runs.motions import LAWS
 from eel_dynamics.simulation.simulation_setup import SimulationSetup, check_planar_law, checked_stations
 
+Swimmer = tuple[Law | SampledLaw, SimulationSetup]
+
 
 def swimmers_of(
     laws,
@@ -33,7 +35,7 @@ def swimmers_of(
     flows=None,
     robots=None,
     fins=None,
-) -> list[tuple[Law | SampledLaw, SimulationSetup]]:
+) -> list[Swimmer]:
     """Laws and set-ups of B swimmers, with `stations` on each body, and `most_evaluations` per simulated second.
 
     flows, robots, fins: None for none. Each other argument is one for all, or a sequence of B (for the last three the
@@ -59,13 +61,18 @@ def swimmers_of(
     for index, (law, *own) in enumerate(zip(laws, bodies, scenes, settings, flows, robots, fins, strict=True)):
         more: dict[str, Any] = dict(zip(names, own, strict=True)) | {"stations": x[own[0].length]}
         more |= dict(zip(InitialState._fields, (rows[index] for rows in states), strict=True))
-        try:
-            setup = SimulationSetup.of(most_evaluations=most, **more)
-            check_planar_law(law, setup.scene)
-        except ValueError as error:
-            raise ValueError(f"swimmer {index}: {error}") from None
-        swimmers.append((law, setup))
+        swimmers.append(numbered(index, law, more | {"most_evaluations": most}))
     return swimmers
+
+
+def numbered(index: int, law: Law | SampledLaw, arguments: dict[str, Any]) -> Swimmer:
+    """Swimmer `index`, with its law and these `arguments` of `Simulation`. `ValueError` has its number."""
+    try:
+        setup = SimulationSetup.of(**arguments)
+        check_planar_law(law, setup.scene)
+    except ValueError as error:
+        raise ValueError(f"swimmer {index}: {error}") from None
+    return law, setup
 
 
 def _broadcast(**given) -> list[list]:

@@ -20,20 +20,16 @@ from eel_base.wording import shown
 from eel_model.flow.flow import check_covers
 from numpy.typing import ArrayLike
 
-from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
-from eel_dynamics.batches.batch import Batch, Swimmer, batch_of
-from eel_dynamics.batches.broadcast import swimmers_of
-from eel_dynamics.runs.companion import with_error_estimate
+from eel_dynamics.batches.batch import OF_EACH, Batch, batch_of, coordinates_of
+from eel_dynamics.batches.broadcast import Swimmer, swimmers_of
 from eel_dynamics.runs.motions import check_duration
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
 from eel_dynamics.runs.settled_duration import duration_of
-from eel_dynamics.runs.storage.variables import arrays_of
+from eel_dynamics.runs.storage.run_contents import arrays_of_run
+from eel_dynamics.runs.storage.variables import COUNTS, names_with, shape_of
 from eel_dynamics.runs.swim_request import SwimRequest, SwimResult
-from eel_dynamics.simulation.bending.joint_motion import JointMotion, Motion
-from eel_dynamics.simulation.energy import WORKS
-from eel_dynamics.simulation.observations import FINS, Observations
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 MOST_THREADS = 1000
@@ -87,6 +83,20 @@ def simulate_batch(
     along = [0.0] if stations is None else stations
     states = positions, orientations, twists
     swimmers = swimmers_of(laws, bodies, scenes, accuracy, along, *states, most_evaluations, flows, robots, fins)
+    return swum(swimmers, duration, sample_period, stations is not None, load, estimate, threads, progress)
+
+
+def swum(
+    swimmers: list[Swimmer],
+    duration: float | str,
+    sample_period: float | None = None,
+    profiles: bool = True,
+    load: bool = False,
+    estimate: bool = True,
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Batch:
+    """The batch of these `swimmers`. profiles: whether it has those along the body; others as of `simulate_batch`."""
     seconds = duration_of(duration, swimmers)
     if sample_period is None:
         sample_period = default_sample_period({law for law, _ in swimmers}, seconds)
@@ -94,58 +104,54 @@ def simulate_batch(
     for law, setup in swimmers:
         check_duration(law, seconds)
         check_covers(setup.flow, float(times[-1]))
-    wrench = [setup.scene.internal_wrench and stations is not None for _, setup in swimmers]
-    count, load, points = len(swimmers), bool(load) and stations is not None, len(swimmers[0][1].x)
-    check_memory(count, len(times), points, any(wrench), load)
-    most_fins = max(len(setup.fins) for _, setup in swimmers)
-    out = Observations.empty(len(times), points, any(wrench), load, (count,), most_fins)
-    works, start = np.zeros((count, len(times), len(WORKS))), np.zeros(count)
-    samples, *_ = counts = np.zeros((4, count), dtype=int)
-    settings = [setup.accuracy for _, setup in swimmers]
-    errors: list[SimulationStopped | None] = [None] * count
-    estimates: list[ErrorEstimate | None] = [None] * count
-    joints: list[JointMotion | None] = [None] * count
+    setups, load = [setup for _, setup in swimmers], bool(load) and profiles
+    wrench = [setup.scene.internal_wrench and profiles for setup in setups]
+    count, x = len(swimmers), np.array([setup.x for setup in setups])
+    check_memory(count, len(times), x.shape[1], any(wrench), load)
+    robots = [coordinates_of(setup.robot) for setup in setups]
+    sizes = {"time": len(times), "station": x.shape[1], "fin": max(len(setup.fins) for setup in setups)}
+    sizes |= {name: max(each[name] for each in robots) for name in robots[0]}
+    names = names_with(
+        wrench=any(wrench),
+        load=load,
+        ledger=any(setup.scene.ledger for setup in setups),
+        fins=sizes["fin"],
+        robot=any(setup.robot for setup in setups),
+    )
+    arrays = {name: np.zeros((count, *shape_of(name, sizes))) for name in names}
+    start, counts = np.zeros(count), {name: np.zeros(count, dtype=int) for name in ("samples", *COUNTS)}
+    own: dict[str, list[Any]] = {
+        several: [getattr(setup, one) for setup in setups]
+        for one, several in OF_EACH.items()
+        if hasattr(setups[0], one)
+    }
+    own |= {"laws": [law for law, _ in swimmers], "error": count * [None], "error_estimates": count * [None]}
 
     def swim(index: int) -> None:
         request = SwimRequest(Run, *swimmers[index], times, wrench[index], load)
-        request = request.to_refine() if estimate else request
-        fits = wrench[index] == any(wrench) and len(request.setup.fins) == most_fins and request.every == 1
-        space = out[index] if fits else None
         try:
-            found = swim_of(request, estimate, space)
+            found = swim_of(request.to_refine() if estimate else request)
         except SimulationStopped as error:
-            errors[index] = error
+            own["error"][index] = error
             return
         run = found.run
-        if found.out is not space:  # other profiles or fins than others have, or a finer run
-            for name, array in found.out.arrays().items():
-                row = getattr(out, name)[index, : len(array[:: found.every])]
-                (row[:, : array.shape[1]] if name in FINS else row)[...] = array[:: found.every]
-        works[index] = found.works[:: found.every]
-        start[index], errors[index] = found.energy_at_start, found.stopped
-        settings[index], estimates[index] = run.accuracy, run.error_estimate
-        joints[index] = found.joints and found.joints.every(found.every)
-        counts[:, index] = len(run.time), run.steps, run.evaluations, run.nodes
+        for name, values in arrays_of_run(run).items():
+            if name in arrays:
+                arrays[name][index][tuple(map(slice, values.shape))] = values
+        start[index], own["error"][index] = found.energy_at_start, found.stopped
+        own["accuracies"][index], own["error_estimates"][index] = run.accuracy, run.error_estimate
+        counts["samples"][index] = len(run.time)
+        for name in COUNTS:
+            counts[name][index] = getattr(run, name)
 
     _for_each(swim, count, threads, progress)
-    for index in np.flatnonzero(samples < len(times)).tolist():
-        for array in (*out[index].arrays().values(), works[index]):
-            array[samples[index] :] = 0.0
-    swum = [Swimmer(law, *(getattr(setup, name) for name in Swimmer._fields[1:])) for law, setup in swimmers]
-    robots = any(setup.robot for _, setup in swimmers)
-    motion = Motion.of_many(joints, samples, len(times)) if robots else None
-    arrays = arrays_of(out, works, start[:, None], motion)
-    return batch_of(swum, (settings, errors, estimates, counts), times, arrays, start, stations is not None)
+    return batch_of(own, counts, times, x, arrays, start, profiles)
 
 
-def swim_of(request: SwimRequest[Run], estimate: bool, out: Observations | None = None) -> SwimResult[Run]:
-    """The swim of a `request`, with an `estimate` of its error if wanted, as of `simulate`; it may have stopped.
-
-    out: space for its samples. `SimulationStopped` where it cannot start.
-    """
+def swim_of(request: SwimRequest[Run]) -> SwimResult[Run]:
+    """The swim of a `request`, which may have stopped. `SimulationStopped` where it cannot start."""
     try:
-        found = request.swim(request.simulation(), out=out)
-        return with_error_estimate(found, request) if estimate else found
+        return request.outcome()
     except ValueError as error:
         raise SimulationStopped(0.0, str(error), np.nan, "take a gentler law, or start slower") from None
 

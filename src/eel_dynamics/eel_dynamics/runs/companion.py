@@ -136,13 +136,13 @@ def _finished(request, accuracy: Accuracy, nodes: int | None = None):
     Where these would give a grid of so many `nodes`, as that of another run, there are more points (nodes fill blocks).
     """
     try:
-        simulation = request.simulation(accuracy)
+        march = request.march(accuracy)
         for _ in range(OTHER_GRIDS):
-            if len(simulation.grid.x) != nodes:
+            if len(march.discretisation.grid.x) != nodes:
                 break
             accuracy = accuracy.with_other_points()
-            simulation = request.simulation(accuracy)
-        swim = request.swim(simulation)
+            march = request.march(accuracy)
+        swim = request.swim(march)
     except (SimulationStopped, ValueError):
         return None
     return swim if swim.stopped is None else None

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How long a swimmer swims until its gait has settled: what the duration "settled" stands for."""
 
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -12,9 +13,10 @@ from eel_dynamics.accuracy.accuracy import PRESETS, Accuracy
 from eel_dynamics.analysis.analysis import STILL
 from eel_dynamics.analysis.averaging_window import PLACES, common_period
 from eel_dynamics.analysis.settling import FEWEST, SETTLED, change_of
-from eel_dynamics.simulation.simulation import Simulation
+from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
+from eel_dynamics.simulation.time_budget import affordable
 
 UNTIL_SETTLED = "settled"  # as a duration
 MOST_PERIODS = 100  # of a swim that does not settle
@@ -45,18 +47,17 @@ def settling_time(law: Any, setup: SimulationSetup) -> float:
     `ValueError` for a law without a period.
     """
     period, last_ramp = period_of(law, setup.body.length), _last_ramp(law)
-    others = {"accuracy": _coarse(setup.accuracy), "stations": 2}
-    simulation = Simulation(**setup.arguments | others, law=law)
-    current, before, energy, work = simulation.setup.current, np.zeros(3), 0.0, 0.0
+    coarse = affordable(replace(setup, accuracy=_coarse(setup.accuracy), x=setup.x[:1]))
+    march, before, energy, work = March.from_start(coarse, law), np.zeros(3), 0.0, 0.0
     ways: list[float] = []  # m, of the centre of mass in each period
     works: list[float] = []  # J, of the actuators
     for count in range(MOST_PERIODS + 1):
         try:
-            simulation.advance(count * period)
+            march.advance(count * period, None)
         except SimulationStopped:
             break
-        seen = simulation.observe(wrench=False, load=False)
-        centre = seen.center_of_mass - current * simulation.time
+        seen = march.observe(wrench=False, load=False)
+        centre = seen.center_of_mass - setup.current * march.time
         if count:
             ways.append(float(np.linalg.norm(centre - before)))
         before = centre

@@ -14,10 +14,8 @@ from numpy.typing import ArrayLike
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
-from eel_dynamics.runs.companion import with_error_estimate
-from eel_dynamics.runs.motions import Motion, law_from
+from eel_dynamics.runs.motions import Motion
 from eel_dynamics.runs.run import Run
-from eel_dynamics.runs.settled_duration import settling_time, until_settled
 from eel_dynamics.runs.swim_request import SwimRequest
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 
@@ -85,13 +83,9 @@ def simulate(
         fins=fins,
         most_evaluations=most_evaluations,
     )
-    duration = settling_time(law, setup) if until_settled(duration) else duration
-    seconds: Any = duration  # a text is refused below
-    law = law_from(law, seconds, setup.body.length)
-    request = SwimRequest.of(Run, law, setup, seconds, sample_period, load, runs=2 if estimate else 1)
-    request = request.to_refine() if estimate else request
-    swim = request.swim_to_end(ProgressMonitor(float(seconds), progress).update)
-    run: Run = (with_error_estimate(swim, request) if estimate else swim).run
+    request = SwimRequest.of(Run, law, setup, duration, sample_period, load, estimate)
+    seconds = float(request.times[-1])
+    run = request.swim_to_end(ProgressMonitor(seconds, progress).update)
     if run.error_estimate is not None and (missed := run.error_estimate.over_target(run.accuracy.target, seconds)):
         warnings.warn(missed, stacklevel=2)
     return run
@@ -124,7 +118,7 @@ class ProgressMonitor:
             warnings.warn(
                 f"this swim of {self._duration:g} s is going to take {_minutes(took + left)}: it has come to "
                 f"{reached:.3g} s in {took:.0f} s; a coarser accuracy, a slower law or a shorter duration takes less",
-                stacklevel=7,  # the caller of `simulate`, behind `swim_to_end`, `swim` and two `record`
+                stacklevel=7,  # the caller of `simulate`, behind `swim_to_end`, `outcome`, `swim` and `record`
             )
 
 

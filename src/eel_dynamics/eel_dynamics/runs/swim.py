@@ -49,12 +49,12 @@ class Swim(NamedTuple):
 
     def run(self, **how: Any) -> Run:
         """The run. how: further arguments of `simulate`, or other ones. `SimulationStopped`: it cannot go on."""
-        own = {"duration": self.duration, "sample_period": self.sample_period} | self._swimmer
+        own = {"duration": self.duration, "sample_period": self.sample_period} | self.swimmer
         return simulate(self.law, **own | how)
 
     def simulation(self, **how: Any) -> Simulation:
         """The swimmer at its start. how: further arguments of `Simulation`, or other ones."""
-        return Simulation(**self._swimmer | {"law": self.law} | how)
+        return Simulation(**self.swimmer | {"law": self.law} | how)
 
     def with_gait(self, **numbers: Any) -> Self:
         """The same with other `numbers` of the gait. `ValueError` for a law that no gait gave."""
@@ -64,5 +64,6 @@ class Swim(NamedTuple):
         return self._replace(law=gait.law(), gait=gait)
 
     @property
-    def _swimmer(self) -> dict[str, Any]:
+    def swimmer(self) -> dict[str, Any]:
+        """The arguments of `Simulation`, without a law."""
         return {name: getattr(self, name) for name in OF_SWIMMER} | self.start._asdict()

@@ -13,15 +13,16 @@ from eel_model.flow.flow import check_covers
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
-from eel_dynamics.runs.companion import stable_step
+from eel_dynamics.runs.companion import stable_step, with_error_estimate
+from eel_dynamics.runs.motions import Motion, law_from
 from eel_dynamics.runs.run_data import RunData
 from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
+from eel_dynamics.runs.settled_duration import duration_of
 from eel_dynamics.runs.storage.variables import arrays_of
-from eel_dynamics.simulation.bending.joint_motion import JointMotion
-from eel_dynamics.simulation.observations import Observations
-from eel_dynamics.simulation.simulation import Simulation
+from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.simulation_setup import SimulationSetup, check_planar_law
 from eel_dynamics.simulation.stopping import SimulationStopped
+from eel_dynamics.simulation.time_budget import affordable
 
 LEAST_COMPARED = 40  # gaps between the instants at which a robot's torque is compared
 
@@ -29,22 +30,19 @@ Kind = TypeVar("Kind", bound=RunData)
 
 
 class SwimResult(NamedTuple, Generic[Kind]):
-    """A run, what it was made from, and why it stopped before its end, if it did."""
+    """A run, and why it stopped before its end, if it did."""
 
     run: Kind
-    out: Observations
-    works: np.ndarray  # (T, 6) J
+    compared: Kind  # the run at all instants of the request, for the estimate of its error
     energy_at_start: float  # J
     stopped: SimulationStopped | None
-    joints: JointMotion | None = None  # of a robot
-    compared: Any = None  # the run at all instants of the request, for the estimate of its error
-    every: int = 1  # so many instants of `out`, `works` and `joints` for each sample of the run
 
 
 class SwimRequest(NamedTuple, Generic[Kind]):
     """A swimmer that swims by `law`, the times (T,) [s] of its samples, and whether to record wrench and load.
 
-    kind: class of the run. every: so many instants are observed for each sample, for the estimate of the error.
+    kind: class of the run. estimate: whether to measure its error, and to make it finer where it misses its target;
+    every: so many instants are then observed for each sample.
     """
 
     kind: type[Kind]
@@ -53,39 +51,43 @@ class SwimRequest(NamedTuple, Generic[Kind]):
     times: np.ndarray
     wrench: bool
     load: bool
+    estimate: bool = False
     every: int = 1
 
     @staticmethod
     def of(
         kind: type[Kind],
-        law: Law | SampledLaw,
+        motion: Motion,
         setup: SimulationSetup,
-        duration: float,
+        duration: float | str,
         sample_period: float | None,
-        load: bool,
-        runs: int = 1,
+        load: bool = False,
+        estimate: bool = False,
     ) -> "SwimRequest[Kind]":
-        """The request of these arguments of `simulate`, of which `runs` are kept at once. `ValueError` as there."""
+        """The request of these arguments of `simulate`. `ValueError` as there."""
+        seconds: Any = duration_of(duration, [(motion, setup)])  # a text is refused below
+        law = law_from(motion, seconds, setup.body.length)
         check_planar_law(law, setup.scene)
-        period = default_sample_period([law], duration) if sample_period is None else sample_period
-        times, wrench = checked_times(duration, period), setup.scene.internal_wrench
+        period = default_sample_period([law], seconds) if sample_period is None else sample_period
+        times, wrench = checked_times(seconds, period), setup.scene.internal_wrench
         check_covers(setup.flow, float(times[-1]))
-        check_memory(1, len(times), len(setup.x), wrench, bool(load), runs)
-        return SwimRequest(kind, law, setup, times, wrench, bool(load))
+        check_memory(1, len(times), len(setup.x), wrench, bool(load), 2 if estimate else 1)
+        request = SwimRequest(kind, law, setup, times, wrench, bool(load))
+        return request.to_refine() if estimate else request
 
     def changed(self, **changes: Any) -> "SwimRequest[Kind]":
         """The same with other fields of its `setup`."""
         return self._replace(setup=replace(self.setup, **changes))
 
     def to_refine(self) -> "SwimRequest[Kind]":
-        """The same for a run whose error is measured, and that is made finer where it misses its target.
+        """The same for a run whose error is measured.
 
         The torque of a robot jumps where motors and stops reach their limits: an error there is seen only by instants
         that lie close together.
         """
         gaps = len(self.times) - 1
         every = -(-LEAST_COMPARED // gaps) if self.setup.robot is not None and self.wrench and gaps else 1
-        return self.changed(accuracy=Accuracy.to_refine(self.setup.accuracy))._replace(every=every)
+        return self.changed(accuracy=Accuracy.to_refine(self.setup.accuracy))._replace(estimate=True, every=every)
 
     @property
     def instants(self) -> np.ndarray:
@@ -93,32 +95,36 @@ class SwimRequest(NamedTuple, Generic[Kind]):
         between = np.arange(self.every) / self.every
         return np.append(self.times[:-1, None] + np.diff(self.times)[:, None] * between, self.times[-1])
 
-    def simulation(self, accuracy: Accuracy | None = None) -> Simulation:
-        """A simulation at its start, with other settings if `accuracy` is given."""
+    def march(self, accuracy: Accuracy | None = None) -> March:
+        """Its march at the start, with other settings if `accuracy` is given."""
         setup = self.setup if accuracy is None else replace(self.setup, accuracy=accuracy)
-        return Simulation(**setup.arguments, law=self.law)
+        return March.from_start(affordable(setup), self.law)
 
-    def swim(
-        self, simulation: Simulation, look: Callable[[float], None] | None = None, out: Observations | None = None
-    ) -> SwimResult[Kind]:
-        """Swim it with a `simulation` of its own, at its start. look, out: as in `Simulation.record`."""
-        instants, setup = self.instants, self.setup
-        out, works, done, stopped = simulation.record(instants, self.wrench, self.load, look, out)
-        start, (steps, _, evaluations) = simulation.energy_at_start, simulation.evaluations
-        arrays = arrays_of(out, works, start, simulation.joints, done, bool(setup.scene.ledger))
-        others = {"law": self.law, "accuracy": simulation.accuracy, "nodes": len(simulation.grid.x)}
+    def swim(self, march: March, look: Callable[[float], None] | None = None) -> SwimResult[Kind]:
+        """Swim it by a `march` of its own, at its start. look: as in `Simulation.record`."""
+        instants, setup, start = self.instants, self.setup, march.energy_at_start
+        out, works, done, stopped = march.record(instants, self.wrench, self.load, look)
+        steps, _, evaluations = march.core.counts
+        arrays = arrays_of(out, works, start, march.joints, done, bool(setup.scene.ledger))
+        others = {"law": self.law, "accuracy": march.setup.settings, "nodes": len(march.discretisation.grid.x)}
         others |= {"steps": steps, "evaluations": evaluations}
         run = compared = self.kind.of(setup, instants[:done], arrays, **others)
         if self.every > 1:
             sampled = {name: np.ascontiguousarray(each[:: self.every]) for name, each in arrays.items()}
             run = self.kind.of(setup, compared.time[:: self.every], sampled, **others)
-        return SwimResult(run, out, works, start, stopped, simulation.joints, compared, self.every)
+        return SwimResult(run, compared, start, stopped)
 
-    def swim_to_end(self, look: Callable[[float], None] | None = None) -> SwimResult[Kind]:
-        """Swim it. `SimulationStopped`, with the samples so far as its `run`, where it does not come to its end."""
-        swim = self.swim(self.simulation(), look)
+    def outcome(self, look: Callable[[float], None] | None = None) -> SwimResult[Kind]:
+        """Swim it, and again for the estimate of its error where that is wanted."""
+        swim = self.swim(self.march(), look)
+        found: SwimResult[Kind] = with_error_estimate(swim, self) if self.estimate else swim
+        return found
+
+    def swim_to_end(self, look: Callable[[float], None] | None = None) -> Kind:
+        """The run. `SimulationStopped`, with the samples so far as its `run`, where it does not come to its end."""
+        swim = self.outcome(look)
         if (stopped := swim.stopped) is None:
-            return swim
+            return swim.run
         settings = swim.run.accuracy
         if settings.step is not None:
             step = stable_step(self, settings)
@@ -152,4 +158,4 @@ def simulated_again(
     sample_period = float(run.time[1] - run.time[0]) / finer if len(run.time) > 1 else 1.0
     load = load or run.fluid_force is not None
     request = SwimRequest.of(type(run), law, setup, float(run.time[-1]), sample_period, load)
-    return request.swim_to_end().run.in_axes(axes)
+    return request.swim_to_end().in_axes(axes)

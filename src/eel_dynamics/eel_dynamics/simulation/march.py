@@ -29,6 +29,7 @@ from eel_dynamics.curvature.law_follower import LawFollower
 from eel_dynamics.simulation.bending.joint_motion import JointMotion
 from eel_dynamics.simulation.bending.modes_on_grid import ModesOnGrid
 from eel_dynamics.simulation.discretisation import Discretisation, discretise
+from eel_dynamics.simulation.energy import WORKS
 from eel_dynamics.simulation.observations import Observations, Snapshot
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import (
@@ -235,9 +236,10 @@ class March:
             self._hand_over_law(smoothly=before and self.follower.between_samples)
         return self.follower.next_event(self.time)
 
-    def record(self, times: np.ndarray, out: Observations, works: np.ndarray, wrench: bool, load: bool, look) -> tuple:
-        """As `Simulation.record`, into `out` and `works` (T, 6) [J]."""
-        done, status = 0, MARCHED
+    def record(self, times: np.ndarray, wrench: bool, load: bool, look=None) -> tuple:
+        """As `Simulation.record`."""
+        out = Observations.empty(len(times), len(self.setup.x), wrench, load, len(self.setup.fins))
+        works, done, status = np.zeros((len(times), len(WORKS))), 0, MARCHED
         self._rows = None if self.robot is None else self._empty_rows(len(times))
         rows = () if self._rows is None else (self._rows,)
         alone = look is None and threading.current_thread() is not threading.main_thread()
@@ -266,9 +268,9 @@ class March:
         if failure:
             for place in out.backbone[done]:
                 if self.setup.flow is not None and self.setup.flow.outside(times[done], place):
-                    return done, self._left_grid((times[done], *place))
-            return done, SimulationStopped(self.time, quantity, value, remedy(self.setup.settings))
-        return done, None if status == MARCHED else self._stopped(status)
+                    return out, works, done, self._left_grid((times[done], *place))
+            return out, works, done, SimulationStopped(self.time, quantity, value, remedy(self.setup.settings))
+        return out, works, done, None if status == MARCHED else self._stopped(status)
 
     def _stopped(self, status: int) -> SimulationStopped:
         """The error for the `status` of a march; of a robot with the part that is to blame, and what would help."""

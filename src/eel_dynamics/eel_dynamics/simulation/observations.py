@@ -36,7 +36,7 @@ class Observed:
         if samples is None:
             return self
         where, shape = samples.places[self._name]
-        return None if shape is None else samples.whole[..., where].reshape(*samples.whole.shape[:-1], *shape)
+        return None if shape is None else samples.whole[where].reshape(shape)
 
 
 Places = dict[str, tuple[slice, tuple[int, ...] | None]]  # of each quantity: where, and its shape
@@ -45,9 +45,8 @@ Places = dict[str, tuple[slice, tuple[int, ...] | None]]  # of each quantity: wh
 class Observations:
     """Samples of a swimmer: T instants ("time"), M stations ("station"). World and head in REP-103 axes, SI units.
 
-    Section axes are the paper's. All quantities are views of `whole` (..., n), where they lie one behind the other at
-    their `places`; further dimensions, such as those of several swimmers, come first. A quantity that was not asked for
-    has no instants.
+    Section axes are the paper's. All quantities are views of `whole` (n,), where they lie one behind the other at their
+    `places`. A quantity that was not asked for has no instants.
     """
 
     __slots__ = ("places", "whole")
@@ -89,20 +88,12 @@ class Observations:
         stations: int,
         wrench: bool = True,
         load: bool = True,
-        swimmers: tuple[int, ...] = (),
         fins: int = 0,
     ) -> "Observations":
-        """Space for `samples` instants at `stations` stations.
-
-        wrench, load: whether there is space for the internal wrench and for the water's load. swimmers: (B,) adds a
-        first dimension for B swimmers.
-        """
+        """Space for `samples` instants at `stations` stations, and if wanted for the internal wrench and the water's
+        load."""
         places, size = _places(samples, stations, bool(wrench), bool(load), fins)
-        return Observations(np.zeros((*swimmers, size)), places)
-
-    def __getitem__(self, swimmer: int) -> "Observations":
-        """Those of one of several swimmers."""
-        return Observations(self.whole[swimmer], self.places)
+        return Observations(np.zeros(size), places)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Observations) or type(self) is not type(other):

@@ -1,43 +1,37 @@
 # SPDX-License-Identifier: Apache-2.0
 """The march in time of a swimmer in water: the algorithm of section 7.1 of Boyer, Porez and Leroyer (2010)."""
 
-import math
-import time as clock
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from copy import deepcopy
+from copy import copy, deepcopy
 from dataclasses import replace
-from functools import cache, partial
 from typing import Any
 
 import numpy as np
 from eel_base.quantity import checked_row, is_finite, number
-from eel_base.wording import one_line, shown
-from eel_gaits.gaits.diving import falling
-from eel_gaits.gaits.swimming import straight
+from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.body.body import Body
-from eel_model.fins.fins import Fin, checked_commands
+from eel_model.fins.fins import checked_commands
 from eel_model.flow.flow import Flow
 from eel_model.flow.stream import CurrentStream
 from eel_model.initial_state import checked_state
 from eel_model.robot.actuators import Servo
-from eel_model.robot.robot import Robot
+from eel_model.robot.robot import Robot, checked_robot
 from eel_model.scene import Scene
 from numpy.typing import ArrayLike
 
-from eel_dynamics.accuracy.accuracy import Accuracy, within_budget
-from eel_dynamics.accuracy.budget import Budget
+from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
-from eel_dynamics.simulation.energy import WORKS
 from eel_dynamics.simulation.error_meter import ErrorMeter
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Observations
 from eel_dynamics.simulation.present import Present
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
+from eel_dynamics.simulation.time_budget import affordable
 
 
 class Simulation(Present):
@@ -80,7 +74,7 @@ class Simulation(Present):
         robot: Robot | None = None,
         fins: Iterable[Any] | None = None,
     ) -> None:
-        setup = SimulationSetup.of(
+        asked = SimulationSetup.of(
             body=body,
             scene=scene,
             accuracy=accuracy,
@@ -94,12 +88,7 @@ class Simulation(Present):
             most_evaluations=most_evaluations,
             default_transition=default_transition,
         )
-        if isinstance(setup.accuracy, Budget):
-            start = tuple(tuple(each.tolist()) for each in setup.initial_state)
-            water = setup.flow, setup.robot, setup.fins, start
-            at_hand = partial(swim_time, setup.body, setup.scene, setup.x.tobytes(), *water)
-            setup = replace(setup, accuracy=within_budget(setup.accuracy, setup.scene, at_hand))
-        self._setup = setup
+        self._setup = setup = affordable(asked)
         self.body, self.scene, self.x, self.robot = setup.body, setup.scene, setup.x, setup.robot
         self._march = March.from_start(setup, law)
         self.ready, self._started = law is not None, False
@@ -232,13 +221,13 @@ class Simulation(Present):
 
         robot: with the same parts at the same places; its gains, limits, springs and dampers may differ. None: as here.
         """
-        changes = {"accuracy": accuracy, "robot": robot}
-        other = Simulation(**self._setup.arguments | {name: each for name, each in changes.items() if each is not None})
-        if robot is not None:
-            self._check_parts(robot)
-        other._march = self._march.copy_with(replace(other._setup, flow=self._march.setup.flow))
+        other = copy(self)
+        setup = self._setup if robot is None else self._with_robot(robot)
+        if accuracy is not None:
+            setup = affordable(replace(setup, accuracy=Accuracy.of(accuracy)))
+        other._setup, other.robot, other._meter = setup, setup.robot, None
+        other._march = self._march.copy_with(replace(setup, flow=self._march.setup.flow))
         other.currents = deepcopy(self.currents)
-        other.ready, other._started = self.ready, self._started
         return other
 
     def change_robot(self, robot: Robot) -> None:
@@ -246,15 +235,18 @@ class Simulation(Present):
 
         Commands hold. `ValueError` for other parts, or at other places.
         """
-        self._check_parts(robot)
+        setup = self._with_robot(robot)
         self._on_both(lambda march: march.change_robot(robot))
-        self._setup, self.robot = replace(self._setup, robot=robot), robot
+        self._setup, self.robot = setup, robot
         if self._meter is not None:
             self._meter.due = True
 
-    def _check_parts(self, robot: Robot) -> None:
-        if [*map(_place, robot.parts)] != [*map(_place, self.robot.parts if self.robot else ())]:
+    def _with_robot(self, robot: Robot) -> SimulationSetup:
+        changed = replace(self._setup, robot=checked_robot(robot))
+        parts = robot.parts if changed.modes else ()  # they fit the body
+        if [*map(_place, parts)] != [*map(_place, self.robot.parts if self.robot else ())]:
             raise ValueError("robot must have the same parts at the same places to go on")
+        return changed
 
     # -- march
 
@@ -302,61 +294,18 @@ class Simulation(Present):
         wrench: bool,
         load: bool,
         look: Callable[[float], None] | None = None,
-        out: Observations | None = None,
     ) -> tuple[Observations, np.ndarray, int, SimulationStopped | None]:
         """March through `times` (T,) [s] under the law in force, and observe each.
 
         Returns the observations, the works (T, 6) [J] of actuators, wake, nose, drag, flow and fins, the number of good
-        instants, and what stopped the march, or None. look(time [s]) is called every few milliseconds. out: space for
-        the observations (`Observations.empty`). After a bad instant the simulation must be reset.
+        instants, and what stopped the march, or None. look(time [s]) is called every few milliseconds. After a bad
+        instant the simulation must be reset.
         """
-        out = (
-            Observations.empty(len(times), len(self.x), wrench, load, fins=len(self._setup.fins))
-            if out is None
-            else out
-        )
-        works = np.zeros((len(times), len(WORKS)))
         self._started = True
-        recorded = self._march.record(np.array(times, dtype=float), out, works, wrench, load, look)
+        recorded = self._march.record(np.array(times, dtype=float), wrench, load, look)
         if self._meter is not None:
             self._meter.compare(self._march)
-        return out, works, *recorded
-
-
-@cache
-def swim_time(
-    body: Body,
-    scene: Scene,
-    stations: bytes,
-    flow: Flow | None,
-    robot: Robot | None,
-    fins: tuple[Fin, ...],
-    start: tuple[tuple[float, ...], ...],
-    target: float,
-) -> float:
-    """Wall time [s] per simulated second of a swimmer with the falling gait at a `target`; all else as in its set-up.
-
-    stations: the bytes of the array of their X [m]. start: position, orientation and twist. In a planar scene the gait
-    is straight. The time is the least of some swims of two seconds with samples every 0.05 s. `ValueError` where such a
-    swim stops, as on the edge of a grid.
-    """
-    x, law = np.frombuffer(stations), _scaled(straight() if scene.planar else falling(), body.length)
-    settings = Accuracy.of(target).in_scene(scene).as_it_is()
-    duration, best = 2.0, math.inf
-    for repeat in range(4):  # the first fills caches
-        begin = clock.perf_counter()
-        state: dict[str, Any] = dict(zip(("position", "orientation", "twist"), start, strict=True))
-        simulation = Simulation(body, scene, settings, x, **state, law=law, flow=flow, robot=robot, fins=fins)
-        try:
-            for sample in range(1, 41):
-                simulation.advance(duration * sample / 40)
-                simulation.observe(wrench=scene.internal_wrench, load=False)
-        except SimulationStopped as error:
-            gait = f"{duration:g} s of the gait {law.name}, by which the time is measured"
-            raise ValueError(f"accuracy cannot be a budget of time here: {gait}, stop: {one_line(error)}") from error
-        if repeat:
-            best = min(best, (clock.perf_counter() - begin) / duration)
-    return best
+        return recorded
 
 
 def _place(part: Any) -> tuple[Any, ...]:
@@ -367,16 +316,3 @@ def _place(part: Any) -> tuple[Any, ...]:
         *(getattr(part, name, None) for name in ("position", "start", "end", "width", "modes", "axis")),
         own,
     )
-
-
-def _scaled(law: Law, length: float) -> Law:
-    """A `law` for a body of 1 m, for one of `length` [m]: the same angles and as many waves."""
-    terms = [
-        replace(
-            term,
-            wavelength=length * term.wavelength,
-            amplitude=tuple(part / length ** (power + 1) for power, part in enumerate(term.amplitude)),
-        )
-        for term in law.terms
-    ]
-    return Law(*terms, name=law.name)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The set-up of a simulation: its checked arguments, and the accuracy and grid that follow from them."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -10,6 +10,7 @@ from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.body.body import Body, checked_body
+from eel_model.equality import EqualByFields
 from eel_model.fins.fins import Fin, checked_fins, edges_of
 from eel_model.flow.flow import Flow, check_covers, checked_flow, core_flow
 from eel_model.initial_state import InitialState, checked_state, time_scale
@@ -39,8 +40,8 @@ def check_flow(flow: Flow | None, scene: Scene, start: InitialState) -> None:
         raise ValueError(f"flow surface must be above the head, at z = {start.position[2]:g} m, got {flow!r}")
 
 
-@dataclass(frozen=True)
-class SimulationSetup:
+@dataclass(frozen=True, eq=False)
+class SimulationSetup(EqualByFields):
     """The part of a simulation that neither a march nor a reset changes. `of` checks the arguments."""
 
     body: Body
@@ -84,11 +85,8 @@ class SimulationSetup:
         transition = positive("default_transition", default_transition, "s")
         return SimulationSetup(body, scene, accuracy, x, start, transition, most_evaluations, flow, robot, fins)
 
-    @property
-    def arguments(self) -> dict:
-        """The arguments of `Simulation` that give such a set-up, without a law."""
-        own = {item.name: getattr(self, item.name) for item in fields(self)}
-        return own.pop("initial_state")._asdict() | {"stations": own.pop("x"), **own}
+    def __hash__(self) -> int:  # type: ignore[override]
+        return hash((self.body, self.scene, self.accuracy, self.x.tobytes(), self.flow, self.robot, self.fins))
 
     def __deepcopy__(self, memo: dict) -> "SimulationSetup":
         return self
@@ -152,7 +150,7 @@ class SimulationSetup:
     @cached_property
     def settings(self) -> Accuracy:
         """The settings of the accuracy in this scene."""
-        assert not isinstance(self.accuracy, Budget)  # `Simulation` has replaced it
+        assert not isinstance(self.accuracy, Budget)  # `affordable` has replaced it
         settings = self.accuracy.in_scene(self.scene)
         if self.robot is None:
             return settings

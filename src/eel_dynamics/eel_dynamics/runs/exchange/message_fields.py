@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eel_dynamics.runs.storage.variables import LABELS, VARIABLES
+from eel_dynamics.runs.storage.variables import shape_of
 
 ANGULAR, LINEAR = slice(0, 3), slice(3, 6)  # of a twist
 
@@ -69,17 +69,16 @@ def quantities_of(rows: dict[str, list[Any]], **sizes: int) -> dict[str, np.ndar
 
     sizes: of the dimensions station, fin and joint. `ValueError` where a message has another number of numbers.
     """
-    lengths = {name: len(labels) for name, labels in LABELS.items()} | sizes
     found: dict[str, Any] = {each.quantity: None for fields in FIELDS.values() for each in fields.values()}
     for topic, messages in rows.items():
         for path, each in FIELDS.get(topic, {}).items():
-            shape = tuple(lengths.get(name, 0) for name in VARIABLES[each.quantity].dimensions[1:])
+            shape = shape_of(each.quantity, sizes | {"time": len(messages)})
             if not (hasattr(messages[0], path.partition(".")[0]) and all(shape)):  # an older bag has not all
                 continue
             values = map(attrgetter(path), messages)
             numbers = [[getattr(value, part) for part in each.parts] if each.parts else value for value in values]
             if found[each.quantity] is None:
-                found[each.quantity] = np.zeros((len(messages), *shape))
+                found[each.quantity] = np.zeros(shape)
             place = found[each.quantity][..., each.components]
             place[...] = np.array([np.reshape(row, place.shape[1:]) for row in numbers], dtype=float)
     return found

@@ -30,10 +30,14 @@ def contents_of_run(run: Any) -> Contents:
         "warnings": list(run.warnings),
         **{name: int(getattr(run, name)) for name in COUNTS},
     }
+    return Contents("run", values, arrays_of_run(run), run.axes)
+
+
+def arrays_of_run(run: Any) -> dict[str, np.ndarray]:
+    """The arrays of a `Run` by their names in `VARIABLES`; those that it has not are left out."""
     arrays = {name: getattr(run, name) for name in OWN if getattr(run, name) is not None}
     arrays = {name: each for name, each in arrays.items() if each.size or name not in JOINT_ARRAYS}  # of no joints
-    ledger = {} if run.energy is None else {ENERGY + name: run.energy[name] for name in LEDGER}
-    return Contents("run", values, arrays | ledger, run.axes)
+    return arrays | ({} if run.energy is None else {ENERGY + name: run.energy[name] for name in LEDGER})
 
 
 def fields_of_run(contents: Contents) -> dict[str, Any]:

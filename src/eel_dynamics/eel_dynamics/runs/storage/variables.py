@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, TypeVar, get_type_hints
 import numpy as np
 from eel_model.axes import REP103
 
-from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS, OF_LEDGER
+from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS, OF_LEDGER, JointMotion
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import FINS, LOAD, OBSERVED, WRENCH, Observations, Variable
 
@@ -54,6 +54,26 @@ OF_SWIMMERS = {  # of a batch alone
 }
 
 
+PARTS = {  # arrays that not every run has
+    "wrench": WRENCH,
+    "load": LOAD,
+    "fins": FINS,
+    "robot": tuple(JOINT_ARRAYS),
+    "ledger": tuple(ENERGY + name for name in LEDGER),
+}
+
+
+def names_with(**there: Any) -> list[str]:
+    """Names of the arrays of runs, but time and x, where these `PARTS` are there."""
+    absent = {"time", "x"}.union(*(PARTS[part] for part, present in there.items() if not present))
+    return [name for name in VARIABLES if name not in absent]
+
+
+def shape_of(name: str, sizes: dict[str, int]) -> tuple[int, ...]:
+    """The shape of an array of a run. sizes: of the dimensions that have no labels; 0 where one is not there."""
+    return tuple(len(LABELS[each]) if each in LABELS else sizes.get(each, 0) for each in VARIABLES[name].dimensions)
+
+
 def variable_of(kind: str, name: str) -> Variable:
     """Dimensions, unit and meaning of an array of a `kind`, "run" or "batch"."""
     found = (VARIABLES | OF_SWIMMERS)[name]
@@ -63,16 +83,16 @@ def variable_of(kind: str, name: str) -> Variable:
 
 
 def arrays_of(
-    out: Observations, works: np.ndarray, start: Any, joints: Any = None, done: int | None = None, ledger: bool = True
+    out: Observations, works: np.ndarray, start: float, joints: JointMotion | None, done: int, ledger: bool
 ) -> dict[str, np.ndarray]:
-    """The arrays of a run by their names in `VARIABLES`, but time and x; or of a batch, with a first dimension.
+    """The arrays of a run by their names in `VARIABLES`, but time and x. What was not asked for is left out.
 
     out, works (T, 6) [J], start [J]: what was observed, the works since the start and the energy there. joints: the
-    motion of a robot's (`Motion`). done: the first so many of the instants. What was not asked for is left out.
+    motion of a robot's. done: the first so many of the instants.
     """
     arrays = {name: array[:done] for name, array in out.arrays().items()}
     energies, powers, closure = (arrays.pop(name) for name in ("energies", "powers", "closure"))
-    arrays |= {"closure_torque": closure[..., 0], "closure_force": closure[..., 1]}
+    arrays |= {"closure_torque": closure[:, 0], "closure_force": closure[:, 1]}
     for first, *others in (WRENCH, LOAD, FINS):
         if not all(out.places[first][1] or ()):
             for name in (first, *others):

@@ -5,9 +5,6 @@
 `Robot.joints`, in their order and in their sign; modes are those of its tails and muscles, in section axes.
 """
 
-from collections.abc import Sequence
-from typing import NamedTuple
-
 import numpy as np
 from eel_model.robot.compiled import HINGE
 
@@ -28,39 +25,14 @@ JOINT_ARRAYS = {
 OF_LEDGER = "elastic", "damping_power", "damping_work"  # what a robot adds to the ledger [J, W, J]
 
 
-class Motion(NamedTuple):
-    """The motion of the joints of one robot, or of B swimmers; of fewer joints or modes than the most, 0 fills the
-    rest."""
-
-    arrays: dict[str, np.ndarray]  # of JOINT_ARRAYS: (T, J) or (T, N), of several (B, T, J) or (B, T, N)
-    ledger: np.ndarray  # (..., T, 3) of OF_LEDGER
-
-    @staticmethod
-    def of_many(motions: Sequence["JointMotion | None"], samples: np.ndarray, times: int) -> "Motion":
-        """Those of `motions`, None without a robot, of which the first `samples` (B,) of T `times` are valid."""
-        rows = [{} if each is None else each.arrays | {"ledger": each.ledger} for each in motions]
-        found = {}
-        for name in (*JOINT_ARRAYS, "ledger"):
-            most = max((each[name].shape[1] for each in rows if each), default=3 if name == "ledger" else 0)
-            found[name] = np.zeros((len(motions), times, most))
-            for space, each, count in zip(found[name], rows, samples.tolist(), strict=True):
-                if each:
-                    space[:count, : each[name].shape[1]] = each[name][:count]
-        return Motion(found, found.pop("ledger"))
-
-
 class JointMotion:
-    """The motion of a robot's coordinates at T instants: as `Motion`, computed when it is asked for.
+    """The motion of a robot's coordinates at T instants, computed when it is asked for.
 
     rows: (T, R), as the core writes them at the `places` of their names.
     """
 
     def __init__(self, robot: ModesOnGrid, places: dict[str, tuple[int, int]], rows: np.ndarray):
         self._robot, self._places, self._rows = robot, places, rows
-
-    def every(self, count: int) -> "JointMotion":
-        """That at every so many of the instants."""
-        return JointMotion(self._robot, self._places, self._rows[::count])
 
     def _of(self, name: str) -> np.ndarray:
         return self._rows[:, slice(*self._places[name])]
