@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Snapshots as messages: REP-103 axes where a message is in a ROS frame, section axes where it is not."""
 
+import struct
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,6 +13,7 @@ from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
 from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
 from eel_gaits.gaits.settings import Settings
+from eel_gaits.ros.messages import ROWS
 from eel_ros.loop.serialised_message import MARKED_TIME, SerialisedMessage
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry
@@ -283,10 +285,33 @@ def test_samples_keep_their_names():
     message = CurvatureSamples(x=[0.0, 1.0], pitch=[1.0, 2.0], pitch_rate=[3.0, 4.0], pitch_accel=[5.0, 6.0])
     message.yaw, message.yaw_rate, message.yaw_accel = [7.0, 8.0], [9.0, 10.0], [11.0, 12.0]
     message.header.stamp.sec, message.header.stamp.nanosec = 3, 250_000_000
-    values = samples_from_message(message, 0.0)
-    assert values["time"] == 3.25
-    for name in ("x", "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"):
-        assert list(values[name]) == list(getattr(message, name))
+    for frame in ("", "section", *("s" * length for length in range(9))):
+        message.header.frame_id = frame
+        data = serialize_message(message)
+        values = samples_from_message(data, 0.0)
+        assert values["time"] == 3.25
+        for name in ("x", "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"):
+            assert list(values[name]) == list(getattr(message, name))
+
+
+def test_samples_that_end_early_are_no_samples():
+    message = CurvatureSamples(x=[0.0, 1.0], **{name: [1.0, 2.0] for name in ROWS})
+    data = serialize_message(message)
+    for end in range(2, len(data)):
+        with pytest.raises(EOFError, match="ends before its fields"):
+            samples_from_message(data[:end], 0.0)
+    for encoding in (b"", b"\x00", b"\x00\x07"):
+        with pytest.raises(ValueError, match="encoded in CDR, got encoding"):
+            samples_from_message(encoding + data[2:] if len(encoding) == 2 else encoding, 0.0)
+    message.pitch = []
+    assert len(samples_from_message(serialize_message(message), 0.0)["pitch"]) == 0
+
+
+def test_samples_of_a_machine_with_the_other_byte_order():
+    numbers = [b"\x00\x00\x00\x00" + struct.pack(">iII", 3, 250_000_000, 0)]
+    numbers += [struct.pack(">I4x2d" if k else ">I2d", 2, k, k + 1) for k in range(7)]
+    values = samples_from_message(b"".join(numbers), 0.0)
+    assert values["time"] == 3.25 and list(values["x"]) == [0.0, 1.0] and list(values["yaw_accel"]) == [6.0, 7.0]
 
 
 def test_diagnostics_are_text():

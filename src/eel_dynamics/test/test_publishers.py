@@ -19,7 +19,7 @@ class FakeNode:
 
     def create_publisher(self, kind, topic, quality):
         return SimpleNamespace(
-            get_subscription_count=lambda: self.audience[topic],
+            handle=SimpleNamespace(get_subscription_count=lambda: self.audience[topic]),
             wait_for_all_acked=lambda longest: topic not in self.late,
             publish=self.published,
         )
@@ -59,7 +59,6 @@ def test_patience_is_one_account_for_all_topics():
 )
 def test_a_subscriber_that_comes_after_the_snapshot_was_taken(monkeypatch):
     """Nobody subscribes when it is asked what to compute; somebody does when it is published."""
-    monkeypatch.setattr("eel_dynamics.ros.publishers.COUNT_PERIOD", 0.0)
     received, audience = [], {"internal_wrench": 0, "hydrodynamic_load": 0, "energy": 0}
     node = FakeNode(audience, published=received.append)
     publishers = publishers_of(monkeypatch, node, 1.0)

@@ -1,20 +1,31 @@
 # SPDX-License-Identifier: Apache-2.0
 """Headers of messages: stamps as seconds of simulation time, and back; frame ids below a namespace; and what follows a
-header, read before the message is deserialised, so that the length of a sequence is known.
+header, read from the serialised message: the length of a sequence before it is deserialised, or its numbers.
 """
 
 import math
-import struct
+from struct import Struct, error, unpack_from
+from typing import NamedTuple
 
+import numpy as np
 from builtin_interfaces.msg import Time
 
 END = 2**31 - 1  # s: the last second that a stamp holds
 LATEST = END - 60  # s: a minute before, so that what answers it has a stamp too
 
-ENCODING, STAMP = 4, 8  # bytes
+ENCODING, HEADER = 4, 12  # bytes: of the encoding, and with the stamp
+ORDERS = {b"\0\0": ">", b"\0\1": "<"}  # of the bytes of a number, by the encoding
+READERS = {code: (Struct(order + "I").unpack_from, np.dtype(order + "f8")) for code, order in ORDERS.items()}
 
 
-def seconds_of(stamp: Time, name: str = "header.stamp") -> float:
+class Stamp(NamedTuple):
+    """The time of a header, as `Time`."""
+
+    sec: int
+    nanosec: int
+
+
+def seconds_of(stamp: Time | Stamp, name: str = "header.stamp") -> float:
     """The time [s] of a stamp. `ValueError` for one that is not valid, or so late that no answer can follow it.
 
     name: of the field, for the error.
@@ -42,29 +53,46 @@ def frame_in(namespace: str, frame: str) -> str:
     return f"{namespace}/{frame}".strip("/")
 
 
-class Beginning:
-    """The fields of the message `data` that follow the stamp of its header, one after the other, frame_id first.
+class FieldReader:
+    """Reads the fields of the message `data` that follow its header, one after the other.
 
     The layout is CDR (RTPS 2.5, 10.5): 4 bytes for the encoding, then the fields, each number aligned to its size.
+    `ValueError` for another encoding; `EOFError` if the message ends before a field.
     """
 
     def __init__(self, data: bytes) -> None:
-        self._data, self._place = data, STAMP
-        self._order = "<" if data[1:2] == b"\x01" else ">"
+        if data[:2] not in ORDERS:
+            raise ValueError(f"it must be encoded in CDR, got encoding {data[:2].hex() or 'none'}")
+        self._data, self._place = data, HEADER
+        self._number, self._float = READERS[data[:2]]
+        self.text()  # frame_id
+
+    @property
+    def stamp(self) -> Stamp:
+        """The stamp of the header."""
+        return Stamp(*unpack_from(ORDERS[self._data[:2]] + "iI", self._data, ENCODING))
 
     def number(self) -> int:
-        """The next field, a uint32 or the length of a sequence. `EOFError` if the message ends before."""
-        self._place += -self._place % 4
+        """The next field, a uint32 or the length of a sequence."""
+        begin = self._place + -self._place % 4
+        self._place = begin + 4
         try:
-            (number,) = struct.unpack_from(self._order + "I", self._data, ENCODING + self._place)
-        except struct.error:
+            number: int = self._number(self._data, begin)[0]
+        except error:
             raise EOFError("it ends before its fields") from None
-        self._place += 4
-        return int(number)
+        return number
+
+    def numbers(self) -> np.ndarray:
+        """The next field, a sequence of float64, as a view (n,)."""
+        count = self.number()
+        begin = self._place + (ENCODING - self._place) % 8 if count else self._place
+        self._place = begin + 8 * count
+        if self._place > len(self._data):
+            raise EOFError("it ends before its fields")
+        return np.ndarray(count, self._float, self._data, begin)
 
     def text(self) -> str:
-        """The next field, a string. `EOFError` if the message ends before."""
+        """The next field, a string."""
         size = self.number()
-        begin = ENCODING + self._place
-        self._place += size
+        begin, self._place = self._place, self._place + size
         return self._data[begin : begin + size].rstrip(b"\0").decode(errors="replace")

@@ -9,7 +9,7 @@ from typing import Any
 
 from eel_ros.loop.diagnostics import ERROR, Report
 from eel_ros.qos import Deliveries, keep_all
-from eel_ros.serving import PolledGroup, ServedNode, log_dropped, read_message
+from eel_ros.serving import PolledGroup, ServedNode, log_dropped
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.qos import ReliabilityPolicy
 
@@ -64,16 +64,13 @@ class CurvatureInbox:
                 if self._deliveries.repeats(taken[1]):
                     continue
                 try:
-                    message = read_message(taken[0], CurvatureSamples)
-                except Exception as error:
-                    log_dropped(self._node, error, f"a message of {subscription.topic_name}")
-                    continue
-                try:
-                    samples = samples_from_message(message, now)
+                    samples = samples_from_message(taken[0], now)
                 except ValueError as error:
                     self._report.event("samples", refused(error), ERROR)
-                    continue
-                yield samples
+                except EOFError as error:
+                    log_dropped(self._node, error, f"a message of {subscription.topic_name}")
+                else:
+                    yield samples
 
     def wait(self, seconds: float) -> bool:
         """Sleep until samples have come or `set` was called, at most `seconds`; whether one of them was the reason."""

@@ -64,7 +64,7 @@ def command_from_message(message: JointState, interfaces: dict[str, str], now: f
         if others:
             raise ValueError(f"joint {shown(name)} is driven by {own}, got {others[0]} too")
         joints[name] = own, float(values[own])
-    return JointCommand(stamped(message, now), joints)
+    return JointCommand(stamped(message.header.stamp, now), joints)
 
 
 class JointCommandSubscription:

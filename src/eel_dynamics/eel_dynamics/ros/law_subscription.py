@@ -46,7 +46,7 @@ class LawSubscription:
         name = law_name(data)
         try:
             message = read_law(data)
-            origin, law = stamped(message, self._run.time), law_from_message(message)
+            origin, law = stamped(message.header.stamp, self._run.time), law_from_message(message)
         except ValueError as error:
             self._report.event("law", f"law {SHOWN.repr(name)} refused: {error}", ERROR, differing=True)
         else:

@@ -34,7 +34,6 @@ LOSSLESS_END_TIMEOUT = 30.0  # s: where no sample may be lost: time for a slow s
 SLICE = 0.02  # s: longest wait for one topic before signals and callbacks are looked at
 QUIET_TIME = 1.0  # s without a change, after which the subscribers that some topics have are considered complete
 MATCH_LIMIT = 5.0  # s: longest wait for the subscribers that exist to be matched
-COUNT_PERIOD = 0.1  # s of wall time between two counts of subscribers: a count costs as much as a short message
 PARTS = {"wrench": ("internal_wrench", "joint_states", "swim_state"), "load": ("hydrodynamic_load",)}
 # of Simulation.observe, and the topics that need them
 NOT_AWAITED = "/tf", "joint_states", "motor_states", "swim_state"  # the run does not wait for subscribers of these
@@ -54,9 +53,9 @@ class Publishers:
         self._channels: dict[str, Channel] = {}
         self._clock: Channel | None = None
         self._body: Any = node.create_publisher(BodyGeometry, "body", latched(1))
-        self._last_count = -math.inf  # s, steady clock: when subscribers were counted
-        self._counts: dict[str, int] = {}  # of subscribers by topic, at that time
-        self._subscribed: tuple[str, ...] = ()  # topics with subscribers
+        self._present: tuple[dict[str, int], bool] = {}, True  # subscribers by topic, and whether /tf is published
+        self._subscribed: tuple[str, ...] = ()  # topics with subscribers that are published
+        self._parts: dict[str, bool] = {}  # the answer of `wanted_parts`
         self._wait_budget = WaitBudget()
         self._audience: tuple[list[int], list[int]] | None = None  # of each topic: subscribers matched, and known
         self._audience_since, self._waiting_since = 0.0, math.inf  # s, steady clock
@@ -72,7 +71,6 @@ class Publishers:
         for name, kind in self._sample.kinds.items():
             if name not in self._channels:
                 self._channels[name] = Channel(self._node, kind, name, self.lossless)
-        self._subscribed, self._last_count = (), -math.inf
         self.publish_body(simulation)
 
     def publish_body(self, simulation: Simulation) -> None:
@@ -83,28 +81,23 @@ class Publishers:
         """Wait until the present subscribers have received the body: they need it for the samples."""
         self._body.wait_for_all_acked(Duration(seconds=BODY_TIMEOUT))
 
-    def _count_subscribers(self) -> None:
-        """Find the topics that have subscribers. In a run as fast as possible, tell what a new one has missed."""
-        self._last_count = time.monotonic()
-        hidden = () if self._parameters.values.publish_tf else ("/tf",)
-        before, self._counts = self._counts, dict(zip(self._channels, self.audience(), strict=True))
-        self._subscribed = tuple(name for name, count in self._counts.items() if name not in hidden and count > 0)
-        if self.lossless and self._samples > 1:
-            late = [name for name in self._subscribed if self._counts[name] > before.get(name, 0)]
-            if late:
+    def wanted_parts(self) -> dict[str, bool]:
+        """Which costly parts of the next snapshot have subscribers: the flags of `Simulation.observe`."""
+        counts, shown = self.audience(), self._parameters.values.publish_tf
+        if (counts, shown) != self._present:
+            before, self._present = self._present[0], (counts, shown)
+            self._subscribed = tuple(name for name, count in counts.items() if count and (shown or name != "/tf"))
+            self._parts = {part: any(name in self._subscribed for name in topics) for part, topics in PARTS.items()}
+            late = [name for name in self._subscribed if counts[name] > before.get(name, 0)]
+            if late and self.lossless and self._samples > 1:
                 self._report.note(
                     "late subscriber", f"a subscriber of {', '.join(late)} came late: it missed {self._samples} samples"
                 )
+        return self._parts
 
-    def wanted_parts(self) -> dict[str, bool]:
-        """Which costly parts of the next snapshot have subscribers: the flags of `Simulation.observe`."""
-        if self.lossless or time.monotonic() - self._last_count >= COUNT_PERIOD:
-            self._count_subscribers()
-        return {part: any(name in self._subscribed for name in topics) for part, topics in PARTS.items()}
-
-    def audience(self) -> tuple[int, ...]:
+    def audience(self) -> dict[str, int]:
         """The number of subscribers of each topic."""
-        return tuple(channel.publisher.get_subscription_count() for channel in self._channels.values())
+        return {name: channel.subscribers() for name, channel in self._channels.items()}
 
     def publish(self, snapshot: Snapshot, nanoseconds: int) -> None:
         """Publish one sample at simulation time `nanoseconds` [ns].
@@ -118,8 +111,8 @@ class Publishers:
 
     def tick(self, nanoseconds: int) -> None:
         """Publish /clock, with simulation time `nanoseconds` [ns]."""
-        self._sample.set_time(nanoseconds)
-        if self._clock is not None:
+        if self._clock is not None and self._clock.subscribers():
+            self._sample.set_time(nanoseconds)
             self._send(self._clock, self._sample.tick())
 
     def enable_clock(self, offered: bool) -> None:
@@ -140,7 +133,7 @@ class Publishers:
         own = [channel for name, channel in self._channels.items() if name not in left_out]
         if not wanted and self._clock is not None:
             own.append(self._clock)  # who follows it needs it from the start
-        counts = [channel.publisher.get_subscription_count() for channel in own]
+        counts = [channel.subscribers() for channel in own]
         known = [] if wanted else [channel.count_known() for channel in own]
         if (counts, known) != self._audience:
             self._audience, self._audience_since = (counts, known), now

@@ -4,7 +4,7 @@
 import numpy as np
 from eel_base.attitude import unit_quaternion
 from eel_base.wording import shown
-from eel_ros.headers import Beginning
+from eel_ros.headers import FieldReader
 from eel_ros.serving import read_message
 from geometry_msgs.msg import Point, Pose, PoseStamped
 from nav_msgs.msg import Odometry, Path
@@ -24,9 +24,7 @@ def point_of(point: Point) -> tuple[float, float, float]:
 def read_path(data: bytes) -> Path:
     """The path that is serialised in `data`. `ValueError` for too many points, which are counted first;
     another error for bytes that are no message."""
-    beginning = Beginning(data)
-    beginning.text()  # frame_id
-    check_count(beginning.number())
+    check_count(FieldReader(data).number())
     return read_message(data, Path)
 
 

@@ -80,8 +80,7 @@ class LawAdopter:
         if ahead > 2.0 * self._farthest and time.monotonic() < self._echo_until:
             self._report.note("echo", f"curvature samples of {samples['time']:g} s left out: sent before the reset")
             return
-        values = hash(tuple(np.asarray(row).tobytes() for name, row in samples.items() if name != "time"))
-        if self._first.get(samples["time"]) == values:
+        if samples["time"] in self._first and self._first[samples["time"]] == _hash(samples):
             return
         last, longest = max(self.simulation.time, self.simulation.samples_until or 0.0), max(LONGEST_WAY, 2.0 * period)
         try:
@@ -96,7 +95,7 @@ class LawAdopter:
         else:
             self._farthest = max(self._farthest, ahead)
             if self.simulation.time == 0.0:
-                self._first[samples["time"]] = values
+                self._first[samples["time"]] = _hash(samples)
 
     def waits_for_samples(self, instant: float, period: float, now: float, timeout: float) -> bool:
         """Whether to wait for samples up to `instant` [s], a `period` [s] ahead, for `timeout` [s] at most in each gap.
@@ -137,3 +136,8 @@ class LawAdopter:
         elif self.simulation.sampled and not self._driven:
             self._report.note("law adopted", f"curvature samples adopted at t = {instant:g} s")
         self._driven = self.simulation.sampled or self.simulation.resting
+
+
+def _hash(samples: dict[str, Any]) -> int:
+    """A hash of the values of an instant."""
+    return hash(tuple(np.asarray(row).tobytes() for name, row in samples.items() if name != "time"))

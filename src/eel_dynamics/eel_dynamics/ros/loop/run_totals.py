@@ -17,11 +17,7 @@ class RunTotals:
         self._greatest = {"torque": 0.0, "force": 0.0}  # N m, N, over all stations and times
 
     def add(self, snapshot: Snapshot) -> None:
-        """Add a snapshot's figures; `SimulationStopped` if one of its values is not finite."""
-        if not np.isfinite(snapshot.whole).all():
-            for name, array in snapshot.arrays().items():
-                if not np.isfinite(array).all():
-                    raise _not_finite(snapshot, name, array)
+        """Add a snapshot's figures; `SimulationStopped` if the energy residual is not finite."""
         values = self._values
         if snapshot.energy is not None and snapshot.actuator_work is not None:
             residual = float(snapshot.energy.residual)
@@ -43,6 +39,14 @@ class RunTotals:
             if greatest > 0.0
         }
         return self._values | relative
+
+
+def check_finite(snapshot: Snapshot) -> None:
+    """`SimulationStopped` if one of the values of a snapshot is not finite, before anybody gets it."""
+    if not np.isfinite(snapshot.whole).all():
+        for name, array in snapshot.arrays().items():
+            if not np.isfinite(array).all():
+                raise _not_finite(snapshot, name, array)
 
 
 def _not_finite(snapshot: Snapshot, name: str, values: np.ndarray | float) -> SimulationStopped:

@@ -12,7 +12,7 @@ from eel_ros.loop.diagnostics import Report
 from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.loop.error_monitor import ErrorMonitor
 from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
-from eel_dynamics.ros.loop.run_totals import RunTotals
+from eel_dynamics.ros.loop.run_totals import RunTotals, check_finite
 from eel_dynamics.ros.loop.saturation_monitor import SaturationMonitor
 from eel_dynamics.ros.publishers import Publishers
 from eel_dynamics.simulation.simulation import Simulation
@@ -38,7 +38,7 @@ class SampleOutput:
         self.saturation = self._watch()
         self._whole_snapshot_due = True
         self._start_shown = -math.inf  # s, steady clock: last sample 0
-        self._start_audience: tuple[int, ...] | None = None  # who had it
+        self._start_audience: dict[str, int] | None = None  # who had it
 
     def _watch(self) -> SaturationMonitor | None:
         return None if self._simulation.robot is None else SaturationMonitor(self._simulation, self._report)
@@ -55,8 +55,14 @@ class SampleOutput:
     def _publish(self, sample: int, whole: bool) -> None:
         """With `whole`, check everything that the totals use."""
         parts, limit = self._publishers.wanted_parts(), self._parameters.values.torque_limit
-        parts["wrench"] |= limit > 0.0
-        snapshot = self._simulation.observe(**{part: wanted or whole for part, wanted in parts.items()})
+        snapshot = self._simulation.observe(
+            wrench=whole or parts["wrench"] or limit > 0.0,
+            load=whole or parts["load"],
+        )
+        check_finite(snapshot)
+        stamp = nanoseconds(sample, self._parameters.values.rate)
+        self.clock.reach(stamp)
+        self._publishers.publish(snapshot, stamp)  # a controller waits for it, and nobody for the rest
         self.totals.add(snapshot)
         if self.saturation is not None:
             self.saturation.add(snapshot)
@@ -64,9 +70,6 @@ class SampleOutput:
         self._limits.check_torque(snapshot, limit)
         if whole:
             self.errors.check()
-        stamp = nanoseconds(sample, self._parameters.values.rate)
-        self.clock.reach(stamp)
-        self._publishers.publish(snapshot, stamp)
 
     def end(self) -> None:
         """Report what is left to report at the end of the run."""
