@@ -21,10 +21,11 @@ def evaluations(simulation: Simulation, flow: Flow | None = None) -> Action:
 
     flow: of the water; None: still.
     """
-    kind = eel_core.PlanarInstant if simulation.scene.planar else eel_core.Instant
     water = None if flow is None else eel_core.Flow(flow.sources(False))
-    instant = kind(simulation.discretisation.swimmer)
-    return partial(instant.repeat_rate, simulation.law_on_grid, simulation.time, simulation.state, COUNT, water)
+    motion = simulation.law_on_grid, simulation.time, simulation.state
+    return partial(
+        eel_core.repeat_rate, simulation.discretisation.swimmer, simulation.scene.planar, *motion, COUNT, water
+    )
 
 
 def _microseconds(times: list[float]) -> float:

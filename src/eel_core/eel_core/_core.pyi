@@ -9,7 +9,7 @@ is (Omega, V) [rad/s, m/s] of the head in its own axes, relative to the water un
 """
 
 from collections.abc import Iterable, Sequence
-from typing import Any, Protocol, Self
+from typing import Any, Self
 
 import numpy as np
 from typing_extensions import Buffer as _Buffer
@@ -37,86 +37,6 @@ def layout(
     wrench: the internal wrench; load: what the water does along the body.
     """
 
-class _Points(Protocol):
-    """Rows that integrate from the start of a panel to each of some points."""
-
-    @property
-    def matrix(self) -> Buffer: ...  # (points, p_max) [m]
-    @property
-    def first(self) -> Buffer: ...  # (points,) unsigned 64 bits, first node of the point's panel
-    @property
-    def count(self) -> Buffer: ...  # (points,) unsigned 64 bits, nodes of that panel
-    @property
-    def fraction(self) -> Buffer: ...  # (points,) of the panel, in its own variable
-
-class _Grid(_Points, Protocol):
-    """n nodes along the body, a multiple of 8; the points are the nodes."""
-
-    @property
-    def weight(self) -> Buffer: ...  # (n,) [m], of the integral over the body
-    @property
-    def barycentric(self) -> Buffer: ...  # (n,) weights of the interpolation within the node's panel
-    @property
-    def series(
-        self,
-    ) -> Buffer: ...  # (p_max, n) [m], coefficients of Legendre polynomials, whose integrals give rows anywhere
-
-class _Sections(Protocol):
-    """Section data at some points, (points,) each; eq. (37) and section 7.2.1."""
-
-    @property
-    def mass(self) -> Buffer: ...  # [kg/m], of the body
-    @property
-    def added2(self) -> Buffer: ...  # [kg/m], added mass along E2
-    @property
-    def added3(self) -> Buffer: ...  # [kg/m], along E3
-    @property
-    def inertia1(self) -> Buffer: ...  # [kg m], of body and water about E1
-    @property
-    def inertia2(self) -> Buffer: ...  # [kg m], about E2
-    @property
-    def inertia3(self) -> Buffer: ...  # [kg m], about E3
-    @property
-    def added_roll(self) -> Buffer: ...  # [kg m], of the water about E1
-    @property
-    def lever(self) -> Buffer: ...  # [kg], m h of the weight, h below the axis
-    @property
-    def net(self) -> Buffer: ...  # [kg/m], of the displaced water less the body, where bodies weigh
-    @property
-    def displaced(self) -> Buffer: ...  # [kg/m], of the water that the section displaces
-    @property
-    def drag2(self) -> Buffer: ...  # [kg/m^2], 1/2 rho_f k2
-    @property
-    def drag3(self) -> Buffer: ...  # [kg/m^2], 1/2 rho_f k3
-    @property
-    def drag_roll(self) -> Buffer: ...  # [kg], 1/2 rho_f k4
-    @property
-    def laminar(self) -> Buffer: ...  # friction force per length = -laminar |V1|^(1/2) V1
-    @property
-    def turbulent(self) -> Buffer: ...  # friction force per length = -turbulent (Re/8e4)^(4/5) V1
-    @property
-    def by_critical_speed(self) -> Buffer: ...  # [s/m], Re/8e4 per |V1|
-
-class _Stations(Protocol):
-    """M places along the body where profiles are given."""
-
-    @property
-    def sections(self) -> _Sections: ...
-    @property
-    def points(self) -> _Points: ...
-    @property
-    def nodes_before(self) -> Buffer: ...  # (M,) unsigned 64 bits, how many nodes lie at or before the station
-    @property
-    def added2_slope(self) -> Buffer: ...  # (M,) [kg/m^2], derivative of added2 by X
-    @property
-    def added3_slope(self) -> Buffer: ...  # (M,) [kg/m^2]
-    @property
-    def added_roll_slope(self) -> Buffer: ...  # (M,) [kg]
-    @property
-    def missed(self) -> Iterable[Buffer]: ...
-    # (M, p_max) each, times m: what the rows of `points` miss of the integrals of mass, added2 and 3, lever, net,
-    # inertia1 to 3, displaced, drag2 and 3, drag_roll, laminar and turbulent; none where the sections are smooth
-
 class _Shared:
     """Never changes: copies are the object itself."""
 
@@ -128,9 +48,9 @@ class Swimmer(_Shared):
 
     def __init__(
         self,
-        grid: _Grid,
-        sections: _Sections,
-        stations: _Stations,
+        grid: Any,
+        sections: Any,
+        stations: Any,
         *,
         friction: str,
         resistive: bool,
@@ -147,21 +67,22 @@ class Swimmer(_Shared):
         gravity: float,
         missed_drag: Iterable[Buffer] = (),
         fins: list[tuple[Any, ...]] = ...,
-        servos: list[tuple[float, float, float, float, int]] = ...,
+        servos: list[tuple[float, float, float, float, int, float]] = ...,
     ) -> None:
-        """sections: at the nodes. friction: of `FRICTION_LAWS`. resistive: drag along the body.
-        first_watched: first of the speeds (0 V1, 1 V2, 2 V3, 3 Omega1, 4 Re/8e4 - 1) whose changes of sign within a
-        panel are integrated exactly; 5 for none. inertia_of_water: the nodes' sections have that of the water.
-        tail_water: (3,) added masses [kg/m], [kg m] that are swept off at the tail. flow_gradient: its forces.
-        nose_mass: m_o [kg]; nose_drag: 1/2 rho_f k_o [kg/m].
+        """grid: with the attributes of `Grid` (eel_model/body/grid.py). sections, at its nodes, and stations: of
+        `SectionData` and `StationData` (eel_model/section_data.py). friction: of `FRICTION_LAWS`.
+        resistive: drag along the body. first_watched: first of the speeds (0 V1, 1 V2, 2 V3, 3 Omega1, 4 Re/8e4 - 1)
+        whose changes of sign within a panel are integrated exactly; 5 for none. inertia_of_water: the nodes' sections
+        have that of the water. tail_water: (3,) added masses [kg/m], [kg m] that are swept off at the tail.
+        flow_gradient: its forces. nose_mass: m_o [kg]; nose_drag: 1/2 rho_f k_o [kg/m].
         distributed_pressure: along the body in place of at the tail. offset: the centre of mass is off the axis.
         righting, gravity [m/s^2]: g where `lever` gives a moment of weight, and where `net` gives a force; else 0.
         missed_drag: (K, n) [m] for V2, V3 and Omega1: of each node, what the drag's integral from the start of its
         panel misses, by the drag at the node, at K fractions (1 - cos(pi k / (K - 1))) / 2 of the panel; none where the
         sections are smooth. fins: (node at the end of a panel, normal (3,), centre of pressure (3,) [m], 1/2 rho_f
         area [kg/m], lift slope, 1 / (pi e AR), drag across and along, added mass [kg], servo, sign of its angle by the
-        servo's, first station there or behind); servos: (time constant [s],
-        limit [rad], roll gain, rate gain [s], node). `ValueError` names what does not fit."""
+        servo's, first station there or behind); servos: (time constant [s], limit [rad], roll gain, rate gain [s],
+        node, initial angle [rad]). `ValueError` names what does not fit."""
 
 class Flow(_Shared):
     """How the water moves by itself: the sum of its sources."""
@@ -212,18 +133,9 @@ class LawOnGrid(_Shared):
 class StepBounds(_Shared):
     """What bounds the time steps of a march."""
 
-    def __init__(
-        self,
-        *,
-        tolerance: float,
-        longest: float,
-        smallest: float,
-        length: float,
-        momentum_floor: float,
-        part_of_span: float,
-        most_steps: float,
-        spare_steps: float,
-    ) -> None: ...
+    def __init__(self, **bounds: float) -> None:
+        """All of the following, by their names."""
+
     @property
     def tolerance(self) -> float:
         """Relative error of a step."""
@@ -249,44 +161,12 @@ class StepBounds(_Shared):
     def spare_steps(self) -> float:
         """Steps beyond these, to be spent at any time."""
 
-class _Modes(Protocol):
-    """M modes that bend by themselves, and C coordinates: those of the modes, then motors' behind series springs."""
-
-    @property
-    def axis(self) -> Buffer: ...  # (M,) unsigned 64 bits, 0 pitch, 1 yaw
-    @property
-    def first(self) -> Buffer: ...  # (M,) unsigned 64 bits, first node of the support
-    @property
-    def last(self) -> Buffer: ...  # (M,) unsigned 64 bits, the node behind its last
-    @property
-    def continuous(self) -> Buffer: ...  # (M,) unsigned 64 bits, 1 where it is one of several on its support
-    @property
-    def span(self) -> Buffer: ...  # (M,) integral of the mode's size along the body
-    @property
-    def moment(self) -> Buffer: ...  # (M,) internal torque for a unit of the mode's force
-    @property
-    def inertia(self) -> Buffer: ...  # (C,) [kg m^2], armature or rotor
-    @property
-    def rest(self) -> Buffer: ...  # (C,) where the springs rest
-    @property
-    def stiffness(self) -> Buffer: ...  # (C, C) of the springs
-    @property
-    def damping(self) -> Buffer: ...  # (C, C)
-    @property
-    def servos(
-        self,
-    ) -> Iterable[tuple[int, float, float, float, float]]: ...  # coordinate, kp, kd, torque limit, speed limit
-    @property
-    def stops(self) -> Iterable[tuple[int, float, float, float, float]]: ...  # mode, low, high, stiffness, damping
-    @property
-    def torques(self) -> Iterable[tuple[Any, ...]]: ...
-    # coordinate and function(time [s]); or coordinate, knots (k,) [s], cubics (k - 1, 4) from the constant on
-
 class Modes(_Shared):
     """The modes of a robot on a grid. It is copied from Python and never changes."""
 
-    def __init__(self, modes: _Modes) -> None:
-        """`ValueError` for arrays that do not fit together."""
+    def __init__(self, modes: Any) -> None:
+        """modes: with the attributes of `ModesOnGrid` (eel_dynamics/simulation/bending). `ValueError` for arrays that
+        do not fit together."""
 
 class BentMarch:
     """A swimmer with modes on its way: as `March`, where not said otherwise."""
@@ -520,43 +400,19 @@ class SampledMarches:
     def present(self, index: int) -> tuple[float, list[float], tuple[int, int, int]]:
         """Time [s], works and counts of a swimmer, as of `March`."""
 
-class PlanarInstant:
-    """Single instants of a motion in the plane: three degrees of freedom (yaw, along, across)."""
-
-    def __init__(self, swimmer: Swimmer) -> None: ...
-    def rate(
-        self, law: LawOnGrid, current: Buffer, time: float, state: Buffer, flow: Flow | None = None
-    ) -> list[float] | None:
-        """Rate (13,) of a state (13,) at a time [s], in a current (3,) [m/s], world. None where the inertia is not
-        positive definite."""
-
-    def repeat_rate(self, law: LawOnGrid, time: float, state: Buffer, count: int, flow: Flow | None = None) -> None:
-        """Finds the rate of a state (13,) `count` times, with no current, without Python's lock: for benchmarks."""
-
-    def powers(self, law: LawOnGrid) -> list[float]:
-        """Powers (5,) [W] of actuators, wake, nose, drag and flow in the motion whose rate was found last."""
-
-    def inertia(self, law: LawOnGrid, time: float) -> list[list[float]]:
-        """Inertia (3, 3) of body, water and nose about the head, in the paper's axes, rotation first, as the law bends
-        the body at a time [s]."""
+def repeat_rate(
+    swimmer: Swimmer, planar: bool, law: LawOnGrid, time: float, state: Buffer, count: int, flow: Flow | None = None
+) -> None:
+    """Finds the rate of a state (13,) `count` times at a time [s], with no current, without Python's lock: for
+    benchmarks. planar: in three degrees of freedom."""
 
 class Instant:
     """Single instants of a motion in space."""
 
     def __init__(self, swimmer: Swimmer) -> None: ...
-    def rate(
-        self, law: LawOnGrid, current: Buffer, time: float, state: Buffer, flow: Flow | None = None
-    ) -> list[float] | None:
-        """As in `PlanarInstant`."""
-
-    def repeat_rate(self, law: LawOnGrid, time: float, state: Buffer, count: int, flow: Flow | None = None) -> None:
-        """As in `PlanarInstant`."""
-
-    def powers(self, law: LawOnGrid) -> list[float]:
-        """As in `PlanarInstant`."""
-
     def inertia(self, law: LawOnGrid, time: float) -> list[list[float]]:
-        """As in `PlanarInstant`, (6, 6)."""
+        """Inertia (6, 6) of body, water and nose about the head, in the paper's axes, rotation first, as the law bends
+        the body at a time [s]."""
 
     def loads(self, law: LawOnGrid, time: float, twist: Buffer) -> tuple[list[float], list[float]]:
         """Wrenches (6,) of the wake and of the drag along the body, for a twist (6,) of the head at a time [s]."""

@@ -173,50 +173,30 @@ constexpr std::pair<const char*, double StepBounds::*> step_bounds[] = {{"tolera
                                                                         {"most_steps", &StepBounds::most_steps},
                                                                         {"spare_steps", &StepBounds::spare_steps}};
 
+// Evaluates the rate of a state again and again, for benchmarks.
 template <class M>
-std::optional<PythonState> rate_of(Instant<M>& instant, const LawOnGrid& law, const py::object& current, double time,
-                                   const py::object& state, std::shared_ptr<Flow> flow)
+void repeat_rate_in(const Swimmer& swimmer, const LawOnGrid& law, double time, const State& y, std::size_t count,
+                    const Water& water)
 {
+    Workspace<M> work(swimmer);
     State rate{};
-    const Water water = water_from(current, std::move(flow));
-    if (!instant.rate(law, water, time, state_from(state), rate)) return {};
-    return shown(rate);
+    for (std::size_t k = 0; k < count; ++k) rate_of_state(swimmer, law, water, time, y, work, rate);
+}
+void repeat_rate(const Swimmer& swimmer, bool planar, const LawOnGrid& law, double time, const py::object& state,
+                 std::size_t count, std::shared_ptr<Flow> flow)
+{
+    const State y = state_from(state);
+    const py::gil_scoped_release unlocked;
+    (planar ? repeat_rate_in<Plane> : repeat_rate_in<Space>)(swimmer, law, time, y, count, {{}, std::move(flow)});
 }
 
-template <class M>
-std::array<std::array<double, M::freedoms>, M::freedoms> inertia_of(Instant<M>& instant, const LawOnGrid& law,
-                                                                    double time)
+std::array<std::array<double, 6>, 6> inertia_at(Instant& instant, const LawOnGrid& law, double time)
 {
     const auto inertia = instant.inertia(law, time);
-    std::array<std::array<double, M::freedoms>, M::freedoms> rows;
-    for (std::size_t i = 0; i < M::freedoms; ++i)
+    std::array<std::array<double, 6>, 6> rows;
+    for (std::size_t i = 0; i < rows.size(); ++i)
         for (std::size_t j = 0; j <= i; ++j) rows[i][j] = rows[j][i] = inertia.lower[inertia.at(i, j)];
     return rows;
-}
-
-// Evaluates the rate again and again, for benchmarks.
-template <class M>
-void repeat_rate(Instant<M>& instant, const LawOnGrid& law, double time, const py::object& state, std::size_t count,
-                 std::shared_ptr<Flow> flow)
-{
-    const Water water{{0.0, 0.0, 0.0}, std::move(flow)};
-    const State y = state_from(state);
-    State rate{};
-    const py::gil_scoped_release unlocked;
-    for (std::size_t k = 0; k < count; ++k) instant.rate(law, water, time, y, rate);
-}
-
-template <class M>
-py::class_<Instant<M>> bind_instant(py::module_& module, const char* name, const char* doc)
-{
-    return py::class_<Instant<M>>(module, name, doc)
-        .def(py::init<std::shared_ptr<const Swimmer>>(), py::arg("swimmer"))
-        .def("rate", &rate_of<M>, py::arg("law"), py::arg("current"), py::arg("time"), py::arg("state"),
-             py::arg("flow") = py::none())
-        .def("repeat_rate", &repeat_rate<M>, py::arg("law"), py::arg("time"), py::arg("state"), py::arg("count"),
-             py::arg("flow") = py::none())
-        .def("powers", &Instant<M>::powers, py::arg("law"))
-        .def("inertia", &inertia_of<M>, py::arg("law"), py::arg("time"));
 }
 
 }  // namespace
@@ -278,18 +258,21 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
     bind_sampled_marches(module);
     bind_bent_marches(module);
 
-    bind_instant<Plane>(module, "PlanarInstant", "Single instants in the plane.");
-    bind_instant<Space>(module, "Instant", "Single instants in space.")
+    module.def("repeat_rate", &repeat_rate, py::arg("swimmer"), py::arg("planar"), py::arg("law"), py::arg("time"),
+               py::arg("state"), py::arg("count"), py::arg("flow") = py::none());
+    py::class_<Instant>(module, "Instant")
+        .def(py::init<std::shared_ptr<const Swimmer>>(), py::arg("swimmer"))
+        .def("inertia", &inertia_at, py::arg("law"), py::arg("time"))
         .def(
             "loads",
-            [](Instant<Space>& instant, const LawOnGrid& law, double time, const py::object& twist) {
+            [](Instant& instant, const LawOnGrid& law, double time, const py::object& twist) {
                 const auto [tail, drag] = instant.loads(law, time, twist_from(twist, "twist"));
                 return std::make_tuple(components_of(half_turn(tail)), components_of(half_turn(drag)));
             },
             py::arg("law"), py::arg("time"), py::arg("twist"))
         .def(
             "drag_powers",
-            [](Instant<Space>& instant, const LawOnGrid& law, const py::object& times, const py::object& twists,
+            [](Instant& instant, const LawOnGrid& law, const py::object& times, const py::object& twists,
                const py::object& powers, const py::object& current, std::shared_ptr<Flow> flow,
                const py::object& poses) {
                 const Numbers at(times, "times");
@@ -310,7 +293,7 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
             py::arg("poses"))
         .def(
             "momentum_rate",
-            [](Instant<Space>& instant, const LawOnGrid& law, double time, const py::object& twist,
+            [](Instant& instant, const LawOnGrid& law, double time, const py::object& twist,
                const py::object& acceleration) {
                 return components_of(half_turn(instant.momentum_rate(law, time, twist_from(twist, "twist"),
                                                                      twist_from(acceleration, "acceleration"))));

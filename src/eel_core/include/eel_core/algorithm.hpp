@@ -84,9 +84,9 @@ Powers powers_of_loads(const Swimmer& swimmer, const Workspace<M>& work)
 }
 
 // Powers [W] of actuators, wake, nose, drag, flow and fins, in the motion that `work` holds; with the acceleration of
-// the head, eq. (60).
+// the head, eq. (60). Not inlined: the same to the last bit whoever asks.
 template <class M>
-Powers find_powers(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
+EEL_CORE_APART Powers find_powers(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
 {
     find_head_acceleration(swimmer, law, work);
     double actuators = power_of_shape(swimmer, work);

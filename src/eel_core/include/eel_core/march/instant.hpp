@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Single instants, for studies and tests: rates, loads and inertia for a given state or motion of the head.
+// Single instants, for studies and tests: loads and inertia for a given motion of the head, in space.
 #pragma once
 
 #include <memory>
@@ -8,22 +8,12 @@
 
 namespace eel_core {
 
-template <class M>
 class Instant {
   public:
     explicit Instant(std::shared_ptr<const Swimmer> swimmer) : swimmer_(std::move(swimmer)), work_(*swimmer_) {}
 
-    // Rate of the state; false where the inertia is not positive definite.
-    bool rate(const LawOnGrid& law, const Water& water, double time, const State& y, State& rate)
-    {
-        return rate_of_state(*swimmer_, law, water, time, y, work_, rate);
-    }
-
-    // Powers of actuators, wake, nose, drag and flow in the motion that `rate` has found last.
-    Powers powers(const LawOnGrid& law) { return find_powers(*swimmer_, law, work_); }
-
     // Inertia of the body about the head, nose included, as the law bends it.
-    Factored<M::freedoms> inertia(const LawOnGrid& law, double time)
+    Factored<6> inertia(const LawOnGrid& law, double time)
     {
         configure(*swimmer_, law, time, work_);
         inertia_and_momentum(*swimmer_, work_);
@@ -31,7 +21,7 @@ class Instant {
     }
 
     // Wrenches of wake and drag on the body for a given twist of the head, in still water.
-    std::array<Wrench<M, double>, 2> loads(const LawOnGrid& law, double time, const Twist<M, double>& twist)
+    std::array<Wrench<Space, double>, 2> loads(const LawOnGrid& law, double time, const Twist<Space, double>& twist)
     {
         move(law, time, twist, {}, {});
         return {work_.tail, work_.drag};
@@ -39,7 +29,7 @@ class Instant {
 
     // Powers of the axial friction, the lateral and vertical drag, and the roll drag, for a given twist of the head in
     // the state y, whose momentum is not read.
-    std::array<double, 4> drag_powers(const LawOnGrid& law, double time, const Twist<M, double>& twist,
+    std::array<double, 4> drag_powers(const LawOnGrid& law, double time, const Twist<Space, double>& twist,
                                       const Water& water, const State& y)
     {
         move(law, time, twist, water, y);
@@ -56,15 +46,15 @@ class Instant {
             }
             sum[0] += load.linear.x * v.x;
             sum[1] += load.linear.y * v.y;
-            if constexpr (!M::planar) sum[2] += load.linear.z * v.z;
+            sum[2] += load.linear.z * v.z;
             sum[3] += roll_torque(load) * turning;
         }
         return {total(sum[0]), total(sum[1]), total(sum[2]), total(sum[3])};
     }
 
     // Rate of the momentum along the body for a given twist and acceleration of the head.
-    Wrench<M, double> momentum_rate(const LawOnGrid& law, double time, const Twist<M, double>& twist,
-                                    const Twist<M, double>& acceleration)
+    Wrench<Space, double> momentum_rate(const LawOnGrid& law, double time, const Twist<Space, double>& twist,
+                                        const Twist<Space, double>& acceleration)
     {
         move(law, time, twist, {}, {});
         find_shape_accelerations(*swimmer_, law, work_);
@@ -74,12 +64,12 @@ class Instant {
     }
 
   private:
-    void move(const LawOnGrid& law, double time, const Twist<M, double>& twist, const Water& water, const State& y)
+    void move(const LawOnGrid& law, double time, const Twist<Space, double>& twist, const Water& water, const State& y)
     {
         configure(*swimmer_, law, time, work_);
         work_.flowing = false;
         if (water.flow) {
-            work_.head = head_frame(y, M());
+            work_.head = head_frame(y, Space());
             set_flow(*swimmer_, water, time, Vector3{y[0], y[1], y[2]}, work_);
         }
         set_velocities(*swimmer_, twist, work_);
@@ -88,7 +78,7 @@ class Instant {
     }
 
     std::shared_ptr<const Swimmer> swimmer_;
-    Workspace<M> work_;
+    Workspace<Space> work_;
 };
 
 }  // namespace eel_core
