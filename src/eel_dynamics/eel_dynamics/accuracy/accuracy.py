@@ -266,38 +266,38 @@ class Accuracy:
         """
         if isinstance(value, Accuracy):
             return value
-        made: Accuracy = _of_number(value) if type(value) is float else Accuracy._of(value)
+        made: Accuracy = _of_number(value) if type(value) is float else _settings_of(value)
         return made
 
-    @staticmethod
-    def _of(value: Any) -> Any:  # a Budget too
-        if isinstance(value, Budget):
-            return value
-        if isinstance(value, str):
-            name = value.strip()
-            if name in PRESETS:
-                return Accuracy(name=name, target=PRESETS[name], resolution=ANY)
-            if name.startswith("fastest"):
-                return Budget.of(name)
-            if name.endswith(FIXED):
-                wanted = Accuracy.of(name.removesuffix(FIXED).rstrip(" ,"))
-                return replace(wanted, name=name, method="classical", order=4, fixed=0.0)
-        try:
-            target = np.nan if isinstance(value, bool) else float(value)
-        except (TypeError, ValueError, OverflowError):
-            target = np.nan
-        if np.isnan(target):
-            raise ValueError(
-                f"accuracy must be one of {', '.join(PRESETS)}, a target relative error, or a budget such as 'fastest "
-                f"within 5 ms per second' (a name or number may have ', {FIXED}' behind it), got {shown(value)}"
-                f"{did_you_mean(value, PRESETS) if isinstance(value, str) else ''}"
-            )
-        if not FINEST <= target <= COARSEST:
-            raise ValueError(
-                f"accuracy must be a target relative error from {FINEST:g} to {COARSEST:g} (double precision carries a "
-                f"run no further than that), got {shown(value)}"
-            )
-        return Accuracy(name=f"{target:g}", target=target, resolution=ANY)
+
+def _settings_of(value: Any) -> Any:  # a Budget too
+    if isinstance(value, Budget):
+        return value
+    if isinstance(value, str):
+        name = value.strip()
+        if name in PRESETS:
+            return Accuracy(name=name, target=PRESETS[name], resolution=ANY)
+        if name.startswith("fastest"):
+            return Budget.of(name)
+        if name.endswith(FIXED):
+            wanted = Accuracy.of(name.removesuffix(FIXED).rstrip(" ,"))
+            return replace(wanted, name=name, method="classical", order=4, fixed=0.0)
+    try:
+        target = np.nan if isinstance(value, bool) else float(value)
+    except (TypeError, ValueError, OverflowError):
+        target = np.nan
+    if np.isnan(target):
+        raise ValueError(
+            f"accuracy must be one of {', '.join(PRESETS)}, a target relative error, or a budget such as 'fastest "
+            f"within 5 ms per second' (a name or number may have ', {FIXED}' behind it), got {shown(value)}"
+            f"{did_you_mean(value, PRESETS) if isinstance(value, str) else ''}"
+        )
+    if not FINEST <= target <= COARSEST:
+        raise ValueError(
+            f"accuracy must be a target relative error from {FINEST:g} to {COARSEST:g} (double precision carries a "
+            f"run no further than that), got {shown(value)}"
+        )
+    return Accuracy(name=f"{target:g}", target=target, resolution=ANY)
 
 
-_of_number = lru_cache(maxsize=64)(Accuracy._of)
+_of_number = lru_cache(maxsize=64)(_settings_of)

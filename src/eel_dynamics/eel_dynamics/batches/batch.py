@@ -2,7 +2,6 @@
 """Many swimmers at once: what `simulate_batch` returns."""
 
 import os
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields
 from typing import Any
 
@@ -14,7 +13,6 @@ from eel_model.body.body import Body
 from eel_model.equality import same_fields
 from eel_model.fins.fins import Fin
 from eel_model.flow.flow import Flow
-from eel_model.flow.plain import flow_of
 from eel_model.robot.joint import Joint
 from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
@@ -26,9 +24,8 @@ from eel_dynamics.analysis.settling import tell_unsettled
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.run_data import ObservedArrays
 from eel_dynamics.runs.run_picture import lines_of_batch, picture_of_batch
-from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.storage.netcdf import loaded, write
-from eel_dynamics.runs.storage.run_contents import contents_of_batch, fins_of, with_warnings
+from eel_dynamics.runs.storage.run_contents import OF_EACH, OF_SWIMMER, contents_of_batch, own_of_batch, with_warnings
 from eel_dynamics.runs.storage.tables import dataset_of, frame_of_all, needed
 from eel_dynamics.runs.storage.variables import (
     COUNTS,
@@ -43,17 +40,6 @@ from eel_dynamics.runs.storage.variables import (
 from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS
 from eel_dynamics.simulation.stopping import SimulationStopped
 
-OF_EACH = {  # fields of a run, and of a batch, whose swimmers have their own
-    "law": "laws",
-    "body": "bodies",
-    "scene": "scenes",
-    "flow": "flows",
-    "robot": "robots",
-    "fins": "fins",
-    "accuracy": "accuracies",
-    "error_estimate": "error_estimates",
-}
-OF_SWIMMER = tuple(OF_EACH.values())[:6]  # in the order of a pickle's arguments
 ALONG = "backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force"
 
 
@@ -222,24 +208,9 @@ def batch_of(
 
 def _batch_from(contents: Contents, *at_hand: Any) -> Batch:
     """The batch of these contents. at_hand: what need not be made of them, of `OF_SWIMMER`."""
-    values, arrays = contents.values, contents.arrays
-    count, own = len(arrays["samples"]), dict(zip(OF_SWIMMER, at_hand, strict=False))
-    readers: dict[str, Callable[[], Sequence[Any]]] = {
-        "laws": lambda: plain.row_of(values["laws"], plain.law_of),
-        "bodies": lambda: plain.row_of(values["bodies"], plain.body_of),
-        "scenes": lambda: plain.row_of(values["scenes"], lambda each: Scene(**each)),
-        "flows": lambda: [flow_of(each) for each in values.get("flows", count * [None])],
-        "fins": lambda: [fins_of(each) for each in values.get("fins", count * [()])],
-        "robots": lambda: list(map(plain.robot_of, values.get("robots", count * [None]), own["bodies"])),
-        "accuracies": lambda: plain.row_of(values["accuracies"], plain.accuracy_of),
-        "error": lambda: [plain.stop_of(each) for each in values["errors"]],
-        "error_estimates": lambda: [each and ErrorEstimate(**each) for each in values["error_estimates"]],
-    }
-    for name, read in readers.items():
-        own[name] = own.get(name) or read()
-    if any(len(each) != count for each in own.values()):
-        raise ValueError(f"there must be a law, a body, a scene and settings for each of {count} swimmers")
+    arrays, own = contents.arrays, own_of_batch(contents, at_hand)
     there = {part: PARTS[part][0] in arrays for part in ("wrench", "load", "fins")}  # 0 in older files
     ours = {name: arrays[name] for name in names_with(**there) if name in arrays}
     counts = {name: arrays[name].astype(int) for name in ("samples", *COUNTS)}
-    return batch_of(own, counts, arrays["time"], arrays["x"], ours, arrays["energy_at_start"], bool(values["stations"]))
+    time, x, start = (arrays[name] for name in ("time", "x", "energy_at_start"))
+    return batch_of(own, counts, time, x, ours, start, bool(contents.values["stations"]))

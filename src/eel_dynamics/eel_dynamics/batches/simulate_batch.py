@@ -21,13 +21,13 @@ from eel_model.flow.flow import check_covers
 from numpy.typing import ArrayLike
 
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
-from eel_dynamics.batches.batch import OF_EACH, Batch, batch_of, coordinates_of
+from eel_dynamics.batches.batch import Batch, batch_of, coordinates_of
 from eel_dynamics.batches.broadcast import Swimmer, swimmers_of
 from eel_dynamics.runs.motions import check_duration
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
 from eel_dynamics.runs.settled_duration import duration_of
-from eel_dynamics.runs.storage.run_contents import arrays_of_run
+from eel_dynamics.runs.storage.run_contents import OF_EACH, arrays_of_run
 from eel_dynamics.runs.storage.variables import COUNTS, names_with, shape_of
 from eel_dynamics.runs.swim_request import SwimRequest, SwimResult
 from eel_dynamics.simulation.stopping import SimulationStopped
@@ -106,10 +106,10 @@ def swum(
         check_covers(setup.flow, float(times[-1]))
     setups, load = [setup for _, setup in swimmers], bool(load) and profiles
     wrench = [setup.scene.internal_wrench and profiles for setup in setups]
-    count, x = len(swimmers), np.array([setup.x for setup in setups])
-    check_memory(count, len(times), x.shape[1], any(wrench), load)
+    count, points = len(swimmers), len(setups[0].x)
+    check_memory(count, len(times), points, any(wrench), load)
     robots = [coordinates_of(setup.robot) for setup in setups]
-    sizes = {"time": len(times), "station": x.shape[1], "fin": max(len(setup.fins) for setup in setups)}
+    sizes = {"time": len(times), "station": points, "fin": max(len(setup.fins) for setup in setups)}
     sizes |= {name: max(each[name] for each in robots) for name in robots[0]}
     names = names_with(
         wrench=any(wrench),
@@ -145,7 +145,7 @@ def swum(
             counts[name][index] = getattr(run, name)
 
     _for_each(swim, count, threads, progress)
-    return batch_of(own, counts, times, x, arrays, start, profiles)
+    return batch_of(own, counts, times, np.array([setup.x for setup in setups]), arrays, start, profiles)
 
 
 def swim_of(request: SwimRequest[Run]) -> SwimResult[Run]:

@@ -13,12 +13,16 @@ from eel_model.scene import Scene
 from numpy.typing import NDArray
 
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.sampled_swimmers import LEFT_OUT, Array
-from eel_dynamics.simulation.simulation import Simulation
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
+from eel_dynamics.simulation.time_budget import affordable
 
-MODES = {"position": "position", "velocity": "velocity", "torque": "effort"}  # arguments of `Simulation.command`
+MODES = {"position": "angle", "velocity": "rate", "torque": "torque"}  # kinds of `March.command`
+
+NO_LAW = Law(name="commands")
 
 
 class CommandedRobots:
@@ -47,12 +51,11 @@ class CommandedRobots:
         threads: int = 1,
     ):
         self.robot, self._names, self._mode = robot, tuple(names), MODES[kind]
-        self._arguments = {"body": body, "scene": scene, "accuracy": accuracy, "stations": stations, "robot": robot}
-        first = self._simulation()
-        self.body, self.scene, self.x, self.accuracy, self.grid = (
-            getattr(first, name) for name in ("body", "scene", "x", "accuracy", "grid")
-        )
-        self._swims = [first] * count
+        setup = SimulationSetup.of(body=body, scene=scene, accuracy=accuracy, stations=stations, robot=robot)
+        setup = self._setup = affordable(setup)
+        self.body, self.scene, self.x, self.accuracy = setup.body, setup.scene, setup.x, setup.settings
+        self._swims = [March.from_start(setup, NO_LAW)] * count
+        self.grid = self._swims[0].discretisation.grid
         self.heads: Array = np.zeros((13, count))
         self.joints: Array = np.zeros((2, len(robot.joints), count))
         self._pool = ThreadPoolExecutor(threads, thread_name_prefix="robot") if threads > 1 else None
@@ -62,7 +65,7 @@ class CommandedRobots:
 
         position, orientation, twist, flow: as of `Simulation`.
         """
-        self._swims[index] = self._simulation(position=position, orientation=orientation, twist=twist, flow=flow)
+        self._swims[index] = March.from_start(self._setup.starting(position, orientation, twist, flow), NO_LAW)
         self._command(index, commands)
         self._look(index)
 
@@ -76,7 +79,7 @@ class CommandedRobots:
         def march(index: int) -> None:
             try:
                 self._command(index, commands[index])
-                self._swims[index].advance(float(times[index]))
+                self._swims[index].advance(float(times[index]), None)
                 self._look(index)
             except SimulationStopped as error:
                 stopped[index] = error
@@ -91,14 +94,12 @@ class CommandedRobots:
 
     def evaluations(self, index: int) -> tuple[int, int, int]:
         """Numbers of steps, rejected steps and evaluations of a robot since its start."""
-        return self._swims[index].evaluations
-
-    def _simulation(self, **start) -> Simulation:
-        return Simulation(**self._arguments | start, law=Law(name="commands"))
+        counts: tuple[int, int, int] = self._swims[index].core.counts
+        return counts
 
     def _command(self, index: int, commands: Array) -> None:
         for name, value in zip(self._names, commands.tolist(), strict=True):
-            self._swims[index].command(name, **{self._mode: value})
+            self._swims[index].command(name, self._mode, value)
 
     def _look(self, index: int) -> None:
         swim = self._swims[index]

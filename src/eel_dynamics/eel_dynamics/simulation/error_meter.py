@@ -33,7 +33,7 @@ FAILURES = SimulationStopped, ValueError, ArithmeticError, MemoryError
 
 
 class ErrorMeter:
-    """The estimate of the error of a `march`.
+    """The estimate of the error of a `march`, where it is `wanted`; else nothing is done.
 
     Attributes:
         measured_since: [s], start of the estimate. The companion begins again from the present state when the
@@ -41,7 +41,8 @@ class ErrorMeter:
         lost_at: [s], the first such time; None if there was none.
     """
 
-    def __init__(self, march: March):
+    def __init__(self, march: March, wanted: bool):
+        self.wanted = wanted
         self._companion: March | None = None
         self._length = march.setup.body.length  # m
         self.lost_at: float | None = None
@@ -61,6 +62,8 @@ class ErrorMeter:
         self._last_position, self._growth_rate, self._torque = None, growth_rate, None
         self._path, self._torque_distance, self._apart = 0.0, 0.0, np.zeros(4)
         self._distances.clear()
+        if not self.wanted:
+            return
         try:
             settings = march.setup.settings.coarser()
             self._companion = march.copy_with(replace(march.setup, accuracy=settings))

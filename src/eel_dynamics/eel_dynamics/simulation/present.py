@@ -26,7 +26,7 @@ class Present:
 
     _setup: SimulationSetup
     _march: March
-    _meter: ErrorMeter | None
+    _meter: ErrorMeter
 
     @property
     def time(self) -> float:
@@ -143,7 +143,7 @@ class Present:
 
         They are relative to the path and to the greatest torque since then, and infinite where the companion stopped.
         """
-        return None if self._meter is None else self._meter.estimate(self._march)
+        return self._meter.estimate(self._march) if self._meter.wanted else None
 
     @property
     def head_errors(self) -> HeadErrors | None:
@@ -152,17 +152,17 @@ class Present:
         All are infinite where the companion stopped. The absolute ones are also infinite before the first comparison,
         and once the position was lost.
         """
-        return None if self._meter is None else self._meter.head_errors
+        return self._meter.head_errors if self._meter.wanted else None
 
     @property
     def measured_since(self) -> float | None:
         """[s], start of the estimate. It begins again once the errors have grown so far that they grow no more."""
-        return None if self._meter is None else self._meter.measured_since
+        return self._meter.measured_since if self._meter.wanted else None
 
     @property
     def lost_at(self) -> float | None:
         """[s], when it first began again because of that; None where it never did."""
-        return None if self._meter is None else self._meter.lost_at
+        return self._meter.lost_at if self._meter.wanted else None
 
     @property
     def memory(self) -> int:

@@ -6,9 +6,8 @@ from dataclasses import replace
 import numpy as np
 from eel_base.wording import shown
 from eel_model.body.body import Body
-from eel_model.flow.flow import Flow, core_flow, parts_of
+from eel_model.flow.flow import Flow, parts_of
 from eel_model.flow.functions import FlowField
-from eel_model.initial_state import InitialState, checked_state, time_scale
 from eel_model.scene import Scene
 from numpy.typing import NDArray
 
@@ -21,9 +20,9 @@ from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 from eel_dynamics.simulation.discretisation import discretise
 from eel_dynamics.simulation.march import MARCHED, SINGULAR, UNFINISHED
 from eel_dynamics.simulation.observations import Snapshot
-from eel_dynamics.simulation.simulation import Simulation
-from eel_dynamics.simulation.simulation_setup import check_flow
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped, stopped_by
+from eel_dynamics.simulation.time_budget import affordable
 
 LEFT_OUT = -1
 MOST_WAVES = 2.0  # of a flow on the body: the nodes resolve as many at the least
@@ -64,7 +63,7 @@ class SampledSwimmers:
         stations: int = 51,
         threads: int = 1,
     ):
-        setup = Simulation(body, scene, accuracy, stations).setup
+        setup = affordable(SimulationSetup.of(body=body, scene=scene, accuracy=accuracy, stations=stations))
         self.accuracy = setup.settings.for_control_steps()
         setup = self._setup = replace(setup, accuracy=self.accuracy)
         self.body, self.scene, self.x = setup.body, setup.scene, setup.x
@@ -87,7 +86,7 @@ class SampledSwimmers:
         )
         self.heads: Array = np.zeros((13, count))
         self._energy_at_start = np.zeros(count)
-        self._bounds = [self._bounds_of(np.zeros(6))] * count
+        self._bounds = [self._bounds_of(setup)] * count
 
     def check(self, rows: Array) -> CurvatureSample:
         """A sample with these `rows` (6, n); `ValueError` for one that `Simulation.add_samples` refuses."""
@@ -104,25 +103,22 @@ class SampledSwimmers:
         The nodes stay those of the samples: `ValueError` for a flow that asks for more.
         """
         self.check(rows)
-        state = checked_state(self.scene.planar, position, orientation, twist)
-        relative, water = state.in_water(self._setup.current), self._water_of(flow, state)
-        scale = np.inf if flow is None else flow.time_scale
-        self._bounds[index] = bounds = self._bounds_of(relative, scale)
-        energy = self._marches.start(index, bounds, state.position, state.orientation, relative, rows, water)
+        setup = self._setup.starting(position, orientation, twist, flow)
+        if flow is not None:
+            self._check_flow(flow)
+        self._bounds[index] = bounds = self._bounds_of(setup)
+        place, turn, _ = setup.initial_state
+        energy = self._marches.start(index, bounds, place, turn, setup.initial_twist, rows, setup.core_flow)
         if not (np.isfinite(energy) and self._marches.put_head(index, self.heads)):
             raise SimulationStopped(0.0, "kinetic energy", energy, "start slower")
         self._energy_at_start[index] = energy
 
-    def _water_of(self, flow: Flow | None, state: InitialState) -> eel_core.Flow | None:
-        if flow is None:
-            return None
-        check_flow(flow, self.scene, state)
+    def _check_flow(self, flow: Flow) -> None:
         if any(isinstance(part, FlowField) for part in parts_of(flow)):
             raise ValueError(f"flow must have no functions where many swim side by side, got {shown(flow)}")
         waves = self.body.length / flow.shortest_wave
         if waves > MOST_WAVES:
             raise ValueError(f"flow must have at most {MOST_WAVES:g} waves on the body, got {waves:.3g}: {shown(flow)}")
-        return core_flow(flow, bool(self.scene.planar))
 
     def advance(self, times: Array, rows: Array, status: NDArray[np.int64]) -> dict[int, SimulationStopped]:
         """March each swimmer to its own of the `times` (N,) [s], where its sample has its `rows` (N, 6, n).
@@ -160,17 +156,17 @@ class SampledSwimmers:
     def _stopped(self, index: int, status: int) -> SimulationStopped:
         return stopped_by(status, self._marches.present(index)[0], self._bounds[index], self.accuracy)
 
-    def _bounds_of(self, twist: Array, flow_scale: float = np.inf) -> eel_core.StepBounds:
-        """The bounds of the steps of a swimmer that starts with this `twist` (6,) relative to the water."""
-        length, discretisation = self.body.length, self._discretisation
+    def _bounds_of(self, setup: SimulationSetup) -> eel_core.StepBounds:
+        """The bounds of the steps of a swimmer that starts as its `setup` has it."""
+        of_flow = np.inf if setup.flow is None else setup.flow.time_scale
         return step_bounds_of(
             accuracy=self.accuracy,
             ledger=bool(self.scene.ledger),
             between_samples=True,
             nodes=len(self.grid.x),
-            mass=discretisation.mass,
-            length=length,
+            mass=self._discretisation.mass,
+            length=self.body.length,
             speed=0.0,
-            scale=min(time_scale(twist, length), discretisation.weight_time, flow_scale),
-            most_evaluations=self._setup.most_evaluations,
+            scale=min(setup.time_scale, self._discretisation.weight_time, of_flow),
+            most_evaluations=setup.most_evaluations,
         )

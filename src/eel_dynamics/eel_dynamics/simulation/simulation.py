@@ -93,7 +93,7 @@ class Simulation(Present):
         self._march = March.from_start(setup, law)
         self.ready, self._started = law is not None, False
         self.currents = CurrentStream(setup.default_transition)
-        self._meter = ErrorMeter(self._march) if measure_error else None
+        self._meter = ErrorMeter(self._march, measure_error)
 
     # -- law and samples
 
@@ -112,8 +112,7 @@ class Simulation(Present):
             self._on_both(lambda march: march.change_law(law, origin, blend, needs))
         else:
             self._on_both(lambda march: march.begun_with(law, origin))
-        if self._meter is not None:
-            self._meter.keep_apart(self._march)
+        self._meter.keep_apart(self._march)
         self.ready = True
 
     def add_samples(
@@ -202,19 +201,16 @@ class Simulation(Present):
         kind, name, value = wanted[0] if wanted else ("law", "", 0.0)
         value = number(f"{name} of joint {shown(joint)}", value)
         self._on_both(lambda march: march.command(joint, kind, value))
-        if self._meter is not None:
-            self._meter.due = True
+        self._meter.due = True
 
     def _on_both(self, action: Callable[[March], March | None]) -> None:
         """Do it to the march and, where the error is measured, to its companion, at the same time.
 
         An action may return another march in its place.
         """
-        if self._meter is not None:
-            self._meter.catch_up(self._march)
+        self._meter.catch_up(self._march)
         self._march = action(self._march) or self._march
-        if self._meter is not None:
-            self._meter.repeat(action)
+        self._meter.repeat(action)
 
     def copy_with(self, accuracy: Accuracy | None = None, robot: Robot | None = None) -> "Simulation":
         """A copy in the present state that continues with the settings `accuracy`, or with other numbers of the robot.
@@ -225,8 +221,9 @@ class Simulation(Present):
         setup = self._setup if robot is None else self._with_robot(robot)
         if accuracy is not None:
             setup = affordable(replace(setup, accuracy=Accuracy.of(accuracy)))
-        other._setup, other.robot, other._meter = setup, setup.robot, None
+        other._setup, other.robot = setup, setup.robot
         other._march = self._march.copy_with(replace(setup, flow=self._march.setup.flow))
+        other._meter = ErrorMeter(other._march, False)
         other.currents = deepcopy(self.currents)
         return other
 
@@ -238,8 +235,7 @@ class Simulation(Present):
         setup = self._with_robot(robot)
         self._on_both(lambda march: march.change_robot(robot))
         self._setup, self.robot = setup, robot
-        if self._meter is not None:
-            self._meter.due = True
+        self._meter.due = True
 
     def _with_robot(self, robot: Robot) -> SimulationSetup:
         changed = replace(self._setup, robot=checked_robot(robot))
@@ -263,7 +259,7 @@ class Simulation(Present):
             raise ValueError(f"time must be finite and >= the present {self.time} s, got {shown(time)}")
         self._started = True
         reached = self._march.advance(float(time), interrupted)
-        if reached and self._meter is not None:
+        if reached and self._meter.wanted:
             self._meter.advanced(self._march, interrupted)
         return reached
 
@@ -274,8 +270,7 @@ class Simulation(Present):
         energy. `ValueError` for a state that the scene does not allow, or without a finite energy.
         """
         self._march.set_state(checked_state(self.scene.planar, position, orientation, twist))
-        if self._meter is not None:
-            self._meter.begin_again(self._march)
+        self._meter.begin_again(self._march)
 
     def reset(self) -> None:
         """Reset state and time to the start. The last law stays, with its own t = 0 at 0.
@@ -285,8 +280,7 @@ class Simulation(Present):
         self._march = March.from_start(self._setup, self.law)
         self.currents = CurrentStream(self._setup.default_transition)
         self.ready, self._started = self.law is not None, False
-        if self._meter is not None:
-            self._meter = ErrorMeter(self._march)
+        self._meter = ErrorMeter(self._march, self._meter.wanted)
 
     def record(
         self,
@@ -303,8 +297,7 @@ class Simulation(Present):
         """
         self._started = True
         recorded = self._march.record(np.array(times, dtype=float), wrench, load, look)
-        if self._meter is not None:
-            self._meter.compare(self._march)
+        self._meter.compare(self._march)
         return recorded
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The set-up of a simulation: its checked arguments, and the accuracy and grid that follow from them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -28,16 +28,6 @@ from eel_dynamics.curvature.curvature_samples import check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 
 FITTING = 1e-6  # part of the body's length by which the rows of a law may be shorter or longer
-
-
-def check_flow(flow: Flow | None, scene: Scene, start: InitialState) -> None:
-    """`ValueError` for a flow that `scene` does not allow, or that is not one of water at the head's `start`."""
-    flow = checked_flow(flow, scene.planar)
-    check_covers(flow, 0.0)
-    if flow is not None and (out := flow.outside(0.0, start.position)):
-        raise ValueError(f"position must lie in the grid of the flow, {out[0]}, got {shown(start.position.tolist())}")
-    if flow is not None and start.position[2] > flow.surface_height:
-        raise ValueError(f"flow surface must be above the head, at z = {start.position[2]:g} m, got {flow!r}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,14 +66,18 @@ class SimulationSetup(EqualByFields):
         body = checked_body(robot.body if body is None and robot is not None else body)
         scene = Scene() if scene is None else checked_instance("scene", scene, Scene)
         accuracy, x = Accuracy.of(accuracy), checked_stations(stations, body.length)
-        start = checked_state(scene.planar, position, orientation, twist)
-        check_flow(flow, scene, start)
+        start = _checked_start(scene, position, orientation, twist, flow)
         fins = checked_fins(fins, body, scene)
         if robot is not None:
             mode_table(robot, body, bool(scene.planar))
         most_evaluations = positive("most_evaluations", most_evaluations, "per simulated second")
         transition = positive("default_transition", default_transition, "s")
         return SimulationSetup(body, scene, accuracy, x, start, transition, most_evaluations, flow, robot, fins)
+
+    def starting(self, position, orientation, twist, flow) -> "SimulationSetup":
+        """The same from another start, in other water. `ValueError` as of `of`."""
+        start = _checked_start(self.scene, position, orientation, twist, flow)
+        return replace(self, initial_state=start, flow=flow)
 
     def __hash__(self) -> int:  # type: ignore[override]
         return hash((self.body, self.scene, self.accuracy, self.x.tobytes(), self.flow, self.robot, self.fins))
@@ -155,6 +149,18 @@ class SimulationSetup(EqualByFields):
         if self.robot is None:
             return settings
         return settings.for_robot(any(servo and servo.has_spring for servo in self.robot.servos))
+
+
+def _checked_start(scene: Scene, position, orientation, twist, flow) -> InitialState:
+    """The start. `ValueError` for one, or a flow, that `scene` does not allow; or for a head out of the water there."""
+    start = checked_state(scene.planar, position, orientation, twist)
+    flow = checked_flow(flow, scene.planar)
+    check_covers(flow, 0.0)
+    if flow is not None and (out := flow.outside(0.0, start.position)):
+        raise ValueError(f"position must lie in the grid of the flow, {out[0]}, got {shown(start.position.tolist())}")
+    if flow is not None and start.position[2] > flow.surface_height:
+        raise ValueError(f"flow surface must be above the head, at z = {start.position[2]:g} m, got {flow!r}")
+    return start
 
 
 def checked_stations(stations, length: float) -> np.ndarray:

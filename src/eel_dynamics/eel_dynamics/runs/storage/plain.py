@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Laws, bodies, scenes, settings, errors and their estimates as values that JSON can hold, and back.
+"""Laws, bodies, scenes, settings, flows, fins, errors and their estimates as values that JSON can hold, and back.
 
 A body whose half-axes are functions of the user's own becomes one of polynomials through their squares: no file holds
 code. All else comes back equal.
@@ -7,7 +7,7 @@ code. All else comes back equal.
 
 import warnings
 from base64 import b64decode, b64encode
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -24,11 +24,16 @@ from eel_model.body.shapes import (
     coefficients_of,
     polynomials_through,
 )
+from eel_model.fins.fins import Fin, RollHold
+from eel_model.flow.flow import Flow
+from eel_model.flow.plain import flow_of, plain_of_flow
 from eel_model.robot.robot import Robot
 from eel_model.robot.robot_file import RobotReader, plain_of_robot
+from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.budget import Budget
+from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 HALF_AXES = ("half_width", "half_height")
@@ -39,7 +44,7 @@ AS_EXACT = 1e-9  # of the body's length, by which a polynomial may miss a half-a
 
 
 def plain_of(value: Any) -> Any:
-    """A law, body, scene, settings or budget, error or its estimate as plain values; None as it is.
+    """What a run has of its own, or an error, as plain values; of a tuple a list; None as it is.
 
     The rows of a `SampledLaw` become text: numbers of 8 bytes in base 64. A half-axis of a body that no polynomial
     meets to `AS_EXACT` gives a warning.
@@ -51,6 +56,10 @@ def plain_of(value: Any) -> Any:
         return {"rows": rows, "points": len(value.x)} | {name: getattr(value, name) for name in OF_ROWS}
     if isinstance(value, Body):
         return _plain_body(value)
+    if isinstance(value, Flow):
+        return plain_of_flow(value)
+    if isinstance(value, tuple):
+        return [plain_of(each) for each in value]
     if isinstance(value, Budget):
         return {"budget": value.name}
     if isinstance(value, SimulationStopped):
@@ -124,6 +133,13 @@ def accuracy_of(plain: dict[str, Any]) -> Accuracy | Budget:
     return Budget.of(plain["budget"]) if "budget" in plain else Accuracy(**plain)
 
 
+def fins_of(plain: Sequence[dict[str, Any]] | None) -> tuple[Fin, ...]:
+    """The fins that have become plain values."""
+    angles = (each["angle"] for each in plain or ())
+    held = (RollHold(**angle) if isinstance(angle, dict) else angle for angle in angles)
+    return tuple(Fin(**each | {"angle": angle}) for each, angle in zip(plain or (), held, strict=True))
+
+
 def stop_of(plain: dict[str, Any] | None) -> SimulationStopped | None:
     """The error that has become plain values."""
     if plain is None:
@@ -133,14 +149,27 @@ def stop_of(plain: dict[str, Any] | None) -> SimulationStopped | None:
     return error
 
 
+READERS: dict[str, Callable[[Any], Any]] = {  # by the fields of a run whose plain values they read
+    "law": law_of,
+    "body": body_of,
+    "scene": lambda plain: Scene(**plain),
+    "accuracy": accuracy_of,
+    "error_estimate": lambda plain: plain and ErrorEstimate(**plain),
+    "flow": flow_of,
+    "fins": fins_of,
+}
+
+
 def each_once(values: tuple[Any, ...]) -> dict[str, Any]:
     """A row of values, of which many may be equal, as plain values."""
     places = {value: place for place, value in enumerate(dict.fromkeys(values))}
     return {"values": [plain_of(value) for value in places], "places": [places[value] for value in values]}
 
 
-def row_of(plain: dict[str, Any], made: Callable[[Any], Any]) -> tuple[Any, ...]:
-    """The row of `each_once`."""
+def row_of(plain: Any, made: Callable[[Any], Any]) -> tuple[Any, ...]:
+    """The row of `each_once`, or of a list of plain values."""
+    if not isinstance(plain, dict):
+        return tuple(map(made, plain))
     values = [made(value) for value in plain["values"]]
     return tuple(values[place] for place in plain["places"])
 

@@ -2,20 +2,27 @@
 """Takes a run, or a batch, apart into `Contents`, and puts their fields together again."""
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 from eel_base.wording import shown
 from eel_model.axes import REP103, turn_vector, turned
-from eel_model.fins.fins import Fin, RollHold
-from eel_model.flow.plain import flow_of, plain_of_flow
-from eel_model.scene import Scene
 
-from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.storage.variables import COUNTS, ENERGY, LEDGER, OWN, Contents, fields_of_arrays
 from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS
+
+OF_EACH = {  # fields of a run, and of a batch, whose swimmers have their own
+    "law": "laws",
+    "body": "bodies",
+    "scene": "scenes",
+    "flow": "flows",
+    "robot": "robots",
+    "fins": "fins",
+    "accuracy": "accuracies",
+    "error_estimate": "error_estimates",
+}
+OF_SWIMMER = tuple(OF_EACH.values())[:6]  # in the order of the arguments of a pickled batch
 
 
 def contents_of_run(run: Any) -> Contents:
@@ -23,9 +30,7 @@ def contents_of_run(run: Any) -> Contents:
     if not len(run.time):
         raise ValueError("a run without samples holds no data")
     values = {
-        **{name: plain.plain_of(getattr(run, name)) for name in ("law", "body", "scene", "accuracy", "error_estimate")},
-        "flow": plain_of_flow(run.flow),
-        "fins": [asdict(fin) for fin in run.fins],
+        **{name: plain.plain_of(getattr(run, name)) for name in plain.READERS},
         "robot": plain.plain_robot(run.robot, run.body),
         "warnings": list(run.warnings),
         **{name: int(getattr(run, name)) for name in COUNTS},
@@ -42,29 +47,11 @@ def arrays_of_run(run: Any) -> dict[str, np.ndarray]:
 
 def fields_of_run(contents: Contents) -> dict[str, Any]:
     """The fields of the `Run` of these contents."""
-    values, body = contents.values, plain.body_of(contents.values["body"])
-    robot = plain.robot_of(values.get("robot"), body)
-    return {
-        "law": plain.law_of(values["law"]),
-        "body": body,
-        "scene": Scene(**values["scene"]),
-        "accuracy": plain.accuracy_of(values["accuracy"]),
-        "error_estimate": values["error_estimate"] and ErrorEstimate(**values["error_estimate"]),
-        "flow": flow_of(values.get("flow")),
-        "fins": fins_of(values.get("fins", ())),
-        "robot": robot,
-        "axes": contents.axes,
-        **fields_of_arrays(contents.arrays, robot),
-        **{name: _count(name, values[name]) for name in COUNTS},
-    }
-
-
-def fins_of(plain: Sequence[dict[str, Any]]) -> tuple[Fin, ...]:
-    """The fins that have become plain values."""
-    with_hold = (
-        each | {"angle": RollHold(**each["angle"])} if isinstance(each["angle"], dict) else each for each in plain
-    )
-    return tuple(Fin(**each) for each in with_hold)
+    values = contents.values
+    own = {name: read(values.get(name)) for name, read in plain.READERS.items()}
+    robot = plain.robot_of(values.get("robot"), own["body"])
+    counts = {name: _count(name, values[name]) for name in COUNTS}
+    return own | fields_of_arrays(contents.arrays, robot) | counts | {"robot": robot, "axes": contents.axes}
 
 
 def in_rep103_axes(contents: Contents) -> Contents:
@@ -79,16 +66,25 @@ def in_rep103_axes(contents: Contents) -> Contents:
 
 def contents_of_batch(batch: Any, arrays: dict[str, np.ndarray], energy_at_start: np.ndarray) -> Contents:
     """The contents of a `Batch` with all `arrays` of its swimmers; without their robots and warnings."""
-    values = {
-        **{name: plain.each_once(getattr(batch, name)) for name in ("laws", "bodies", "scenes", "accuracies")},
-        "error_estimates": [plain.plain_of(each) for each in batch.error_estimates],
-        "errors": [plain.plain_of(each) for each in batch.error],
-        "flows": [plain_of_flow(each) for each in batch.flows],
-        "fins": [[asdict(fin) for fin in each] for each in batch.fins],
-        "stations": batch.backbone is not None,
-    }
+    values = {name: plain.plain_of(getattr(batch, name)) for name in ("error_estimates", "flows", "fins")}
+    values |= {name: plain.each_once(getattr(batch, name)) for name in ("laws", "bodies", "scenes", "accuracies")}
+    values |= {"errors": plain.plain_of(batch.error), "stations": batch.backbone is not None}
     own = {name: getattr(batch, name) for name in ("time", "x", "samples", *COUNTS)}
     return Contents("batch", values, own | {"energy_at_start": energy_at_start} | arrays)
+
+
+def own_of_batch(contents: Contents, at_hand: Sequence[Any]) -> dict[str, Any]:
+    """What the swimmers of a batch have of their own. at_hand: what need not be read, of `OF_SWIMMER`."""
+    values, none = contents.values, len(contents.arrays["samples"]) * [None]
+    own: dict[str, Any] = dict(zip(OF_SWIMMER, at_hand, strict=False))
+    for name, read in plain.READERS.items():
+        several = OF_EACH[name]
+        own[several] = own.get(several) or plain.row_of(values.get(several, none), read)
+    own["robots"] = own.get("robots") or list(map(plain.robot_of, values.get("robots", none), own["bodies"]))
+    own["error"] = plain.row_of(values["errors"], plain.stop_of)
+    if any(len(each) != len(none) for each in own.values()):
+        raise ValueError(f"there must be a law, a body, a scene and settings for each of {len(none)} swimmers")
+    return own
 
 
 def with_warnings(batch: Any, contents: Contents) -> Contents:
