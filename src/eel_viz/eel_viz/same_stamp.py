@@ -6,15 +6,20 @@ from typing import Any, Generic, TypeVar
 
 First = TypeVar("First")
 Second = TypeVar("Second")
-MAXIMUM_WAITING = 512  # of each; the oldest is dropped
+MAXIMUM_WAITING = 5000  # of each: as many as a publisher's history holds, so that no topic gets further ahead
+UNSEEN = 512  # while nothing has come of the other topic: it may never
 
 
 class SameStamp(Generic[First, Second]):
-    """Calls draw(stamp, first, second) once both have come at a `stamp` [ns], whatever comes first."""
+    """Calls draw(stamp, first, second) once both have come at a `stamp` [ns], whatever comes first.
+
+    The stamps of a topic rise: what the other one has passed is dropped, and of more than those numbers the oldest.
+    """
 
     def __init__(self, draw: Callable[[int, First, Second], None]) -> None:
         self._draw = draw
         self._waiting: tuple[dict[int, Any], dict[int, Any]] = {}, {}  # firsts and seconds, by stamp
+        self._seen = [False, False]
 
     def first(self, stamp: int, value: First) -> None:
         self._take(0, stamp, value)
@@ -24,10 +29,13 @@ class SameStamp(Generic[First, Second]):
 
     def _take(self, which: int, stamp: int, value: Any) -> None:
         others, own = self._waiting[1 - which], self._waiting[which]
+        self._seen[which] = True
+        while others and next(iter(others)) < stamp:
+            del others[next(iter(others))]
         if stamp in others:
             other = others.pop(stamp)
             self._draw(stamp, *((other, value) if which else (value, other)))
             return
         own[stamp] = value
-        if len(own) > MAXIMUM_WAITING:
+        if len(own) > (MAXIMUM_WAITING if self._seen[1 - which] else UNSEEN):
             del own[next(iter(own))]

@@ -1,31 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Subscriptions that the visualiser polls: a turn ends after a while, and the next one begins where it ended."""
+"""Subscriptions that the visualiser polls one message of each in turn, and topics that wait for one another."""
 
+import math
+import weakref
+from collections import Counter
 from contextlib import nullcontext
 
 from eel_viz.ros import polled_subscriptions
 from eel_viz.ros.polled_subscriptions import TAKE_LIMIT, PolledSubscriptions
+from eel_viz.same_stamp import UNSEEN, SameStamp
 from rclpy.qos import QoSProfile
 from rclpy.serialization import serialize_message
 from std_msgs.msg import String
 
 
 class Waiting(nullcontext):
-    """Stands for a subscription, and its handle, on which messages wait without end."""
+    """Stands for a subscription, and its handle, on which so many messages wait."""
 
-    def __init__(self, topic):
+    def __init__(self, topic, waiting):
         super().__init__()
-        self.msg_type, self.topic_name, self.handle, self._count = String, topic, self, 0
+        self.msg_type, self.topic_name, self.handle, self._count, self._waiting = String, topic, self, 0, waiting
 
     def take_message(self, kind, raw):
+        if self._count == self._waiting:
+            return None
         self._count += 1
         about = {"publication_sequence_number": self._count, "source_timestamp": self._count}
         return serialize_message(String(data=self.topic_name)), about
 
 
 class Node:
+    def __init__(self, waiting=math.inf):
+        self._waiting = waiting
+
     def create_subscription(self, kind, topic, *quality, **options):
-        return Waiting(topic)
+        return Waiting(topic, self._waiting)
 
     def get_publishers_info_by_topic(self, topic):
         return []
@@ -43,4 +52,51 @@ def test_a_turn_of_slow_messages_ends_and_all_topics_get_their_turns(monkeypatch
     for topic in ("pose", "twist", "wrench"):
         polled.show(String, topic, show, QoSProfile(depth=1))
     assert [polled.take() for _ in range(4)] == [2] * 4
-    assert shown == ["pose"] * 2 + ["twist"] * 2 + ["wrench"] * 2 + ["pose"] * 2
+    assert shown == ["pose", "twist", "wrench", "pose", "twist", "wrench", "pose", "twist"]
+
+
+def test_no_topic_runs_ahead_of_one_that_is_slow_to_show(monkeypatch):
+    """On a machine with much else to do a backbone takes 20 ms; 600 samples wait on each topic."""
+    now, shown, apart = [0.0], Counter(backbone=0), []
+    monkeypatch.setattr(polled_subscriptions.time, "monotonic", lambda: now[0])
+
+    def show(message, new_publisher):
+        now[0] += 0.02 if message.data == "backbone" else 1e-4
+        shown[message.data] += 1
+        apart.append(max(shown.values()) - min(shown.values()))
+
+    polled = PolledSubscriptions(Node(waiting=600))
+    for topic in ("pose", "backbone", "twist"):
+        polled.show(String, topic, show, QoSProfile(depth=1))
+    while polled.take():
+        pass
+    assert shown == dict.fromkeys(("pose", "backbone", "twist"), 600) and max(apart) == 1
+
+
+def test_a_topic_that_is_ahead_by_a_whole_history_loses_nothing():
+    drawn = []
+    both = SameStamp(lambda *values: drawn.append(values))
+    both.second(0, "second 0")
+    for stamp in range(1, 5001):
+        both.first(stamp, f"first {stamp}")
+    for stamp in range(1, 5001, 4):
+        both.second(stamp, f"second {stamp}")
+    assert drawn == [(stamp, f"first {stamp}", f"second {stamp}") for stamp in range(1, 5001, 4)]
+
+
+def test_what_the_other_topic_has_passed_or_never_meets_is_let_go():
+    class Value:
+        pass
+
+    both, kept = SameStamp(lambda *values: None), weakref.WeakSet()
+
+    def fill(stamps):
+        for stamp in stamps:
+            value = Value()
+            kept.add(value)
+            both.first(stamp, value)
+
+    fill(range(2 * UNSEEN))
+    assert len(kept) == UNSEEN
+    both.second(2 * UNSEEN - 10, None)
+    assert len(kept) == 9

@@ -6,6 +6,7 @@ logging them. A `PolledGroup` is never executed, so messages stay in the KEEP_AL
 """
 
 import time
+from collections import deque
 from collections.abc import Callable, Hashable, Mapping
 from functools import partial
 from typing import Any
@@ -18,7 +19,6 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
-BATCH = 64  # messages taken from one subscription before the next one
 TAKE_LIMIT = 0.2  # s after which `take` returns, so that the node hears calls and signals
 PROCESS = 12  # bytes of an endpoint's identifier that all endpoints of a process share (RTPS: the GUID's prefix)
 PAUSE = 0.3  # s between two messages, after which the publishers are looked up: no node starts faster
@@ -67,34 +67,25 @@ class PolledSubscriptions:
             change.note_publishers()
 
     def take(self, before: int = 0) -> int:
-        """Pass on the waiting messages, some of each subscription; the number of those from `before` [ns]; 0: all.
+        """Pass on waiting messages, one of each subscription in turn; the number of those from `before` [ns]; 0: all.
 
-        After a `TAKE_LIMIT` it returns, and the next call begins with the next subscription.
+        So a topic that is slow to show is not left behind. After a `TAKE_LIMIT` it returns, and the next call begins
+        with the next subscription. What raises an error is logged and left out.
         """
-        count, end = 0, time.monotonic() + TAKE_LIMIT
-        for subscription, receive in list(self._receivers.items()):
-            self._receivers[subscription] = self._receivers.pop(subscription)  # to the end of the row
-            count += self._take_from(subscription, receive, before, end)
-            if time.monotonic() > end:
-                break
-        return count
-
-    def _take_from(self, subscription: Subscription, receive: Receive, before: int, end: float) -> int:
-        """Take at most `BATCH`, until `end` [s, steady clock]. What raises an error is logged and left out."""
-        count = 0
-        with subscription.handle:  # keeps it from being destroyed meanwhile
-            for _ in range(BATCH):
+        count, end, waiting = 0, time.monotonic() + TAKE_LIMIT, deque(self._receivers)
+        while waiting and time.monotonic() <= end:
+            subscription = waiting.popleft()
+            self._receivers[subscription] = receive = self._receivers.pop(subscription)  # to the end of the row
+            with subscription.handle:  # keeps it from being destroyed meanwhile
                 taken = subscription.handle.take_message(subscription.msg_type, True)
-                if taken is None:
-                    break
-                data, about = taken
-                count += not before or is_from_before(about, before)
-                try:
-                    receive(data, about)
-                except Exception as error:
-                    log_dropped(self._node, error, f"a message of {subscription.topic_name}")
-                if time.monotonic() > end:
-                    break
+            if taken is None:
+                continue
+            waiting.append(subscription)
+            count += not before or is_from_before(taken[1], before)
+            try:
+                receive(*taken)
+            except Exception as error:
+                log_dropped(self._node, error, f"a message of {subscription.topic_name}")
         return count
 
     def _publishers(self, topic: str) -> set[Hashable]:
