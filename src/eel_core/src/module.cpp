@@ -6,6 +6,7 @@
 
 #include "bind_flow.hpp"
 #include "bind_sampled.hpp"
+#include "bind_splines.hpp"
 #include "bound_march.hpp"
 #include "eel_core/build_info.hpp"
 #include "eel_core/march/instant.hpp"
@@ -257,6 +258,7 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
 
     bind_sampled_marches(module);
     bind_bent_marches(module);
+    bind_splines(module);
 
     module.def("repeat_rate", &repeat_rate, py::arg("swimmer"), py::arg("planar"), py::arg("law"), py::arg("time"),
                py::arg("state"), py::arg("count"), py::arg("flow") = py::none());

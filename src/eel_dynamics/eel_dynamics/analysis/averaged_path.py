@@ -5,6 +5,8 @@ The averaged centre of mass moves with |c(t + T) - c(t)| / T (Kern and Koumoutsa
 over a cycle likewise).
 """
 
+from functools import cached_property
+
 import numpy as np
 
 from eel_dynamics.analysis.averaging_window import AveragingWindow
@@ -12,64 +14,76 @@ from eel_dynamics.analysis.powers import area
 
 
 class AveragedPath:
-    """The averaged path in a `window`. A window of a single period holds one step of it, from its start to its end."""
+    """The averaged path in a `window`. A window of a single period holds one step of it, from its start to its end.
+
+    Paths are evaluated at N instants that are equally far apart, with n of them in each period.
+    """
 
     def __init__(self, window: AveragingWindow):
         self._window = window
+        self._instants = window.instants
+        self._period = (len(self._instants) - 1) // window.periods  # instants
 
     def mean_speed(self) -> float:
         """[m/s], as `Analysis.mean_speed`."""
-        window, period = self._window, self._window.period
-        if window.periods == 1:
-            return float(np.linalg.norm(self._way(window.start, window.end))) / period
-        time = window.instants(window.start, window.end - period)
-        speed = np.linalg.norm(self._way(time, time + period), axis=1)
-        return float(area(speed, time)) / period / (time[-1] - time[0])
+        speed = self._step_lengths / self._window.period
+        time = self._instants[: len(speed)]
+        return float(area(speed, time) / (time[-1] - time[0]) if len(speed) > 1 else speed[0])
 
     def speed_change(self) -> float | None:
         """Change [m/s] of the speed from the first period of the window to its last, as `Analysis.speed_change`."""
-        window, period = self._window, self._window.period
-        first = window.start if window.periods > 1 else window.start - period
-        if first < window.run.time[0] - 1e-9 * period:
-            return None
-        start = np.array([first, window.end - period])
-        before, after = np.linalg.norm(self._way(start, start + period), axis=1)
-        return float(abs(after - before) / period)
+        window, period, ways = self._window, self._window.period, self._step_lengths
+        first = ways[0]
+        if window.periods == 1:
+            if window.start - period < window.run.time[0] - 1e-9 * period:
+                return None
+            first = np.linalg.norm(np.subtract(*window.paths.at((window.start, window.start - period))[:, 0]))
+        return float(abs(ways[-1] - first) / period)
 
     def speeds(self, edges: np.ndarray) -> np.ndarray:
         """(n,) [m/s], of the averaged centre over the periods between the `edges` (n + 1,) [s]."""
-        return np.linalg.norm(self._way(edges[:-1], edges[1:]), axis=1) / np.diff(edges)
+        return np.linalg.norm(np.diff(self._window.paths.at(edges)[:, 0], axis=0), axis=1) / np.diff(edges)
 
     def tail_excursion(self, moves: bool) -> float:
-        """[m], as `Analysis.tail_excursion`. moves: whether there is a path to measure across."""
-        window, period = self._window, self._window.period
+        """[m], as `Analysis.tail_excursion`. moves: whether there is a path to measure across.
+
+        `ValueError` if the last station is not the tail.
+        """
+        run, window, n = self._window.run, self._window, self._period
+        if abs(run.x[-1] - run.body.length) > 1e-9 * run.body.length:
+            raise ValueError(
+                f"run must have a station at the tail, X = {run.body.length:g} m, got the last at {run.x[-1]:g} m"
+            )
+        tail = self._paths[:, 1]
         if window.periods == 1:
-            time = window.instants(window.start, window.end)
-            chord = window.tail(window.end) - window.tail(window.start)
-            apart = window.tail(time) - np.outer((time - time[0]) / period, chord)
-            way = self._way(window.start, window.end)
-            return _width(_across(apart, np.broadcast_to(way, apart.shape), moves))
-        half = 0.5 * period
-        starts = window.start + half + np.arange(window.periods - 1) * period
-        time = np.linspace(starts, starts + period, len(window.instants(0.0, period)), axis=1)  # a row for each beat
-        apart = window.tail(time) - window.averaged_tail(time)
-        return float(np.mean([_width(beat) for beat in _across(apart, self._way(time - half, time + half), moves)]))
+            apart = tail - tail[0] - np.linspace(0.0, 1.0, len(tail))[:, None] * (tail[-1] - tail[0])
+        else:
+            total = window.paths.integral(self._instants)[:, 1]
+            apart = tail[n // 2 : -(n // 2)] - (total[n:] - total[:-n]) / window.period
+        if moves:
+            along = self._steps / self._step_lengths[:, None]
+            apart = apart - np.sum(apart * along, axis=1, keepdims=True) * along
+        beats = np.stack([apart[begin : begin + n + 1] for begin in range(0, len(apart) - 1, n)])
+        return float(np.mean(_widths(beats)))
 
-    def _way(self, start, end) -> np.ndarray:
-        """Displacement (..., 3) [m] of the centre of mass over the water, from the times `start` to `end` (...) [s]."""
-        return self._window.center_of_mass(end) - self._window.center_of_mass(start)
+    @cached_property
+    def _paths(self) -> np.ndarray:
+        """(N, 2, 3) [m], as `AveragingWindow.paths`."""
+        return np.asarray(self._window.paths.at(self._instants))
+
+    @cached_property
+    def _steps(self) -> np.ndarray:
+        """(N - n, 3) [m], of the centre of mass over the water in the period that begins at an instant."""
+        centre = self._paths[:, 0]
+        return np.asarray(centre[self._period :] - centre[: -self._period])
+
+    @cached_property
+    def _step_lengths(self) -> np.ndarray:
+        return np.linalg.norm(self._steps, axis=1)
 
 
-def _across(apart: np.ndarray, way: np.ndarray, moves: bool) -> np.ndarray:
-    """`apart` (..., 3) [m] less its part along `way` (..., 3)."""
-    if not moves:
-        return apart
-    along = way / np.linalg.norm(way, axis=-1, keepdims=True)
-    return apart - np.sum(apart * along, axis=-1, keepdims=True) * along
-
-
-def _width(points: np.ndarray) -> float:
-    """Greatest distance [m] between two of the `points` (n, 3)."""
-    from scipy.spatial.distance import pdist
-
-    return float(np.max(pdist(points)))
+def _widths(points: np.ndarray) -> np.ndarray:
+    """(B,) [m], the greatest distance between two of the points (B, n, 3) of each beat."""
+    squares = np.sum(points**2, axis=2)
+    apart = squares[:, :, None] + squares[:, None] - 2.0 * points @ points.transpose(0, 2, 1)
+    return np.sqrt(np.maximum(0.0, np.max(apart, axis=(1, 2))))

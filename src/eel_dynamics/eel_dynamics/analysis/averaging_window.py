@@ -15,6 +15,8 @@ from eel_gaits.laws.law import Law
 from eel_gaits.laws.term import Term
 from eel_gaits.sources.sampled_law import SampledLaw
 
+import eel_core
+
 LONGEST_COMMON = 12  # of the strongest wave's periods, after which the whole gait must repeat
 FEWEST_SAMPLES = 8  # in a period
 WHOLE = 1e-4  # part of a period that may be missing: the period of measured rows is not exact
@@ -98,13 +100,16 @@ class AveragingWindow:
         """Length of the window [s]."""
         return self.end - self.start
 
-    def instants(self, start: float, end: float) -> np.ndarray:
-        """Instants [s] from `start` to `end` [s], 64 in a period of the strongest wave."""
-        return np.linspace(start, end, max(1, round((end - start) / self.wave.period * FINE)) + 1)
+    @property
+    def instants(self) -> np.ndarray:
+        """(N,) [s], of the window's periods, `FINE` in each period of the strongest wave."""
+        count = FINE * round(self.period / self.wave.period) * self.periods
+        return np.linspace(self.end - self.periods * self.period, self.end, count + 1)
 
     def mean(self, values: np.ndarray) -> np.ndarray:
         """Mean over the window of samples (T, ...), the spline through them integrated."""
-        return self.spline(values).integrate(self.start, self.end) / self.duration
+        start, end = self.spline(values).integral((self.start, self.end))
+        return np.asarray((end - start) / self.duration)
 
     def edges(self, fewest: int) -> np.ndarray:
         """(n + 1,) [s], of the window's periods, or of the run's last `fewest` ones where the window has fewer."""
@@ -127,36 +132,18 @@ class AveragingWindow:
         at_start = work_before + rise + length * s * (1.0 - s) * (rate * (1.0 - s) - later * s)
         return float(work[-1] - at_start) / self.duration
 
-    def spline(self, values: np.ndarray):
+    def spline(self, values: np.ndarray) -> eel_core.Spline:
         """Cubic spline in time through samples (T, ...)."""
-        from scipy.interpolate import CubicSpline
-
-        return CubicSpline(self.run.time, values, axis=0)
+        return eel_core.Spline(self.run.time, values)
 
     def center_of_mass(self, time: Any) -> np.ndarray:
         """The centre of mass over the water (..., 3) [m] at the times (...) [s]."""
-        return np.asarray(self._paths(time))[..., 0, :]
-
-    def tail(self, time: Any) -> np.ndarray:
-        """The tail's displacement (..., 3) [m] relative to the water since the start, at the times (...) [s].
-
-        `ValueError` if the last station is not the tail.
-        """
-        length = self.run.body.length
-        if abs(self.run.x[-1] - length) > 1e-9 * length:
-            raise ValueError(
-                f"run must have a station at the tail, X = {length:g} m, got the last at {self.run.x[-1]:g} m"
-            )
-        return np.asarray(self._paths(time))[..., 1, :]
-
-    def averaged_tail(self, time: np.ndarray) -> np.ndarray:
-        """The same, averaged over the period around the times (...) [s]."""
-        total, half = self._paths.antiderivative(), 0.5 * self.period
-        return np.asarray(total(time + half) - total(time - half))[..., 1, :] / self.period
+        start = self.run.center_of_mass[0] - self.run.time[0] * np.asarray(self.run.scene.current)
+        return np.asarray(start + self.paths.at(time)[..., 0, :])
 
     @cached_property
-    def _paths(self):
-        """Spline of the centre of mass, and of the last station's displacement since the start, over the water."""
-        drift = np.outer(self.run.time, self.run.scene.current)
-        last = self.run.backbone[:, -1] - drift
-        return self.spline(np.stack((self.run.center_of_mass - drift, last - last[0]), axis=1))
+    def paths(self) -> eel_core.Spline:
+        """Spline of the displacements (2, 3) [m] over the water since the start: of centre of mass and last station."""
+        paths = np.stack((self.run.center_of_mass, self.run.backbone[:, -1]), axis=1)
+        drift = np.outer(self.run.time - self.run.time[0], self.run.scene.current)
+        return self.spline(paths - paths[0] - drift[:, None])

@@ -8,7 +8,8 @@ from eel_model.axes import REP103
 import eel_core
 from eel_dynamics.curvature.law_follower import LawFollower
 from eel_dynamics.simulation.bending.modes_on_grid import shapes_of_run
-from eel_dynamics.simulation.simulation import Simulation
+from eel_dynamics.simulation.discretisation import discretise
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
 
 
 def power_density(run) -> np.ndarray:
@@ -38,19 +39,19 @@ def drag_powers(run) -> np.ndarray:
     """
     run = run.in_axes(REP103)
     without_fins = run.swimmer | {"fins": ()}  # their drag is their own
-    simulation = Simulation(**without_fins, accuracy=run.accuracy.as_it_is(), stations=2, law=run.law)
-    follower, now = LawFollower(simulation.discretisation.tabulation, law=run.law), 0.0
-    instant, powers = eel_core.Instant(simulation.discretisation.swimmer), np.zeros((len(run.time), 4))
+    setup = SimulationSetup.of(**without_fins, accuracy=run.accuracy.as_it_is(), stations=2)
+    here = discretise(setup, setup.grid_for(setup.shape_needs(run.law)))
+    instant, powers = eel_core.Instant(here.swimmer), np.zeros((len(run.time), 4))
     time, relative = np.ascontiguousarray(run.time), run.twist.copy()
     relative[:, 3:] -= np.asarray(run.scene.current) @ world_from_body(run.orientation)
-    water = simulation.setup.current, simulation.setup.core_flow
+    water = setup.current, setup.core_flow
     poses = np.concatenate([run.position, run.orientation], axis=1)
-    if (modes := simulation.setup.modes) is not None:
-        for k, law in enumerate(shapes_of_run(run, modes, simulation.discretisation)):
+    if setup.modes is not None:
+        for k, law in enumerate(shapes_of_run(run, setup.modes, here)):
             one = slice(k, k + 1)
             instant.drag_powers(law, time[one], relative[one], powers[one], *water, poses[one])
         return powers
-    begin = 0
+    follower, now, begin = LawFollower(here.tabulation, law=run.law), 0.0, 0
     while begin < len(time):  # once for a law in closed form, and for each row of a `SampledLaw`
         follower.pass_events(now, now := float(time[begin]))
         end = max(begin + 1, int(np.searchsorted(time, follower.next_event(now), side="right")))
