@@ -147,9 +147,10 @@ def positive(name: str, value: Any, unit: str = "") -> float:
 def numbers(name: str, values: Any) -> np.ndarray:
     """`values` as a new array of floats, of any shape. Complex numbers are refused."""
     try:
-        if np.iscomplexobj(values):
+        array = np.asarray(values)
+        if array.dtype.kind == "c":
             raise TypeError
-        return np.array(values, dtype=float)
+        return array.astype(float)
     except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{name} must be real numbers, got {shown(values)}") from None
 
@@ -162,8 +163,9 @@ def checked_row(name: str, values: Any, size: int | None) -> np.ndarray:
         if array.ndim == 1:
             got = f"{len(array)}: {got}" if 0 < len(array) <= FEW else f"{len(array)}"
         raise ValueError(f"{name} must be {'a row of' if size is None else size} numbers, got {got}")
-    if not np.isfinite(array).all():
-        index = np.flatnonzero(~np.isfinite(array))[0]
+    finite = np.isfinite(array)
+    if np.count_nonzero(finite) < len(array):
+        index = np.flatnonzero(~finite)[0]
         raise ValueError(f"{name} must be finite, got {array[index]} at index {index}")
     return array
 

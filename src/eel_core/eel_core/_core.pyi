@@ -417,6 +417,9 @@ class SampledMarches:
         """Has a swimmer stand at its start, straight, at time 0, where its sample has the values (6, n). Kinetic and
         potential energy [J]. flow: how its water moves, no function of Python."""
 
+    def wake(self) -> None:
+        """Wakes the threads, as `advance` will be called soon."""
+
     def advance(self, times: Buffer, values: Buffer, status: Buffer, heads: Buffer) -> bool:
         """Marches each to its own of the times (N,) [s], where its sample has its values (N, 6, n). Whether all marched
         that are not left out.

@@ -36,6 +36,7 @@ class PySampledMarches {
         return marches_[index].start(bounds, vector_from(position, "position"), orientation_from(orientation),
                                      twist_from(twist, "twist"), sample.data());
     }
+    void wake() { marches_.wake(); }
     // Whether all that are not left out have marched.
     bool advance(const py::object& times, const py::object& values, const py::object& status, const py::object& heads)
     {
@@ -114,6 +115,7 @@ inline void bind_sampled_marches(py::module_& module)
              py::arg("threads"))
         .def("start", &PySampledMarches::start, py::arg("index"), py::arg("bounds"), py::arg("position"),
              py::arg("orientation"), py::arg("twist"), py::arg("values"), py::arg("flow") = py::none())
+        .def("wake", &PySampledMarches::wake)
         .def("advance", &PySampledMarches::advance, py::arg("times"), py::arg("values"), py::arg("status"),
              py::arg("heads"))
         .def("put_head", &PySampledMarches::put_head, py::arg("index"), py::arg("heads"))

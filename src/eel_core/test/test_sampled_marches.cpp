@@ -69,6 +69,8 @@ TEST(SampledMarches, ThreadsDoEachItemOnceWhetherTheyAreAwakeOrNot)
         std::vector<int> done(40, 0);  // not atomic: two threads at one item would be found
         for (std::size_t round = 0; round < 200; ++round) {
             if (round % 50 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));  // helpers fall asleep
+            if (round % 3 == 0) threads.wake();                                              // at times in vain
+            if (round % 60 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
             threads.run(round % 41, [&](std::size_t item) { ++done[item]; });
         }
         for (std::size_t item = 0; item < done.size(); ++item) {

@@ -67,10 +67,10 @@ class JointAction:
         commands: Array = np.zeros((*np.shape(own_time), self.size))
         return commands
 
-    def begin_one(self, swimmer: int, own_time: float) -> Array:
-        """The first commands (size,) of one of N swimmers."""
-        self._joints[..., swimmer] = 0.0
-        commands: Array = np.zeros(self.size)
+    def begin_some(self, swimmers: list[int], own_times: Array) -> Array:
+        """The first commands (K, size) of K of N swimmers."""
+        self._joints[..., swimmers] = 0.0
+        commands: Array = np.zeros((len(swimmers), self.size))
         return commands
 
     def advance(self, action: Array, step: float) -> Array:

@@ -69,10 +69,10 @@ class KnotAction:
         self._value = self._rate = np.zeros((*np.shape(own_time), self.size))
         return self._curvature()
 
-    def begin_one(self, swimmer: int, own_time: float) -> Array:
-        """Start anew with one of N swimmers; its curvature (6, knots)."""
-        self._value[swimmer] = self._rate[swimmer] = 0.0
-        rows: Array = self._curvature()[swimmer]
+    def begin_some(self, swimmers: list[int], own_times: Array) -> Array:
+        """Start anew with K of N swimmers; their curvature (K, 6, knots)."""
+        self._value[swimmers] = self._rate[swimmers] = 0.0
+        rows: Array = self._curvature()[swimmers]
         return rows
 
     def advance(self, action: Array, step: float) -> Array:

@@ -79,9 +79,9 @@ class LawAction:
         as of `advance`."""
         return self._steered.begin(own_time)
 
-    def begin_one(self, swimmer: int, own_time: float) -> Array:
-        """Start anew with one of N swimmers; its curvature (6, points)."""
-        return self._steered.begin_one(swimmer, own_time)
+    def begin_some(self, swimmers: list[int], own_times: Array) -> Array:
+        """Start anew with K of N swimmers; their curvature (K, 6, points)."""
+        return self._steered.begin_some(swimmers, own_times)
 
     def advance(self, action: Array, step: float) -> Array:
         """The curvature at the end of a control step of `step` [s] with this `action` (size,), or (N, size).

@@ -3,7 +3,7 @@
 
 import copy
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Self
 
 import gymnasium
@@ -108,7 +108,7 @@ class SwimmerEnv(Task):
     ) -> tuple[np.ndarray, dict[str, Any]]:
         """Begin an episode; the observation of its start."""
         super().reset(seed=seed)
-        self.begin_episode(0, options or {})
+        self.begin_episodes([0], options or {}, [self.np_random])
         return self.observation(), {}
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
@@ -146,25 +146,37 @@ class SwimmerEnv(Task):
 
     # -- one swimmer or many
 
-    def begin_episode(self, index: int, options: dict[str, Any]) -> None:
-        """Begin an episode of swimmer `index`, drawn from `np_random`."""
-        self._end(index)
-        self.starts[index] = start = self.begin(options)
-        rows = self.action.begin_one(index, start.own_time) if self.shape else self.restart(start.own_time)
-        self._add_trim(rows, start.left_trim)
-        twist = (start.roll_rate, 0.0, 0.0, start.speed, 0.0, 0.0)
-        flow = self.flow if self.flow is None or isinstance(self.flow, Flow) else self.flow(self.np_random)
-        self.swimmers.start(index, start.position, level_orientation(start.heading), twist, rows, flow)
-        self._trim[index], self.ticks[index], self._status[index] = start.left_trim, 0, 0
-        if len(start.goal) != len(self.goal):
-            self.goal = np.zeros((len(start.goal), *self.shape))
-        self.goal.reshape(len(start.goal), len(self.ticks))[:, index] = start.goal
+    def begin_episodes(
+        self, swimmers: list[int], options: dict[str, Any], draws: Sequence[np.random.Generator]
+    ) -> None:
+        """Begin an episode of each of these `swimmers`, drawn from its own of the random numbers `draws` of all."""
+        flows = []
+        for index in swimmers:
+            self._end(index)
+            self.np_random = draws[index]
+            self.starts[index] = start = self.begin(options)
+            flows.append(self.flow if self.flow is None or isinstance(self.flow, Flow) else self.flow(self.np_random))
+            if len(start.goal) != len(self.goal):
+                self.goal = np.zeros((len(start.goal), *self.shape))
+            self.goal.reshape(len(start.goal), len(self.ticks))[:, index] = start.goal
+        begun = [self.starts[index] for index in swimmers]
+        self._trim.reshape(-1, 1)[swimmers, 0] = trims = np.array([start.left_trim for start in begun])
+        if self.shape:
+            rows = self.action.begin_some(swimmers, np.array([start.own_time for start in begun]))
+        else:
+            rows = self.restart(begun[0].own_time)[None]
+        self._add_trim(rows, trims[:, None])
+        for index, start, row, flow in zip(swimmers, begun, rows, flows, strict=True):
+            twist = (start.roll_rate, 0.0, 0.0, start.speed, 0.0, 0.0)
+            self.swimmers.start(index, start.position, level_orientation(start.heading), twist, row, flow)
+        self.ticks[swimmers] = self._status[swimmers] = 0
         self._look()
         if self.shape:
-            self.heading[index] = self._mean_heading.begin_one(index, self.head_heading[index])
+            self.heading[swimmers] = self._mean_heading.begin_some(swimmers, self.head_heading[swimmers])
         else:
             self.heading = self._mean_heading.add(self.head_heading)
-        self._record(index)
+        for index in swimmers:
+            self._record(index)
 
     def march(self, actions: Array) -> tuple[np.ndarray, Any, Any, Any, dict[int, str]]:
         """March all swimmers that are under way through a control step with their `actions`.
@@ -172,6 +184,7 @@ class SwimmerEnv(Task):
         Returns the observation, the reward, whether the episode is terminated, and truncated, of one swimmer or (N,);
         and why swimmers could not go on, by their index. These have no reward.
         """
+        self.swimmers.wake()
         rows = self.action.advance(actions, self.numbers.control_period)
         self._add_trim(rows, self._trim)
         self.ticks += 1

@@ -2,7 +2,6 @@
 """What a task defines: its numbers, what the policy sees, reward and end; and the state that it does so from."""
 
 import inspect
-import math
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar, NamedTuple
 
@@ -144,7 +143,7 @@ class Task(gymnasium.Env[Any, Any]):
             values = np.asarray(action, dtype=float)
         except (TypeError, ValueError):
             values = np.empty(0)
-        if values.shape != shape or not all(map(math.isfinite, values.ravel().tolist())):
+        if values.shape != shape or np.count_nonzero(np.isfinite(values)) < values.size:
             wanted = f"{'actions' if self.shape else 'action'} must be {' x '.join(map(str, shape))} finite numbers"
             raise gymnasium.error.InvalidAction(f"{wanted}, got {shown(action)}")
         return np.asarray(np.minimum(np.maximum(values, -1.0), 1.0))
@@ -165,9 +164,9 @@ class MeanHeading:
     def __init__(self, count: int, swimmers: tuple[int, ...] = ()):
         self._count, self._swimmers, self._place = count, swimmers, 0  # place: of the last one
         # rad, each within half a turn of the one before; 0 where none is
-        self._headings: list[Any] = [np.zeros(swimmers) if swimmers else 0.0 for _ in range(count)]
-        self._last = self._sum = self._headings[0]
-        self._known: Any = np.zeros(swimmers, dtype=int) if swimmers else 0
+        self._headings: Any = np.zeros((count, *swimmers)) if swimmers else [0.0] * count
+        begun: Any = np.zeros((3, *swimmers)) if swimmers else (0.0, 0.0, 0.0)
+        self._last, self._sum, self._known = begun
 
     def clear(self) -> None:
         """Forget all headings."""
@@ -182,14 +181,14 @@ class MeanHeading:
         self._known = self._known + (self._known < self._count)
         return wrapped(self._sum / self._known)
 
-    def begin_one(self, swimmer: int, heading: float) -> Any:
-        """The mean [rad] of one of N swimmers that has this `heading` alone."""
-        for each in self._headings:
-            each[swimmer] = 0.0
+    def begin_some(self, swimmers: list[int], headings: Array) -> Array:
+        """The means [rad] of K of N swimmers that have these `headings` alone."""
+        begun: Array = wrapped(headings)
+        self._headings[:, swimmers] = 0.0
         for each in (self._headings[self._place], self._last, self._sum):
-            each[swimmer] = wrapped(heading)
-        self._known[swimmer] = 1
-        return wrapped(heading)
+            each[swimmers] = begun
+        self._known[swimmers] = 1.0
+        return begun
 
 
 def described_task(task: type[Task]) -> str:

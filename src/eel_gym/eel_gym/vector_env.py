@@ -77,10 +77,11 @@ class ThreadedVectorEnv(VectorEnv[Any, Any, Any]):
             seed = [None if seed is None else int(seed) + index for index in range(self.num_envs)]
         if len(seed) != self.num_envs:
             raise ValueError(f"seed must be one, or {self.num_envs}, got {len(seed)}")
-        for index in np.flatnonzero(mask).tolist():
+        chosen = np.flatnonzero(mask).tolist()
+        for index in chosen:
             if seed[index] is not None:
                 self._draws[index] = seeding.np_random(seed[index])[0]
-            self._begin(index, options)
+        self._begin(chosen, options)
         self._begun = True
         return self.swimmers.observation(), {}
 
@@ -98,14 +99,15 @@ class ThreadedVectorEnv(VectorEnv[Any, Any, Any]):
             if not (self._mode is AutoresetMode.NEXT_STEP and over[index]):
                 infos = self._add_info(infos, {"stopped": reason}, index)
         begun = over if self._mode is AutoresetMode.NEXT_STEP else terminated | truncated
-        if begun.any() and self._mode is not AutoresetMode.DISABLED:
+        if np.count_nonzero(begun) and self._mode is not AutoresetMode.DISABLED:
             if self._mode is AutoresetMode.NEXT_STEP:
                 rewards[over], terminated[over], truncated[over] = 0.0, False, False
-            for index in np.flatnonzero(begun).tolist():
-                if self._mode is AutoresetMode.SAME_STEP:
+            chosen = np.flatnonzero(begun).tolist()
+            if self._mode is AutoresetMode.SAME_STEP:
+                for index in chosen:
                     final = {"stopped": stopped[index]} if index in stopped else {}
                     infos = self._add_info(infos, {"final_obs": observations[index], "final_info": final}, index)
-                self._begin(index, {})
+            self._begin(chosen, {})
             observations = np.where(begun[:, None], self.swimmers.observation(), observations)
         self._over = terminated | truncated
         return observations, rewards, terminated, truncated, infos
@@ -126,10 +128,9 @@ class ThreadedVectorEnv(VectorEnv[Any, Any, Any]):
         """Close the environments."""
         self.swimmers.close()
 
-    def _begin(self, index: int, options: dict[str, Any]) -> None:
-        self.swimmers.np_random = self._draws[index]
-        self.swimmers.begin_episode(index, options)
-        self._over[index] = False
+    def _begin(self, chosen: list[int], options: dict[str, Any]) -> None:
+        self.swimmers.begin_episodes(chosen, options, self._draws)
+        self._over[chosen] = False
 
 
 class HeadingVectorEnv(ThreadedVectorEnv):

@@ -69,6 +69,9 @@ class CommandedRobots:
         self._command(index, commands)
         self._look(index)
 
+    def wake(self) -> None:
+        """As of `SampledSwimmers`: there is nothing to do."""
+
     def advance(self, times: Array, commands: Array, status: NDArray[np.int64]) -> dict[int, SimulationStopped]:
         """March each robot to its own of the `times` (N,) [s] under its `commands` (N, n).
 

@@ -120,6 +120,10 @@ class SampledSwimmers:
         if waves > MOST_WAVES:
             raise ValueError(f"flow must have at most {MOST_WAVES:g} waves on the body, got {waves:.3g}: {shown(flow)}")
 
+    def wake(self) -> None:
+        """Wake the threads, as `advance` will be called soon."""
+        self._marches.wake()
+
     def advance(self, times: Array, rows: Array, status: NDArray[np.int64]) -> dict[int, SimulationStopped]:
         """March each swimmer to its own of the `times` (N,) [s], where its sample has its `rows` (N, 6, n).
 

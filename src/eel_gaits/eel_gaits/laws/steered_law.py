@@ -77,14 +77,14 @@ class SteeredLaw:
         self.values = self._rest | {name: (value, 0.0, 0.0) for name, value in values.items()}
         return self._curvature()
 
-    def begin_one(self, swimmer: int, own_time: float) -> np.ndarray:
-        """Start anew with one of N swimmers, all its numbers at rest; its curvature (6, points)."""
-        self.own_time[swimmer] = own_time
+    def begin_some(self, swimmers: list[int], own_times: np.ndarray) -> np.ndarray:
+        """Start anew with K of N swimmers, all their numbers at rest; their curvature (K, 6, points)."""
+        self.own_time[swimmers] = own_times
         for name, rest in self._rest.items():
             if self.values[name] is not rest:
                 for value, begun in zip(self.values[name], rest, strict=True):
-                    value[swimmer] = begun
-        return copy.copy(self).begin(own_time)
+                    value[swimmers] = begun
+        return copy.copy(self).begin(own_times)
 
     def advance(self, targets: Mapping[str, Any], step: float, response: float | None = None) -> np.ndarray:
         """The curvature at the end of a step of `step` [s] with these `targets` by name; other numbers stay.
@@ -92,32 +92,33 @@ class SteeredLaw:
         response [s]: replaces that of the law in this step. Returns (6, points), or (N, 6, points): pitch, its rate and
         its acceleration, then yaw: rad/m, rad/m/s, rad/m/s^2.
         """
-        elapsed = step * self.values["tempo"][0]
         rate = 1.0 / response if response else self._rate
+        speed, wanted = self.values["tempo"], targets.get("tempo")
+        elapsed = step * speed[0] if wanted is None else _travelled(speed, wanted, rate, step)
         for name, target in targets.items():
-            self.values[name], integral = _followed(self.values[name], target, rate, step)
-            if name == "tempo":
-                elapsed = integral
+            self.values[name] = _followed(self.values[name], target, rate, step)
         self.own_time = self.own_time + elapsed
         return self._curvature()
 
     def _curvature(self) -> np.ndarray:
         size, speed = self.values["amplitude"], self.values["tempo"]
         as_it_is = size is self._rest["amplitude"] and speed is self._rest["tempo"]
-        zero: Any = np.zeros(self._swimmers) if self._swimmers else 0.0
-        factors = [zero] * (6 * len(self._rows))  # of the rows, axis by axis and derivative by derivative
+        count, points = self._rows.shape
+        # of the rows, axis by axis and derivative by derivative: floats in a list, which are faster, or (., N)
+        factors: Any = np.zeros((*self._swimmers, 6 * count)).T if self._swimmers else [0.0] * (6 * count)
         for k, (frequency, axis, of_cosine, of_sine) in enumerate(self._waves):
             angle = frequency * self.own_time
             s, c = np.sin(angle), np.cos(angle)
             if not self._swimmers:
                 s, c = float(s), float(c)
+            fs, fc = -frequency * s, -frequency * c
             if as_it_is:  # of which there is the most
                 square = frequency * frequency
-                factors[of_cosine] = (c, -frequency * s, -square * c)
-                factors[of_sine] = (-s, -frequency * c, square * s)
+                factors[of_cosine] = c, fs, -square * c
+                factors[of_sine] = -s, fc, square * s
             else:
-                factors[of_cosine] = _product(size, c, -frequency * s, frequency, speed)
-                factors[of_sine] = _product(size, -s, -frequency * c, frequency, speed)
+                factors[of_cosine] = _product(size, c, fs, frequency, speed)
+                factors[of_sine] = _product(size, -s, fc, frequency, speed)
             if frequency and axis == "yaw":
                 for name, (now, later) in ROLLING.items():
                     number = self.values[name]
@@ -125,19 +126,16 @@ class SteeredLaw:
                         f, g = now * c + later * s, later * c - now * s
                         for row, (value, slope) in enumerate(((f, frequency * g), (g, -frequency * f)), 2 * k):
                             place, rolled = self._places("pitch", row), _product(number, value, slope, frequency, speed)
-                            factors[place] = map(operator.add, factors[place], rolled)
+                            factors[place] = list(map(operator.add, factors[place], rolled))
         for name, bent in BENDS.items():
             if self.values[name] is not self._rest[name]:
                 value, rate, acceleration = self.values[name]
-                factors[self._places(bent, len(self._rows) - 1)] = (-value, -rate, -acceleration)
-        count = len(self._rows)
-        if not self._swimmers:
-            return np.asarray(np.array(factors).reshape(6, count).dot(self._rows))
-        together = np.concatenate(factors).reshape(6, count, -1).transpose(2, 0, 1).reshape(-1, count)
-        return np.asarray(together @ self._rows).reshape(-1, 6, len(self.x))
+                factors[self._places(bent, count - 1)] = -value, -rate, -acceleration
+        rows = np.asarray(factors).T.reshape(-1, count).dot(self._rows)
+        return np.asarray(rows.reshape(*self._swimmers, 6, points))
 
     def _places(self, axis: str, row: int) -> slice:
-        """Where factors of a row are: that of the value, the rate and the acceleration about an axis."""
+        """Where factors of a row are: those of the value, the rate and the acceleration about an axis."""
         first = 3 * LAW_ROW[axis] * len(self._rows) + row
         return slice(first, first + 3 * len(self._rows), len(self._rows))
 
@@ -161,14 +159,21 @@ def _rows(term: Term, x: np.ndarray) -> np.ndarray:
     return np.stack((size * np.sin(angle), size * np.cos(angle)))
 
 
-def _followed(jet: Jet, target: Any, rate: float, step: float) -> tuple[Jet, Any]:
+def _followed(jet: Jet, target: Any, rate: float, step: float) -> Jet:
     """Value, rate and acceleration after `step` [s] of a critically damped oscillator that goes to its `target`.
 
-    jet: the same before. rate [1/s]: of the oscillator. Returns the integral of the value over the step too.
+    jet: the same before. rate [1/s]: of the oscillator.
     """
-    away, slope = jet[0] - target, jet[1] + rate * (jet[0] - target)
-    left = math.exp(-rate * step)
+    away = jet[0] - target
+    slope, left = jet[1] + rate * away, math.exp(-rate * step)
     distance = (away + slope * step) * left
     speed = slope * left - rate * distance
+    return target + distance, speed, -rate * rate * distance - 2.0 * rate * speed
+
+
+def _travelled(jet: Jet, target: Any, rate: float, step: float) -> Any:
+    """The integral of such an oscillator's value over the step."""
+    away = jet[0] - target
+    slope, left = jet[1] + rate * away, math.exp(-rate * step)
     integral = away * (1.0 - left) / rate + slope * (1.0 - left * (1.0 + rate * step)) / rate**2
-    return (target + distance, speed, -rate * rate * distance - 2.0 * rate * speed), target * step + integral
+    return target * step + integral

@@ -12,6 +12,7 @@ import numpy as np
 from eel_base import attitude
 
 TURN = 2.0 * math.pi  # rad
+_TURN = np.array(TURN)  # faster with arrays
 MANY_TURNS = 1e9  # rad
 
 
@@ -43,5 +44,5 @@ def wrapped(angle: Any) -> Any:
     """The `angle` [rad] from -pi to pi; of an array each."""
     if type(angle) is float and abs(angle) < MANY_TURNS:  # faster
         return angle - TURN * round(angle / TURN)
-    inside = angle - TURN * np.rint(angle / TURN)
+    inside = angle - _TURN * np.rint(angle / _TURN)
     return inside if isinstance(inside, np.ndarray) else float(inside)

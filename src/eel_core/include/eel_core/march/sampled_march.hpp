@@ -194,6 +194,9 @@ class SampledMarches {
     std::size_t points() const { return points_; }
     SampledMarch& operator[](std::size_t index) { return marches_.at(index); }
 
+    // Wakes the threads, as `advance` will be called soon.
+    void wake() { threads_.wake(); }
+
     // Marches each swimmer to its own of the `times` (N,) [s], where the sample has its `values` (N, 6, points).
     // `status` (N,): those below 0 are left out; afterwards how each came back. `heads` (13, N): position [m],
     // orientation, twist over ground [rad/s, m/s] of each that marched.

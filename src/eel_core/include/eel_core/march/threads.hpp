@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <functional>
@@ -14,6 +15,7 @@ namespace eel_core {
 
 class Threads {
   public:
+    using Clock = std::chrono::steady_clock;
     using Task = std::function<void(std::size_t)>;
 
     // `count` threads, of which the caller's own is one.
@@ -25,33 +27,58 @@ class Threads {
     {
         {
             const std::scoped_lock lock(mutex_);
-            over_ = true;
+            ends_ = true;
         }
-        begun_.notify_all();
+        called_.notify_all();
         for (std::thread& helper : helpers_) helper.join();
     }
     Threads(const Threads&) = delete;
     Threads& operator=(const Threads&) = delete;
+
+    // Wakes the helpers: they look out for a task that will come soon, and sleep again where none does.
+    void wake() { call(State::expected); }
 
     // Calls `task`, which must not throw, with each of the numbers below `items` once; returns when all are done. A
     // helper that has not woken by then is not waited for.
     void run(std::size_t items, const Task& task)
     {
         const std::size_t count = shares_.size();
+        for (std::size_t k = 0; k < count; ++k)
+            shares_[k].next = k * items / count, shares_[k].end = (k + 1) * items / count;
+        task_ = &task;
+        call(State::under_way);
+        work(0);
         {
             const std::scoped_lock lock(mutex_);
-            for (std::size_t k = 0; k < count; ++k)
-                shares_[k].next = k * items / count, shares_[k].end = (k + 1) * items / count;
-            task_ = &task, under_way_ = true, ++round_;
+            state_ = State::over;  // no helper begins from now on
         }
-        begun_.notify_all();
-        work(0);
+        look_out([this] { return busy_ == 0; });
         std::unique_lock lock(mutex_);
-        under_way_ = false;
         ended_.wait(lock, [this] { return busy_ == 0; });
     }
 
   private:
+    enum class State { over, expected, under_way };
+
+    void call(State state)
+    {
+        if (helpers_.empty()) return;
+        {
+            const std::scoped_lock lock(mutex_);
+            state_ = state, ++calls_;
+        }
+        called_.notify_all();
+    }
+
+    // Waits for a while until `come`: to wake from sleep takes as long as several items.
+    template <class Condition>
+    static void look_out(const Condition& come)
+    {
+        constexpr std::chrono::microseconds patience{100};
+        for (const auto start = Clock::now(); !come() && Clock::now() < start + patience;) {
+        }
+    }
+
     // Items of a thread, the same in each round while it keeps up: their data stay in its cache.
     struct alignas(64) Share {  // bytes, a line of the cache
         std::atomic<std::size_t> next{0};
@@ -71,9 +98,16 @@ class Threads {
     {
         std::unique_lock lock(mutex_);
         for (std::size_t seen = 0;;) {
-            begun_.wait(lock, [&] { return over_ || (under_way_ && round_ != seen); });
-            if (over_) return;
-            seen = round_, ++busy_;
+            called_.wait(lock, [&] { return ends_ || calls_ != seen; });
+            if (ends_) return;
+            if (state_ == State::expected) {
+                lock.unlock();
+                look_out([this] { return state_ != State::expected; });
+                lock.lock();
+            }
+            seen = calls_;
+            if (state_ != State::under_way) continue;
+            ++busy_;
             lock.unlock();
             work(own);
             lock.lock();
@@ -82,11 +116,13 @@ class Threads {
     }
 
     std::mutex mutex_;
-    std::condition_variable begun_, ended_;
+    std::condition_variable called_, ended_;
     const Task* task_ = nullptr;
     std::vector<Share> shares_;
-    std::size_t round_ = 0, busy_ = 0;  // busy: helpers at work
-    bool under_way_ = false, over_ = false;
+    std::atomic<State> state_ = State::over;
+    std::atomic<std::size_t> busy_ = 0;  // helpers at work
+    std::size_t calls_ = 0;
+    bool ends_ = false;
     std::vector<std::thread> helpers_;
 };
 
