@@ -206,6 +206,28 @@ def samples_at(time, bend=0.0):
     return {"time": time, "x": np.array([0.0, 1.0]), **rows, "yaw": np.full(2, bend)}
 
 
+@pytest.mark.parametrize("rate", [60.0, 70.0, 100.0])
+def test_a_controller_whose_stamps_are_rounded_down_is_not_waited_for_in_vain(rate):
+    """It answers each sample of time t with t + 1/rate, in whole nanoseconds, and commands joints at t."""
+    log, inbox, period = Log(), FakeInbox(), int(1e9 / rate)
+    waiting = [samples_at(0.0), samples_at(1e-9 * period)]
+
+    def take(now):
+        while waiting:
+            yield waiting.pop(0)
+
+    def publish(snapshot, nanoseconds):
+        seconds, rest = divmod(nanoseconds + period, 1_000_000_000)
+        waiting.append(samples_at(seconds + 1e-9 * rest))
+        run.requests.put(run.take_command, nanoseconds // 1_000_000_000 + 1e-9 * (nanoseconds % 1_000_000_000), {})
+
+    inbox.take = take
+    values = {"real_time_factor": 0.0, "rate": rate, "duration": 2.0, "subscriber_timeout": 0.02}
+    run = run_loop(Simulation(accuracy=1e-2), fake_publishers(publish), Report(log), inbox, **values)
+    run.run()
+    assert [text for level, text in log.lines if level != "info"] == [] and run.time == 2.0
+
+
 @pytest.mark.fault("samples", "one sample of several that is late", "a warning; ERROR is for control that is lost")
 def test_one_late_sample_is_a_warning_and_lost_control_is_an_error_until_it_is_back():
     log, states = Log(), {}

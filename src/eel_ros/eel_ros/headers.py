@@ -3,7 +3,6 @@
 header, read from the serialised message: the length of a sequence before it is deserialised, or its numbers.
 """
 
-import math
 from struct import Struct, error, unpack_from
 from typing import NamedTuple
 
@@ -41,7 +40,7 @@ def stamp_of(time: float) -> Time:
     """The stamp of a `time` [s], to the nearest nanosecond. `ValueError` for one that no stamp holds."""
     if not 0.0 <= time < END:
         raise ValueError(f"time of a sample must be >= 0 s and < {END} s, got {time:.9g} s")
-    seconds, nanoseconds = divmod(math.floor(time * 1e9 + 0.5), 1_000_000_000)
+    seconds, nanoseconds = divmod(round(time * 1e9), 1_000_000_000)
     return Time(sec=seconds, nanosec=nanoseconds)
 
 

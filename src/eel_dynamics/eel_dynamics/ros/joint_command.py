@@ -6,7 +6,7 @@ of the message are empty, or NaN for the joint.
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 from eel_base.quantity import is_finite
 from eel_base.wording import not_one_of, shown
@@ -15,6 +15,7 @@ from eel_ros.qos import keep_all
 from eel_ros.serving import ServedNode
 from sensor_msgs.msg import JointState
 
+from eel_dynamics.ros.loop.joint_commander import Joints
 from eel_dynamics.ros.loop.run_loop import RunLoop
 from eel_dynamics.ros.messages import stamped
 
@@ -22,13 +23,6 @@ TOPIC = "joint_commands"
 INTERFACES = ("position", "velocity", "effort")
 MOST_JOINTS = 1000  # of one message
 FIN_DEPTH = 10  # commands
-
-
-class JointCommand(NamedTuple):
-    """What joints are to do from a time [s] on: by name, the interface and the value [rad, rad/s or N m]."""
-
-    time: float
-    joints: dict[str, tuple[str, float]]
 
 
 def interfaces_of(names: tuple[str, ...], given: tuple[str, ...]) -> dict[str, str]:
@@ -41,8 +35,11 @@ def interfaces_of(names: tuple[str, ...], given: tuple[str, ...]) -> dict[str, s
     return dict(zip(names, given if len(given) > 1 else given * len(names), strict=True))
 
 
-def command_from_message(message: JointState, interfaces: dict[str, str], now: float) -> JointCommand:
-    """The command in a `message` that comes at simulation time `now` [s]. `ValueError` names what does not fit."""
+def command_from_message(message: JointState, interfaces: dict[str, str], now: float) -> tuple[float, Joints]:
+    """The stamp [s] of a `message` that comes at simulation time `now` [s], and what joints are to do from then on.
+
+    `ValueError` names what does not fit.
+    """
     names = list(message.name)
     if not 1 <= len(names) <= MOST_JOINTS:
         raise ValueError(f"name must hold 1 to {MOST_JOINTS} joints, got {len(names)}")
@@ -64,7 +61,7 @@ def command_from_message(message: JointState, interfaces: dict[str, str], now: f
         if others:
             raise ValueError(f"joint {shown(name)} is driven by {own}, got {others[0]} too")
         joints[name] = own, float(values[own])
-    return JointCommand(stamped(message.header.stamp, now), joints)
+    return stamped(message.header.stamp, now), joints
 
 
 class JointCommandSubscription:
@@ -80,7 +77,7 @@ class JointCommandSubscription:
         except ValueError as error:
             self._report.event("commands", f"joint command refused: {error}", ERROR, differing=True)
         else:
-            self._run.requests.put(self._run.take_command, command)
+            self._run.requests.put(self._run.take_command, *command)
 
 
 def fin_command_from_message(message: JointState) -> dict[str, float]:

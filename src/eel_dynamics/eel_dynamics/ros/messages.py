@@ -21,7 +21,7 @@ from eel_gaits.ros.messages import ROWS
 from eel_model.axes import with_section_axes
 from eel_model.flow.flow import lattice_around, velocities_at
 from eel_model.robot.actuators import most_torque
-from eel_ros.headers import FieldReader, Stamp, seconds_of
+from eel_ros.headers import FieldReader, Stamp, seconds_of, stamp_of
 from eel_ros.loop.serialised_message import SerialisedMessage
 from eel_ros.serving import read_message
 from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped, Vector3Stamped
@@ -335,12 +335,6 @@ def state_from_message(request: SetState.Request) -> tuple[np.ndarray, np.ndarra
     return np.array(position), np.array(unit), np.array([*angular, *linear])
 
 
-def time_message(seconds: float) -> Time:
-    """`seconds` as a stamp."""
-    whole, rest = divmod(round(seconds * SECOND), SECOND)
-    return Time(sec=whole, nanosec=rest)
-
-
 def diagnostic_array(time: float, name: str, level: int, text: str, values: dict[str, Any]) -> DiagnosticArray:
     """A DiagnosticArray with one status of the node `name` at simulation time `time` [s]."""
     status = DiagnosticStatus(level=bytes([level]), name=name, message=text, hardware_id="simulation")
@@ -349,7 +343,7 @@ def diagnostic_array(time: float, name: str, level: int, text: str, values: dict
         for key, value in values.items()
     ]
     message = DiagnosticArray(status=[status])
-    message.header.stamp.sec, message.header.stamp.nanosec = divmod(round(time * SECOND), SECOND)
+    message.header.stamp = stamp_of(time)
     return message
 
 

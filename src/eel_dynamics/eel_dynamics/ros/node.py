@@ -17,6 +17,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from eel_base.command.command_line import one_line_warnings
 from eel_base.wording import one_line
 from eel_model.scene import Scene
+from eel_ros.headers import stamp_of
 from eel_ros.loop.diagnostics import Report
 from eel_ros.loop.followed_clock import ClockSubscription, FollowedClock
 from eel_ros.loop.other_nodes import Identity, OtherNodes
@@ -38,7 +39,7 @@ from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.joint_command import FinSubscription, JointCommandSubscription, interfaces_of
 from eel_dynamics.ros.law_subscription import LawSubscription
 from eel_dynamics.ros.loop.run_loop import RunLoop
-from eel_dynamics.ros.messages import diagnostic_array, root_message, state_from_message, time_message, values_of_status
+from eel_dynamics.ros.messages import diagnostic_array, root_message, state_from_message, values_of_status
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.publishers import Publishers
 from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
@@ -216,7 +217,7 @@ class DynamicsNode(ParameterNode):
         steps = Answer(self._inbox)
         self.run_loop.requests.put(self.run_loop.step, request.samples, steps, urgent=True)
         await steps
-        response.success, response.stamp = not steps.failure, time_message(steps.time)
+        response.success, response.stamp = not steps.failure, stamp_of(steps.time)
         many = "s" if request.samples > 1 else ""
         response.message = steps.failure or f"{request.samples} sample{many} published, paused at t = {steps.time:g} s"
         return response

@@ -8,7 +8,8 @@ command has come that is stamped with the last one, or later. So such a run is t
 
 import math
 import time
-from typing import Any, Protocol
+from operator import itemgetter
+from typing import Any
 
 from eel_gaits.laws.law import Law
 from eel_ros.loop.diagnostics import ERROR, Report
@@ -17,16 +18,7 @@ from eel_dynamics.simulation.simulation import Simulation
 
 LONGEST_WAY = 5.0  # s that a command may lie ahead of the simulation
 ECHO = 2.0  # s after a reset, within which commands that were sent before it may come
-
-
-class Command(Protocol):
-    """A `JointCommand`."""
-
-    @property
-    def time(self) -> float: ...
-
-    @property
-    def joints(self) -> dict[str, tuple[str, float]]: ...
+Joints = dict[str, tuple[str, float]]  # by name, the interface and the value [rad, rad/s or N m]
 
 
 class JointCommander:
@@ -34,43 +26,46 @@ class JointCommander:
 
     def __init__(self, simulation: Simulation, report: Report) -> None:
         self.simulation, self._report = simulation, report
-        self._waiting: list[Command] = []  # in the order of their times
-        self._present: dict[str, tuple[str, float]] = {}  # what the joints do
+        self._waiting: list[tuple[float, Joints]] = []  # in the order of their times [s]
+        self._present: Joints = {}  # what the joints do
         self._newest = math.nan  # s: the latest stamp; NaN: no command has come
         self._last = math.nan  # s, simulation time at which the last command came
         self._farthest = 0.0  # s by which a command lay ahead
         self._missing_since = math.inf  # s, steady clock; -inf: no longer waited for
         self._echo_until = -math.inf  # s, steady clock
 
-    def add(self, command: Command) -> None:
-        """Queue a command. The first one starts a swimmer without a law: it is straight but for its commands."""
+    def add(self, stamp: float, joints: Joints) -> None:
+        """Queue what `joints` are to do from `stamp` [s] on.
+
+        The first command starts a swimmer without a law: it is straight but for its commands.
+        """
         now = self.simulation.time
-        ahead = command.time - now
+        ahead = stamp - now
         if ahead > 2.0 * self._farthest and time.monotonic() < self._echo_until:
-            self._report.note("echo", f"joint command of {command.time:g} s left out: sent before the reset")
+            self._report.note("echo", f"joint command of {stamp:g} s left out: sent before the reset")
             return
         if ahead > LONGEST_WAY:
             rule = f"header.stamp must be at most {LONGEST_WAY:g} s ahead of the simulation ({now:.9g} s)"
-            self._report.event("commands", f"joint command refused: {rule}, got {command.time:.9g} s", ERROR, True)
+            self._report.event("commands", f"joint command refused: {rule}, got {stamp:.9g} s", ERROR, True)
             return
         self._farthest, self._last = max(self._farthest, ahead), now
-        if not command.time <= self._newest:
-            self._newest, self._missing_since = command.time, math.inf
+        if not stamp <= self._newest:
+            self._newest, self._missing_since = stamp, math.inf
         self._report.end("no commands", f"joint commands are back at t = {now:g} s")
-        self._waiting.append(command)
-        self._waiting.sort(key=lambda each: each.time)  # a stable sort: those of one time in their order
+        self._waiting.append((stamp, joints))
+        self._waiting.sort(key=itemgetter(0))  # a stable sort: those of one time in their order
         if not self.simulation.ready:
             self.simulation.adopt(Law(name="joint_commands"))
 
     def next_instant(self, before: float) -> float | None:
         """The time [s] of the next command, if it lies before a time [s]."""
-        if not self._waiting or self._waiting[0].time >= before:
+        if not self._waiting or self._waiting[0][0] >= before:
             return None
-        return max(self._waiting[0].time, self.simulation.time)
+        return max(self._waiting[0][0], self.simulation.time)
 
     def execute(self) -> None:
         """Give the next command at the present time."""
-        for joint, (interface, value) in self._waiting.pop(0).joints.items():
+        for joint, (interface, value) in self._waiting.pop(0)[1].items():
             if self._present.get(joint) == (interface, value):
                 continue  # sent again
             self.simulation.command(joint, **{interface: value})

@@ -27,7 +27,7 @@ from eel_ros.loop.requests import Answer, RequestQueue
 from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.loop.current_taker import CurrentTaker
-from eel_dynamics.ros.loop.joint_commander import Command, JointCommander
+from eel_dynamics.ros.loop.joint_commander import JointCommander, Joints
 from eel_dynamics.ros.loop.law_adopter import LawAdopter
 from eel_dynamics.ros.loop.run_gate import RunGate
 from eel_dynamics.ros.loop.sample_output import SampleOutput, nanoseconds
@@ -36,6 +36,8 @@ from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.publishers import Publishers
 from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.stopping import SimulationStopped
+
+STAMP_ERROR = 1.5e-9  # s: of a stamp that is rounded down, with that of the one that it was added to
 
 
 class RunLoop:
@@ -96,6 +98,7 @@ class RunLoop:
         self.pace.restart(0, time.monotonic())
         while not self.requests.stopped and self.samples_published <= self._last_sample and not self.given_up:
             for samples in self._inbox.take(self.time):
+                samples["time"] = self._meant(samples["time"])
                 self._execute(self.laws.add_samples, samples, self.pace.period)
             for request in self.requests.take():
                 request.answer.give(*self._execute(request.action, *request.arguments))
@@ -227,6 +230,12 @@ class RunLoop:
         """Simulation time [ns] of the last sample; before the first one, its own."""
         return nanoseconds(max(0, self.samples_published - 1), self._parameters.values.rate)
 
+    def _meant(self, stamp: float) -> float:
+        """The instant [s] of the sample that a controller's `stamp` [s] means, but for what nanoseconds cannot hold."""
+        rate = self._parameters.values.rate
+        instant = round(stamp * rate) / rate
+        return instant if abs(instant - stamp) < STAMP_ERROR else stamp
+
     # Requests, executed between two samples.
 
     def take_law(self, law: Law, origin: float) -> None:
@@ -239,9 +248,9 @@ class RunLoop:
         self._current.take(self._simulation, stamp, velocity)
         self.output.forget_start()
 
-    def take_command(self, command: Command) -> None:
-        """Have joints of the robot do so from its time on."""
-        self.commands.add(command)
+    def take_command(self, stamp: float, joints: Joints) -> None:
+        """Have `joints` of the robot do so from `stamp` [s] on."""
+        self.commands.add(self._meant(stamp), joints)
 
     def _limit_servos(self, torque: float) -> None:
         self.servo_limit.change(torque)

@@ -22,7 +22,7 @@ class RunTotals:
         if snapshot.energy is not None and snapshot.actuator_work is not None:
             residual = float(snapshot.energy.residual)
             if not math.isfinite(residual):
-                raise _not_finite(snapshot, "energy residual", residual)
+                _check(snapshot, "energy residual", residual)
             values["energy_residual"] = residual
             values["energy_residual_worst"] = max(values.get("energy_residual_worst", 0.0), abs(residual))
             values["actuator_work"] = snapshot.actuator_work
@@ -45,10 +45,10 @@ def check_finite(snapshot: Snapshot) -> None:
     """`SimulationStopped` if one of the values of a snapshot is not finite, before anybody gets it."""
     if not np.isfinite(snapshot.whole).all():
         for name, array in snapshot.arrays().items():
-            if not np.isfinite(array).all():
-                raise _not_finite(snapshot, name, array)
+            _check(snapshot, name, array)
 
 
-def _not_finite(snapshot: Snapshot, name: str, values: np.ndarray | float) -> SimulationStopped:
-    first = float(np.ravel(values)[~np.isfinite(np.ravel(values))][0])
-    return SimulationStopped(snapshot.time, name, first, "take a gentler law")
+def _check(snapshot: Snapshot, name: str, values: np.ndarray | float) -> None:
+    bad = np.ravel(values)[~np.isfinite(np.ravel(values))]
+    if len(bad):
+        raise SimulationStopped(snapshot.time, name, float(bad[0]), "take a gentler law")
