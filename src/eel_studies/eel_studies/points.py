@@ -55,11 +55,8 @@ VELOCITIES = ("omega_x", "omega_y", "omega_z", "v_x", "v_y", "v_z")
 
 
 class SwimSettings(NamedTuple):
-    """How the points of a study swim: arguments of `simulate`, and what is measured of each run."""
+    """What is measured of the points of a study, and further arguments of `simulate`."""
 
-    duration: float | str  # s, or "settled"
-    sample_period: float | None  # s
-    stations: Stations
     measure: Measure | tuple[str, ...]  # run -> {name: number}, or names of MEASURES
     estimate: bool = True
     most_evaluations: float = MOST_EVALUATIONS
@@ -75,17 +72,17 @@ def batch_of_points(
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Batch:
-    """Simulate the `points`. threads, progress: as in `simulate_batch`."""
-    own = {"stations": how.stations, "most_evaluations": how.most_evaluations}
-    swimmers = [numbered(index, point.law, point.swimmer | own) for index, point in enumerate(points)]
-    return swum(swimmers, how.duration, how.sample_period, estimate=how.estimate, threads=threads, progress=progress)
+    """Simulate the `points` for the duration of the first. threads, progress: as in `simulate_batch`."""
+    first, most = points[0], {"most_evaluations": how.most_evaluations}
+    swimmers = [numbered(index, point.law, point.swimmer | most) for index, point in enumerate(points)]
+    times = first.duration, first.sample_period
+    return swum(swimmers, *times, estimate=how.estimate, threads=threads, progress=progress)
 
 
 def run_of_point(point: Swim, how: SwimSettings) -> Run:
     """Simulate one `point`. `SimulationStopped` where it does not come to its end."""
-    own = {"stations": how.stations, "most_evaluations": how.most_evaluations}
-    setup = SimulationSetup.of(**point.swimmer | own)
-    swim = swim_of(SwimRequest.of(Run, point.law, setup, how.duration, how.sample_period, estimate=how.estimate))
+    setup = SimulationSetup.of(**point.swimmer, most_evaluations=how.most_evaluations)
+    swim = swim_of(SwimRequest.of(Run, point.law, setup, point.duration, point.sample_period, estimate=how.estimate))
     if swim.stopped is not None:
         raise swim.stopped
     return swim.run

@@ -63,5 +63,6 @@ def test_a_sweep_varies_the_numbers_of_a_flow():
         point_at({"flow.width_": 2.0}, "straight", {"flow": flow}, base)
     with pytest.raises(ValueError, match="flow must be one built-in flow for spacing to change, got"):
         point_at({"flow.spacing": 2.0}, "straight", {}, base)
-    swims = batch_of_points([point, point._replace(flow=None)], SwimSettings(1.0, 0.25, 2, ("mean_speed",), False))
+    point = point._replace(duration=1.0, sample_period=0.25, stations=2)
+    swims = batch_of_points([point, point._replace(flow=None)], SwimSettings(("mean_speed",), False))
     assert not np.allclose(swims.position[0], swims.position[1])

@@ -258,7 +258,7 @@ def test_the_key_changes_with_whatever_the_results_depend_on():
     bodies += [Body(length=1.0, half_width=lambda x, k=k: k * np.sqrt(x), half_height=np.sqrt) for k in (0.01, 0.02)]
 
     def key(measure=measures_of, body=bodies[0]):
-        how = SwimSettings(1.0, 0.1, 11, measure)
+        how = SwimSettings(measure)
         return key_of([Swim(straight(), body, Scene(), Accuracy.of("draft"))], how)
 
     keys = [key(body=body) for body in bodies]
@@ -278,7 +278,7 @@ def test_the_key_is_the_same_in_another_process(tmp_path):
         "from eel_gaits import straight\nLIMIT = 0.3\n"
         "def measure(run):\n    return {'far': run.path_length > LIMIT, 'near': run.path_length < LIMIT}\n"
         "point = Swim(straight(), Body.kern2006(), Scene(), Accuracy.of('draft'))\n"
-        "print(key_of([point], SwimSettings(1.0, 0.1, 11, measure)))\n"
+        "print(key_of([point], SwimSettings(measure)))\n"
     )
 
     def key():

@@ -25,7 +25,7 @@ from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.run_data import ObservedArrays
 from eel_dynamics.runs.run_picture import lines_of_batch, picture_of_batch
 from eel_dynamics.runs.storage.netcdf import loaded, write
-from eel_dynamics.runs.storage.run_contents import OF_EACH, OF_SWIMMER, contents_of_batch, own_of_batch, with_warnings
+from eel_dynamics.runs.storage.run_contents import OF_EACH, OF_SWIMMER, contents_of_batch, own_of_batch
 from eel_dynamics.runs.storage.tables import dataset_of, frame_of_all, needed
 from eel_dynamics.runs.storage.variables import (
     COUNTS,
@@ -84,7 +84,7 @@ class Batch(ObservedArrays):
         return hash((self.laws, self.bodies, self.scenes))
 
     def __reduce__(self) -> tuple[Any, ...]:  # each array once
-        return _batch_from, (self._contents, *(getattr(self, name) for name in OF_SWIMMER))
+        return _batch_from, (self._contents(whole=False), *(getattr(self, name) for name in OF_SWIMMER))
 
     def __repr__(self) -> str:
         return (
@@ -99,10 +99,9 @@ class Batch(ObservedArrays):
     def _repr_html_(self) -> str:
         return cell_of(self.plot, lines_of_batch(self))
 
-    @property
-    def _contents(self) -> Contents:
+    def _contents(self, whole: bool = True) -> Contents:
         assert self._energy_at_start is not None
-        return contents_of_batch(self, self._arrays, self._energy_at_start)
+        return contents_of_batch(self, self._arrays, self._energy_at_start, whole)
 
     @property
     def valid(self) -> np.ndarray:
@@ -145,7 +144,7 @@ class Batch(ObservedArrays):
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the whole batch to a netCDF file (.nc), as `Run.save` does a run."""
-        write(with_warnings(self, self._contents), path)
+        write(self._contents(), path)
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> "Batch":
@@ -155,7 +154,7 @@ class Batch(ObservedArrays):
 
     def to_xarray(self) -> Any:
         """An `xarray.Dataset` as `Run.to_xarray` gives it, with a first dimension `swimmer`."""
-        return dataset_of(with_warnings(self, self._contents))
+        return dataset_of(self._contents())
 
     def to_dataframe(self) -> Any:
         """A `pandas.DataFrame` as `Run.to_dataframe` gives it, by swimmer and time; valid samples alone."""

@@ -10,58 +10,46 @@ from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.body.body import Body
 from eel_model.flow.flow import Flow
-from eel_model.initial_state import InitialState
 from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.runs.motions import LAWS
+from eel_dynamics.runs.storage.run_contents import OF_EACH
 from eel_dynamics.simulation.simulation_setup import SimulationSetup, check_planar_law, checked_stations
 
 Swimmer = tuple[Law | SampledLaw, SimulationSetup]
+KINDS: dict[str, Any] = {
+    "laws": LAWS,
+    "bodies": Body,
+    "scenes": Scene,
+    "flows": (Flow, type(None)),
+    "robots": (Robot, type(None)),
+}
+STATES = {"positions": 3, "orientations": 4, "twists": 6}  # sizes of rows
+ONE = {several: one for one, several in OF_EACH.items()} | {name: name[:-1] for name in STATES}
 
 
-def swimmers_of(
-    laws,
-    bodies,
-    scenes,
-    accuracy,
-    stations,
-    positions,
-    orientations,
-    twists,
-    most_evaluations=MOST_EVALUATIONS,
-    flows=None,
-    robots=None,
-    fins=None,
-) -> list[Swimmer]:
-    """Laws and set-ups of B swimmers, with `stations` on each body, and `most_evaluations` per simulated second.
+def swimmers_of(stations: Any, most_evaluations: Any, accuracy: Any, fins: Any, **given: Any) -> list[Swimmer]:
+    """The B swimmers of these arguments of `simulate_batch`. given: the others of `KINDS` and `STATES`.
 
-    flows, robots, fins: None for none. Each other argument is one for all, or a sequence of B (for the last three the
-    rows of an array (B, .)); a sequence of length 1 counts as one for all. `ValueError` names what does not fit, and
-    the swimmer's number.
+    One is for all, or a sequence of B (of `STATES` the rows of an array (B, .)); a sequence of length 1 counts as one
+    for all. `ValueError` names what does not fit, and the swimmer's number.
     """
-    laws, bodies, scenes, settings, flows, robots, fins, *states = _broadcast(
-        laws=_several("laws", laws, LAWS),
-        bodies=_several("bodies", Body.boyer2010() if bodies is None else bodies, Body),
-        scenes=_several("scenes", Scene() if scenes is None else scenes, Scene),
-        accuracy=[Accuracy.of(each) for each in (accuracy if isinstance(accuracy, (list, tuple)) else [accuracy])],
-        flows=[None] if flows is None else _several("flows", flows, (Flow, type(None))),
-        robots=[None] if robots is None else _several("robots", robots, (Robot, type(None))),
-        fins=_lists(fins),
-        positions=_rows("positions", positions, 3),
-        orientations=_rows("orientations", orientations, 4),
-        twists=_rows("twists", twists, 6),
+    accuracy = accuracy.tolist() if isinstance(accuracy, np.ndarray) else accuracy
+    rows = _broadcast(
+        {name: _several(name, given[name], kind) for name, kind in KINDS.items()}
+        | {"accuracy": [*map(Accuracy.of, accuracy if isinstance(accuracy, (list, tuple)) else [accuracy])]}
+        | {"fins": _lists(fins)}
+        | {name: _rows(name, given[name], size) for name, size in STATES.items()}
     )
     most = positive("most_evaluations", most_evaluations, "per simulated second")
-    x = {length: checked_stations(stations, length) for length in dict.fromkeys(body.length for body in bodies)}
-    names = "body", "scene", "accuracy", "flow", "robot", "fins"
+    x = {length: checked_stations(stations, length) for length in dict.fromkeys(body.length for body in rows["bodies"])}
     swimmers = []
-    for index, (law, *own) in enumerate(zip(laws, bodies, scenes, settings, flows, robots, fins, strict=True)):
-        more: dict[str, Any] = dict(zip(names, own, strict=True)) | {"stations": x[own[0].length]}
-        more |= dict(zip(InitialState._fields, (rows[index] for rows in states), strict=True))
-        swimmers.append(numbered(index, law, more | {"most_evaluations": most}))
+    for index, row in enumerate(zip(*rows.values(), strict=True)):
+        own = {ONE.get(name, name): value for name, value in zip(rows, row, strict=True)}
+        more = {"stations": x[own["body"].length], "most_evaluations": most}
+        swimmers.append(numbered(index, own.pop("law"), own | more))
     return swimmers
 
 
@@ -75,7 +63,7 @@ def numbered(index: int, law: Law | SampledLaw, arguments: dict[str, Any]) -> Sw
     return law, setup
 
 
-def _broadcast(**given) -> list[list]:
+def _broadcast(given: dict[str, list]) -> dict[str, list]:
     count = max((len(values) for values in given.values() if len(values) != 1), default=1)
     longest = next((name for name, values in given.items() if len(values) == count), "")
     for name, values in given.items():
@@ -83,7 +71,7 @@ def _broadcast(**given) -> list[list]:
             raise ValueError(f"{name} must hold one or more, got none")
         if len(values) not in (1, count):
             raise ValueError(f"{name} must be one, or as many as {longest} ({count}), got {len(values)}")
-    return [values * count if len(values) == 1 else values for values in given.values()]
+    return {name: values * count if len(values) == 1 else values for name, values in given.items()}
 
 
 def _several(name: str, values, kind: type | tuple[type, ...]) -> list:

@@ -17,7 +17,9 @@ from typing import Any
 
 import numpy as np
 from eel_base.wording import shown
+from eel_model.body.body import Body
 from eel_model.flow.flow import check_covers
+from eel_model.scene import Scene
 from numpy.typing import ArrayLike
 
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
@@ -79,10 +81,20 @@ def simulate_batch(
             at a time.
         fins: as in `simulate` for all; or a list of B lists, or None, one for each.
     """
-    accuracy = accuracy.tolist() if isinstance(accuracy, np.ndarray) else accuracy
-    along = [0.0] if stations is None else stations
-    states = positions, orientations, twists
-    swimmers = swimmers_of(laws, bodies, scenes, accuracy, along, *states, most_evaluations, flows, robots, fins)
+    swimmers = swimmers_of(
+        [0.0] if stations is None else stations,
+        most_evaluations,
+        accuracy,
+        fins,
+        laws=laws,
+        bodies=Body.boyer2010() if bodies is None else bodies,
+        scenes=Scene() if scenes is None else scenes,
+        flows=flows,
+        robots=robots,
+        positions=positions,
+        orientations=orientations,
+        twists=twists,
+    )
     return swum(swimmers, duration, sample_period, stations is not None, load, estimate, threads, progress)
 
 

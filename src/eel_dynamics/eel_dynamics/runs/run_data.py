@@ -83,10 +83,11 @@ class RunData(ObservedArrays):
     def of(cls, setup: Any, time: np.ndarray, arrays: dict[str, np.ndarray], **others: Any) -> Self:
         """The run with these `arrays` (`storage.variables.arrays_of`) at `time` (T,) [s].
 
-        setup: has the body, the scene, the flow, the robot, the fins and the stations x. others: further fields.
+        setup: has the body, the scene and the stations x, and may have a flow, a robot, fins. others: further fields.
         """
-        own = {name: getattr(setup, name) for name in ("body", "scene", "flow", "robot", "fins")}
-        return cls(**own, **fields_of_arrays(arrays | {"time": time, "x": setup.x}, setup.robot), **others)
+        own = {"body": setup.body, "scene": setup.scene, "flow": None, "robot": None, "fins": ()}
+        own |= {name: getattr(setup, name, none) for name, none in own.items()}
+        return cls(**own, **fields_of_arrays(arrays | {"time": time, "x": setup.x}, own["robot"]), **others)
 
     @classmethod
     def of_snapshots(cls, snapshots: Sequence[Snapshot], swimmer: Any, law: Law, **others: Any) -> Self:
@@ -95,15 +96,13 @@ class RunData(ObservedArrays):
         law: the one that the swimmer follows. others: further fields of the run. Its numbers of steps are 0.
         """
         first = snapshots[0]
-        names = [name for name in OWN if name not in ("x", *first.joints) and getattr(first, name, None) is not None]
+        names = [name for name in OWN if name != "x" and getattr(first, name, None) is not None]
         arrays = {name: np.array([getattr(each, name) for each in snapshots]) for name in names}
         arrays |= {name: np.array([each.joints[name] for each in snapshots]) for name in first.joints}
         if ledgers := [each.energy for each in snapshots if each.energy is not None]:
             arrays |= {ENERGY + name: np.array([each[name] for each in ledgers]) for name in LEDGER}
-        own = {name: getattr(swimmer, name, none) for name, none in (("robot", None), ("flow", None), ("fins", ()))}
-        own |= {name: getattr(swimmer, name) for name in ("body", "scene", "accuracy")}
-        found = fields_of_arrays(arrays | {"x": swimmer.x}, own["robot"])
-        return cls(law=law, **found | own | {"steps": 0, "evaluations": 0, "nodes": 0} | others)
+        others = {"accuracy": swimmer.accuracy, "steps": 0, "evaluations": 0, "nodes": 0} | others
+        return cls.of(swimmer, arrays.pop("time"), arrays, law=law, **others)
 
     def __eq__(self, other: object) -> bool:
         return self is other or same_fields(self, other)

@@ -100,11 +100,16 @@ def _body(swim: Swim, value: Any) -> dict[str, Any]:
 
 
 def _plain_body(swim: Swim) -> str:
-    if swim.robot is not None and swim.robot.body == swim.body:
-        return ""
-    name = swim.body_file or swim.body.name
-    if _body(swim, name)["body"] != swim.body:
-        raise ValueError(f"body {shown(name)} cannot be written: its numbers are no longer those of that name")
+    of_robot = swim.robot is not None and swim.robot.body == swim.body
+    return "" if of_robot else _name_of(swim, "body", "numbers")
+
+
+def _name_of(swim: Swim, word: str, held: str) -> str:
+    """The name or file of a body or robot. `ValueError` where what it `held` has changed."""
+    own = getattr(swim, word)
+    name: str = getattr(swim, f"{word}_file") or own.name
+    if WORDS[word].given(swim, name)[word] != own:
+        raise ValueError(f"{word} {shown(name)} cannot be written: its {held} are no longer those of that name")
     return name
 
 
@@ -113,7 +118,10 @@ def _scene(swim: Swim, value: Any) -> dict[str, Any]:
 
 
 def _plain_scene(swim: Swim) -> dict[str, Any]:
-    return _listed({item.name: getattr(swim.scene, item.name) for item in fields(Scene)}, vars(Scene()))
+    """The fields that differ from their defaults; rows as lists."""
+    defaults, own = vars(Scene()), {item.name: getattr(swim.scene, item.name) for item in fields(Scene)}
+    others = {name: value for name, value in own.items() if value is not None and value != defaults[name]}
+    return {name: np.array(value).tolist() if isinstance(value, tuple) else value for name, value in others.items()}
 
 
 def _plain_accuracy(swim: Swim) -> Any:
@@ -127,29 +135,10 @@ def _duration(swim: Swim, value: Any) -> dict[str, Any]:
     return {"duration": value if until_settled(value) else positive("duration", value, "s")}
 
 
-def _plain_flow(swim: Swim) -> str:
-    return "" if swim.flow is None else text_of_flow(swim.flow)
-
-
 def _robot(swim: Swim, value: Any) -> dict[str, Any]:
     robot = robot_of(checked_instance("robot", value, str))
     own = None if robot is None else robot.body
     return {"robot": robot, "robot_file": value if Path(value).suffix else "", "body": own or swim.body}
-
-
-def _plain_robot(swim: Swim) -> str:
-    if swim.robot is None:
-        return ""
-    name = swim.robot_file or swim.robot.name
-    if _robot(swim, name)["robot"] != swim.robot:
-        raise ValueError(f"robot {shown(name)} cannot be written: its parts are no longer those of that name")
-    return name
-
-
-def _listed(values: Mapping[str, Any], defaults: Mapping[str, Any]) -> dict[str, Any]:
-    """The `values` by name, rows as lists, without those that are None or the default."""
-    others = {name: value for name, value in values.items() if value is not None and value != defaults.get(name)}
-    return {name: np.array(value).tolist() if isinstance(value, tuple) else value for name, value in others.items()}
 
 
 def _of_start(field: str, part: slice = slice(None)) -> Word:
@@ -174,8 +163,8 @@ def _number(name: str, default: Any) -> Word:
     )
 
 
-WORDS: dict[str, Word] = {
-    "robot": Word(_robot, _plain_robot),  # before the body, which replaces that of its file
+WORDS: dict[str, Word] = {  # robot before body, which replaces that of its file
+    "robot": Word(_robot, lambda swim: swim.robot and _name_of(swim, "robot", "parts")),
     "body": Word(_body, _plain_body),
     "scene": Word(_scene, _plain_scene),
     "accuracy": Word(lambda swim, value: {"accuracy": Accuracy.of(value)}, _plain_accuracy),
@@ -190,5 +179,8 @@ WORDS: dict[str, Word] = {
         lambda swim, value: {"fins": fins_from_text(checked_instance("fins", value, str))},
         lambda swim: text_of_fins(swim.fins) or None,
     ),
-    "flow": Word(lambda swim, value: {"flow": flow_from_text(checked_instance("flow", value, str))}, _plain_flow),
+    "flow": Word(
+        lambda swim, value: {"flow": flow_from_text(checked_instance("flow", value, str))},
+        lambda swim: swim.flow and text_of_flow(swim.flow),
+    ),
 }

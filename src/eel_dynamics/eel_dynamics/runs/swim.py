@@ -18,15 +18,7 @@ from eel_dynamics.runs.simulate import simulate
 from eel_dynamics.simulation.simulation import Simulation
 
 AT_REST = InitialState(np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), np.zeros(6))
-OF_SWIMMER = (
-    "body",
-    "scene",
-    "accuracy",
-    "stations",
-    "flow",
-    "robot",
-    "fins",
-)  # fields that are arguments of `Simulation`
+OF_SWIMMER = "body", "scene", "accuracy", "stations", "flow", "robot", "fins"  # fields that are its arguments
 
 
 class Swim(NamedTuple):

@@ -118,11 +118,13 @@ def gradient(
         raise ValueError(f"parameters must be a dict of names and values, got {shown(parameters)}")
     at = {name: number(f"parameter {name}", value) for name, value in parameters.items()}
     base = base_point(body, scene, fixed_steps(accuracy), robot=robot, gait=gait)
+    base = base._replace(duration=duration, stations=stations)
     point = _point(at, gait, numbers, base)
     settings = point.accuracy.in_scene(point.scene)
     if sample_period is None:
         sample_period = default_sample_period([point.law], duration)
-    how = SwimSettings(duration, sample_period, stations, measure, False, most_evaluations)
+    base, point = (each._replace(sample_period=sample_period) for each in (base, point))
+    how = SwimSettings(measure, False, most_evaluations)
     tell, swims = progress_of(progress, "swims"), 1 + 2 * len(at)
 
     lines: tuple[str, ...] = ()

@@ -138,6 +138,7 @@ def sweep(
     _check_count("chunk", chunk)
     settings = Accuracy.of(own.accuracy if accuracy is None else accuracy)
     base = base_point(body, scene, settings, robot=robot, gait=gait)
+    base = base._replace(duration=duration, sample_period=sample_period, stations=stations)
     try:
         points = [
             point_at(dict(zip(names, values, strict=True)), gait, numbers or {}, base)._replace(gait=None)
@@ -147,7 +148,7 @@ def sweep(
             period_of(point.law, point.body.length)
     except ValueError as error:
         raise ValueError(f"sweep {error}") from None
-    how = SwimSettings(duration, sample_period, stations, measure, bool(estimate), limit)
+    how = SwimSettings(measure, bool(estimate), limit)
     record = None if recordings is None else SweepRecordings(recordings, dict(zip(names, axes, strict=True)))
     key = "" if out is None else key_of(points, how)
     parts = Parts(out, key, len(points), overwrite)
@@ -251,7 +252,7 @@ def _dataset(
     how: SwimSettings,
     gait: Gait,
 ) -> Any:
-    shape = [len(values) for values in axes]
+    shape, first = [len(values) for values in axes], points[0]
     measured = list(dict.fromkeys(name for index in sorted(done) for name in done[index] if name != "error"))
     found = [done[index] for index in range(len(points))]
     variables = {
@@ -263,13 +264,13 @@ def _dataset(
     variables["error"] = names, np.reshape(np.array(errors, dtype=object), shape), {"long_name": "what stopped it"}
     coordinates = {name: [label_of(value) for value in values] for name, values in zip(names, axes, strict=True)}
     attributes = {
-        "gait": gait if isinstance(gait, str) else getattr(gait, "__name__", points[0].law.name),
-        "duration": how.duration if until_settled(how.duration) else float(how.duration),
+        "gait": gait if isinstance(gait, str) else getattr(gait, "__name__", first.law.name),
+        "duration": first.duration if until_settled(first.duration) else float(first.duration),
         "estimate": int(how.estimate),
         "axes": REP103,
     }
-    if how.sample_period is not None:
-        attributes["sample_period"] = float(how.sample_period)
+    if first.sample_period is not None:
+        attributes["sample_period"] = float(first.sample_period)
     for name in ("body", "scene", "robot", "accuracy"):
         values = {repr(getattr(point, name)) for point in points}
         if len(values) == 1:

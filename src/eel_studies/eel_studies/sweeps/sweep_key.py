@@ -36,8 +36,7 @@ def key_of(points: list[Swim], how: SwimSettings) -> str:
     It is a hash of the points, their `SwimSettings`, the measure's code and closure, and this software, including its
     compiled core. `ValueError` for a function that cannot be hashed.
     """
-    content = hashlib.sha256(repr((how.duration, how.sample_period, how.estimate, how.most_evaluations)).encode())
-    content.update(np.asarray(how.stations, dtype=float).tobytes())
+    content = hashlib.sha256(repr((how.estimate, how.most_evaluations)).encode())
     content.update(_sources())
     measure = how.measure
     content.update(_content_of_function("measure", measure) if callable(measure) else repr(measure).encode())
@@ -46,7 +45,9 @@ def key_of(points: list[Swim], how: SwimSettings) -> str:
         if id(point.body) not in bodies:
             bodies[id(point.body)] = _content_of_body(point.body)
         content.update(bodies[id(point.body)])
-        content.update(repr((plain_of(point.law), point.scene, point.accuracy)).encode())
+        own = plain_of(point.law), point.scene, point.accuracy, point.duration, point.sample_period
+        content.update(repr(own).encode())
+        content.update(np.asarray(point.stations, dtype=float).tobytes())
         content.update(_content_of_flow(point.flow) + repr(point.fins).encode())
         content.update(_content_of_robot(point.robot, point.body))
         content.update(np.concatenate(point.start).tobytes())

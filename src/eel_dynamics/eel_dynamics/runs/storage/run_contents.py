@@ -64,11 +64,17 @@ def in_rep103_axes(contents: Contents) -> Contents:
     return contents._replace(arrays=contents.arrays | turned(contents.arrays), axes=REP103)
 
 
-def contents_of_batch(batch: Any, arrays: dict[str, np.ndarray], energy_at_start: np.ndarray) -> Contents:
-    """The contents of a `Batch` with all `arrays` of its swimmers; without their robots and warnings."""
+def contents_of_batch(
+    batch: Any, arrays: dict[str, np.ndarray], energy_at_start: np.ndarray, whole: bool = True
+) -> Contents:
+    """The contents of a `Batch` with all `arrays` of its swimmers. whole: with their robots and warnings."""
     values = {name: plain.plain_of(getattr(batch, name)) for name in ("error_estimates", "flows", "fins")}
     values |= {name: plain.each_once(getattr(batch, name)) for name in ("laws", "bodies", "scenes", "accuracies")}
     values |= {"errors": plain.plain_of(batch.error), "stations": batch.backbone is not None}
+    if whole:
+        robots = map(plain.plain_robot, batch.robots, batch.bodies)
+        lines = [list(batch[index].warnings) if samples else [] for index, samples in enumerate(batch.samples)]
+        values |= {"robots": list(robots), "warnings": lines}
     own = {name: getattr(batch, name) for name in ("time", "x", "samples", *COUNTS)}
     return Contents("batch", values, own | {"energy_at_start": energy_at_start} | arrays)
 
@@ -85,13 +91,6 @@ def own_of_batch(contents: Contents, at_hand: Sequence[Any]) -> dict[str, Any]:
     if any(len(each) != len(none) for each in own.values()):
         raise ValueError(f"there must be a law, a body, a scene and settings for each of {len(none)} swimmers")
     return own
-
-
-def with_warnings(batch: Any, contents: Contents) -> Contents:
-    """The `contents` of a `Batch`, and for each swimmer its robot and its warnings."""
-    lines = [list(batch[index].warnings) if samples else [] for index, samples in enumerate(batch.samples)]
-    robots = [plain.plain_robot(*each) for each in zip(batch.robots, batch.bodies, strict=True)]
-    return contents._replace(values=contents.values | {"robots": robots, "warnings": lines})
 
 
 def _count(name: str, value: Any) -> int:
