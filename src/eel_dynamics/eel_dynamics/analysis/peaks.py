@@ -11,11 +11,9 @@ recorded elsewhere its own: those of power may then be 2 % off at 20 samples in 
 """
 
 import numpy as np
-from eel_model.axes import REP103
 
 import eel_core
 from eel_dynamics.simulation.march import March
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
 
 FINER, MOST_SAMPLES = 10, 10_000  # samples in a sample period, and in all, of a run that is swum anew for its peaks
 NEAR = 0.7  # of the greatest sample: stations and samples that stay below are not beside the peak between samples
@@ -65,7 +63,6 @@ def peak_along(time: np.ndarray, x: np.ndarray, torque: np.ndarray) -> tuple[flo
 
 def _swum_anew(run, time: float, station: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Times (T,) [s], stations (M,) [m] and torque (T, M, 3) [N m] around `time` [s] and a `station` of `run`."""
-    run = run.in_axes(REP103)
     sample = int(np.searchsorted(run.time, time, side="right")) - 1
     first, last = max(0, sample - AROUND), min(len(run.time) - 1, sample + 1 + AROUND)
     times = np.linspace(run.time[first], run.time[last], (last - first) * FINE + 1)
@@ -73,18 +70,8 @@ def _swum_anew(run, time: float, station: int) -> tuple[np.ndarray, np.ndarray, 
     x = np.linspace(near[0], near[-1], (len(near) - 1) * FINE + 1)
     if depends_on_its_start(run):
         first = 0
-    start, orientation = run.time[first], run.orientation[first] / np.linalg.norm(run.orientation[first])
-    setup = SimulationSetup.of(
-        accuracy=run.accuracy.as_it_is(),
-        stations=x,
-        position=run.position[first],
-        orientation=orientation,
-        twist=run.twist[first],
-        most_evaluations=np.finfo(float).max,
-        **run.swimmer,
-    )
-    march = March.from_start(setup, run.law, -float(start))
-    out, _, _, stopped = march.record(times - start, True, False)
+    setup, start = run.setup_at(first, x, run.accuracy.as_it_is()), float(run.time[first])
+    out, _, _, stopped = March.from_start(setup, run.law, -start).record(times - start, True, False)
     if stopped is not None:
         raise stopped
     return times, x, out.torque

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Powers along the body of a run: of the actuators, from its internal torque, and of each kind of drag."""
 
+from dataclasses import replace
+
 import numpy as np
 from eel_base.attitude import world_from_body
 from eel_model.axes import REP103
@@ -9,7 +11,6 @@ import eel_core
 from eel_dynamics.curvature.law_follower import LawFollower
 from eel_dynamics.simulation.bending.modes_on_grid import shapes_of_run
 from eel_dynamics.simulation.discretisation import discretise
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
 
 
 def power_density(run) -> np.ndarray:
@@ -38,8 +39,7 @@ def drag_powers(run) -> np.ndarray:
     the head's motion, at the nodes of a simulation with the run's settings; their sum is the ledger's `drag_power`.
     """
     run = run.in_axes(REP103)
-    without_fins = run.swimmer | {"fins": ()}  # their drag is their own
-    setup = SimulationSetup.of(**without_fins, accuracy=run.accuracy.as_it_is(), stations=2)
+    setup = replace(run.setup_at(0, run.x[:1], run.accuracy.as_it_is()), fins=())  # whose drag is their own
     here = discretise(setup, setup.grid_for(setup.shape_needs(run.law)))
     instant, powers = eel_core.Instant(here.swimmer), np.zeros((len(run.time), 4))
     time, relative = np.ascontiguousarray(run.time), run.twist.copy()

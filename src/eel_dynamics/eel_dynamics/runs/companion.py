@@ -9,11 +9,12 @@ times. A warning names what is then still above the target.
 """
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.scene import ROUGH_FRICTION
+from eel_model.scene import ROUGH_FRICTION, Scene
 
 from eel_dynamics.accuracy.accuracy import OTHER_GRIDS, Accuracy
 from eel_dynamics.accuracy.error_estimate import SMALL, ErrorEstimate, growth_rate_of, least_torque
@@ -126,8 +127,13 @@ def _for_comparison(request):
     times = request.instants
     if len(times) > MANY_SAMPLES:
         times = times[(len(times) - 1) % COMPARED_EVERY :: COMPARED_EVERY]
-    request = request.changed(scene=replace(request.setup.scene, ledger=False))
+    request = request.changed(scene=_without_ledger(request.setup.scene))
     return request._replace(load=False, times=times, every=1)
+
+
+@lru_cache(maxsize=64)
+def _without_ledger(scene: Scene) -> Scene:
+    return replace(scene, ledger=False)
 
 
 def _finished(request, accuracy: Accuracy, nodes: int | None = None):

@@ -15,14 +15,19 @@ from eel_model.body.body import Body
 from eel_model.equality import same_fields
 from eel_model.fins.fins import Fin
 from eel_model.flow.flow import Flow
+from eel_model.initial_state import InitialState
 from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
+from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 from eel_dynamics.runs.storage.variables import ENERGY, LEDGER, OWN, fields_of_arrays
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import Snapshot
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
+
+ANY = float(np.finfo(float).max)  # evaluations: no limit
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -175,6 +180,19 @@ class RunData(ObservedArrays):
     def swimmer(self) -> dict[str, Any]:
         """What `Simulation` and `simulate` take of the run: body, scene, flow, robot and fins."""
         return {name: getattr(self, name) for name in ("body", "scene", "flow", "robot", "fins")}
+
+    def setup_at(
+        self, sample: int, x: np.ndarray, accuracy: Accuracy, most_evaluations: float = ANY
+    ) -> SimulationSetup:
+        """The set-up of the swimmer, in REP-103 axes, with the head's motion of a `sample`.
+
+        x (M,) [m]: its stations. The others are as of `Simulation`.
+        """
+        run = self.in_axes(REP103)
+        orientation = run.orientation[sample] / np.linalg.norm(run.orientation[sample])
+        start = InitialState(run.position[sample], orientation, run.twist[sample])
+        how = start, DEFAULT_TRANSITION, most_evaluations
+        return SimulationSetup(run.body, run.scene, accuracy, x, *how, run.flow, run.robot, run.fins)
 
     @property
     def body_mass(self) -> float:

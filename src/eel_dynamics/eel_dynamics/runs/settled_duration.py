@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How long a swimmer swims until its gait has settled: what the duration "settled" stands for."""
 
+import math
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -48,7 +49,7 @@ def settling_time(law: Any, setup: SimulationSetup) -> float:
     """
     period, last_ramp = period_of(law, setup.body.length), _last_ramp(law)
     coarse = affordable(replace(setup, accuracy=_coarse(setup.accuracy), x=setup.x[:1]))
-    march, before, energy, work = March.from_start(coarse, law), np.zeros(3), 0.0, 0.0
+    march, before, energy, work = March.from_start(coarse, law), [0.0] * 3, 0.0, 0.0
     ways: list[float] = []  # m, of the centre of mass in each period
     works: list[float] = []  # J, of the actuators
     for count in range(MOST_PERIODS + 1):
@@ -57,14 +58,14 @@ def settling_time(law: Any, setup: SimulationSetup) -> float:
         except SimulationStopped:
             break
         seen = march.observe(wrench=False, load=False)
-        centre = seen.center_of_mass - setup.current * march.time
+        centre = (seen.center_of_mass - setup.current * march.time).tolist()
         if count:
-            ways.append(float(np.linalg.norm(centre - before)))
+            ways.append(math.dist(centre, before))
         before = centre
         if (total := seen.actuator_work) is not None:
             if count:
                 works.append(total - work)
-            work, energy = total, float(sum(seen.energies[:2]))
+            work, energy = total, sum(seen.energies.tolist()[:2])
         window = (count + 1) // 2
         if window < FEWEST or (count - window) * period < last_ramp * (1.0 - 1e-9):
             continue

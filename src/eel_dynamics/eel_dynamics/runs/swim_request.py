@@ -8,7 +8,6 @@ from typing import Any, Generic, NamedTuple, TypeVar
 import numpy as np
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.axes import REP103
 from eel_model.flow.flow import check_covers
 
 from eel_dynamics.accuracy.accuracy import Accuracy
@@ -150,12 +149,8 @@ def simulated_again(
     """
     if run.time[0] != 0.0:
         raise ValueError(f"run must begin at t = 0 to be simulated again, got {run.time[0]:g} s")
-    axes, run = run.axes, run.in_axes(REP103)
-    orientation = run.orientation[0] / np.linalg.norm(run.orientation[0])
-    start = {"position": run.position[0], "orientation": orientation, "twist": run.twist[0]}
-    how = {"accuracy": accuracy, "stations": run.x, "most_evaluations": most_evaluations}
-    setup = SimulationSetup.of(**run.swimmer, **start, **how)
+    setup = run.setup_at(0, run.x, accuracy, most_evaluations)
     sample_period = float(run.time[1] - run.time[0]) / finer if len(run.time) > 1 else 1.0
     load = load or run.fluid_force is not None
     request = SwimRequest.of(type(run), law, setup, float(run.time[-1]), sample_period, load)
-    return request.swim_to_end().in_axes(axes)
+    return request.swim_to_end().in_axes(run.axes)

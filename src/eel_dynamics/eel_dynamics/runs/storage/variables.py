@@ -101,7 +101,7 @@ def arrays_of(
         arrays |= {name: each[:done] for name, each in joints.arrays.items()}
     if ledger:
         energy = EnergyLedger.of(energies, powers, works[:done], start, joints and joints.ledger[:done])
-        arrays |= {ENERGY + name: energy[name] for name in LEDGER}
+        arrays |= {ENERGY + name: getattr(energy, name) for name in LEDGER}
     return arrays
 
 
