@@ -238,7 +238,7 @@ class March:
 
     def record(self, times: np.ndarray, wrench: bool, load: bool, look=None) -> tuple:
         """As `Simulation.record`."""
-        out = Observations.empty(len(times), len(self.setup.x), wrench, load, len(self.setup.fins))
+        out = Observations(len(times), len(self.setup.x), wrench, load, len(self.setup.fins))
         works, done, status = np.zeros((len(times), len(WORKS))), 0, MARCHED
         self._rows = None if self.robot is None else self._empty_rows(len(times))
         rows = () if self._rows is None else (self._rows,)

@@ -5,6 +5,7 @@
 arrays and tables take it from `OBSERVED`.
 """
 
+import math
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -79,21 +80,11 @@ class Observations:
     fin_angle = Observed("time fin", "rad", "angles of the fins")
     fin_force = Observed("time fin section", "N", "force of the water on each fin, axes of its section")
 
-    def __init__(self, whole: np.ndarray, places: Places):
-        self.whole, self.places = whole, places
-
-    @staticmethod
-    def empty(
-        samples: int,
-        stations: int,
-        wrench: bool = True,
-        load: bool = True,
-        fins: int = 0,
-    ) -> "Observations":
+    def __init__(self, samples: int | None, stations: int, wrench: bool = True, load: bool = True, fins: int = 0):
         """Space for `samples` instants at `stations` stations, and if wanted for the internal wrench and the water's
-        load."""
-        places, size = _places(samples, stations, bool(wrench), bool(load), fins)
-        return Observations(np.zeros(size), places)
+        load. samples: None for one instant."""
+        self.places, size = _places(samples, stations, bool(wrench), bool(load), fins)
+        self.whole = np.zeros(size)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Observations) or type(self) is not type(other):
@@ -136,8 +127,7 @@ class Snapshot(Observations):
         ledger: tuple[np.ndarray, float] | None = None,
         joints: Any = None,
     ):
-        places, size = _places_of_instant(len(x), wrench, load, fins)
-        super().__init__(np.zeros(size), places)
+        super().__init__(None, len(x), wrench, load, fins)
         self.time, self.x, self._joints = time, x, joints
         self._ledger = ledger
         self._energy: EnergyLedger | None = None
@@ -177,18 +167,14 @@ def size_of(samples: int, stations: int, wrench: bool, load: bool) -> int:
 
 
 @lru_cache(maxsize=64)
-def _places(samples: int, stations: int, wrench: bool, load: bool, fins: int = 0) -> tuple[Places, int]:
+def _places(samples: int | None, stations: int, wrench: bool, load: bool, fins: int = 0) -> tuple[Places, int]:
     """The places of all quantities, and how many numbers these hold."""
     places: Places = {}
     end = 0
-    for name, (begin, instants, numbers, of) in eel_core.layout(samples, stations, wrench, load, fins).items():
-        shape = (instants, *((), (stations,), (fins,))[of], *(() if name == "fin_angle" else (numbers,)))
-        end = begin + int(np.prod(shape))
-        places[name] = slice(begin, end), shape
+    for name, (begin, instants, numbers, of) in eel_core.layout(
+        1 if samples is None else samples, stations, wrench, load, fins
+    ).items():
+        shape = (*((), (stations,), (fins,))[of], *(() if name == "fin_angle" else (numbers,)))
+        end = begin + instants * math.prod(shape)
+        places[name] = slice(begin, end), (instants, *shape) if samples is not None else shape if instants else None
     return places, end
-
-
-@lru_cache(maxsize=64)
-def _places_of_instant(stations: int, wrench: bool, load: bool, fins: int) -> tuple[Places, int]:
-    places, size = _places(1, stations, wrench, load, fins)
-    return {name: (where, shape[1:] if shape and shape[0] else None) for name, (where, shape) in places.items()}, size

@@ -9,7 +9,7 @@ from eel_base.wording import shown
 from eel_model.axes import REP103, turn_vector, turned
 
 from eel_dynamics.runs.storage import plain
-from eel_dynamics.runs.storage.variables import COUNTS, ENERGY, LEDGER, OWN, Contents, fields_of_arrays
+from eel_dynamics.runs.storage.variables import COUNTS, ENERGY, OWN, Contents, fields_of_arrays
 from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS
 
 OF_EACH = {  # fields of a run, and of a batch, whose swimmers have their own
@@ -42,7 +42,7 @@ def arrays_of_run(run: Any) -> dict[str, np.ndarray]:
     """The arrays of a `Run` by their names in `VARIABLES`; those that it has not are left out."""
     arrays = {name: getattr(run, name) for name in OWN if getattr(run, name) is not None}
     arrays = {name: each for name, each in arrays.items() if each.size or name not in JOINT_ARRAYS}  # of no joints
-    return arrays | ({} if run.energy is None else {ENERGY + name: run.energy[name] for name in LEDGER})
+    return arrays | ({} if run.energy is None else {ENERGY + name: each for name, each in vars(run.energy).items()})
 
 
 def fields_of_run(contents: Contents) -> dict[str, Any]:
