@@ -137,16 +137,18 @@ def gym() -> Lines:
     _steps(env, actions, first=0)
     steps, rejected, evaluations = (count / STEPS for count in env.swimmers.evaluations(0))
     yield "a control step of Eel/Depth-v0", evaluations, f"evaluations, {steps:.1f} steps and {rejected:.1f} rejected"
-    envs = {threads: gymnasium.make_vec("Eel/Heading-v0", num_envs=SWIMMERS, threads=threads) for threads in (1, 2)}
-    for greatest in (0.0, 0.2):
-        actions = np.random.default_rng(1).uniform(-greatest, greatest, (STEPS, SWIMMERS, 1))
-        steps = {threads: partial(_steps, each, actions) for threads, each in envs.items()}
+    for count, greatest in ((SWIMMERS, 0.0), (SWIMMERS, 0.2), (2 * SWIMMERS, 0.2)):
+        actions = np.random.default_rng(1).uniform(-greatest, greatest, (STEPS, count, 1))
+        steps = {
+            threads: partial(_steps, gymnasium.make_vec("Eel/Heading-v0", num_envs=count, threads=threads), actions)
+            for threads in (1, 2)
+        }
         (seconds,) = times_in_turn({1: steps[1]}, 5).values()
-        rate = SWIMMERS * (STEPS + FIRST) / statistics.median(seconds)
-        yield f"{SWIMMERS} at once, actions up to {greatest:g}", rate, "control steps per CPU second, starts included"
+        rate, named = count * (STEPS + FIRST) / statistics.median(seconds), f"actions up to {greatest:g}"
+        yield f"{count} at once, {named}", rate, "control steps per CPU second, starts included"
         wall = times_in_turn(steps, 5, time.perf_counter)
         gain = median_ratio(wall[1], wall[2])
-        yield f"2 threads, actions up to {greatest:g}", gain, "times as fast as 1 thread, wall time"
+        yield f"2 threads, {count} at once, {named}", gain, "times as fast as 1 thread, wall time"
     most = two_processes_by_one(steps[1])
     yield "2 processes", most, "times as much as 1, wall time: the most that 2 threads can gain here"
 

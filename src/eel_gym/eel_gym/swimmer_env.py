@@ -184,7 +184,8 @@ class SwimmerEnv(Task):
         Returns the observation, the reward, whether the episode is terminated, and truncated, of one swimmer or (N,);
         and why swimmers could not go on, by their index. These have no reward.
         """
-        self.swimmers.wake()
+        if self.shape:
+            self.swimmers.wake()
         rows = self.action.advance(actions, self.numbers.control_period)
         self._add_trim(rows, self._trim)
         self.ticks += 1

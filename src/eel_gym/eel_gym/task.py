@@ -2,6 +2,7 @@
 """What a task defines: its numbers, what the policy sees, reward and end; and the state that it does so from."""
 
 import inspect
+import math
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar, NamedTuple
 
@@ -21,6 +22,7 @@ from eel_gym.law_action import LawAction
 
 Action = LawAction | KnotAction | JointAction
 FASTEST, SPIN, FARTHEST = 10.0, 50.0, 100.0  # m/s, rad/s, m: bounds of what is observed
+LEAST, MOST = np.array(-1.0), np.array(1.0)  # of an action; faster with arrays than floats
 GREATEST_START_SPEED = 0.5  # m/s, that the tasks draw: near that of straight()
 
 
@@ -143,10 +145,10 @@ class Task(gymnasium.Env[Any, Any]):
             values = np.asarray(action, dtype=float)
         except (TypeError, ValueError):
             values = np.empty(0)
-        if values.shape != shape or np.count_nonzero(np.isfinite(values)) < values.size:
+        if values.shape != shape or not all(map(math.isfinite, values.ravel().tolist())):
             wanted = f"{'actions' if self.shape else 'action'} must be {' x '.join(map(str, shape))} finite numbers"
             raise gymnasium.error.InvalidAction(f"{wanted}, got {shown(action)}")
-        return np.asarray(np.minimum(np.maximum(values, -1.0), 1.0))
+        return np.asarray(np.minimum(np.maximum(values, LEAST), MOST))
 
     def describe(self) -> str:
         """One line for each number of the observation and of the action, with unit and bounds."""

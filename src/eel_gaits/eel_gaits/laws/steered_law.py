@@ -131,8 +131,8 @@ class SteeredLaw:
             if self.values[name] is not self._rest[name]:
                 value, rate, acceleration = self.values[name]
                 factors[self._places(bent, count - 1)] = -value, -rate, -acceleration
-        rows = np.asarray(factors).T.reshape(-1, count).dot(self._rows)
-        return np.asarray(rows.reshape(*self._swimmers, 6, points))
+        rows: np.ndarray = np.asarray(factors).T.reshape(-1, count).dot(self._rows)
+        return rows.reshape(*self._swimmers, 6, points)
 
     def _places(self, axis: str, row: int) -> slice:
         """Where factors of a row are: those of the value, the rate and the acceleration about an axis."""

@@ -43,6 +43,10 @@ class Threads {
     void run(std::size_t items, const Task& task)
     {
         const std::size_t count = shares_.size();
+        if (count == 1) {
+            for (std::size_t item = 0; item < items; ++item) task(item);
+            return;
+        }
         for (std::size_t k = 0; k < count; ++k)
             shares_[k].next = k * items / count, shares_[k].end = (k + 1) * items / count;
         task_ = &task;
@@ -62,7 +66,6 @@ class Threads {
 
     void call(State state)
     {
-        if (helpers_.empty()) return;
         {
             const std::scoped_lock lock(mutex_);
             state_ = state, ++calls_;
