@@ -2,6 +2,7 @@
 """A run of the three nodes and the recorder as processes over DDS, and what it leaves, read back."""
 
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -19,11 +20,17 @@ class Results:
 
     def messages(self, topic: str) -> list:
         """All messages of a topic in the bag, in order."""
+        return self._by_topic()[topic]
+
+    @cache  # noqa: B019
+    def _by_topic(self) -> dict[str, list]:
         from rosbags.highlevel import AnyReader
 
+        found: dict[str, list] = {}
         with AnyReader([self.bag]) as reader:
-            connections = [connection for connection in reader.connections if connection.topic == topic]
-            return [reader.deserialize(raw, connection.msgtype) for connection, _, raw in reader.messages(connections)]
+            for connection, _, raw in reader.messages():
+                found.setdefault(connection.topic, []).append(reader.deserialize(raw, connection.msgtype))
+        return found
 
     def topics(self) -> dict[str, int]:
         """Topic: number of messages in the bag."""

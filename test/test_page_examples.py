@@ -36,11 +36,6 @@ def blocks(page: Path, language: str) -> list[str]:
     return [text for listing, name, text in BLOCK.findall(page.read_text()) if name == language and not listing]
 
 
-def with_blocks(language: str):
-    """Pages that have some, as parameters."""
-    return [pytest.param(page, id=page.stem) for page in PAGES if blocks(page, language)]
-
-
 def run_python(page: Path) -> dict:
     """The name space that the Python blocks of a page leave."""
     space: dict = {"__name__": "__main__"}
@@ -121,29 +116,20 @@ def folder(tmp_path, monkeypatch):
         yield tmp_path
 
 
-def write_scene(page: Path, folder: Path):
-    """The scene that the page `scenes` shows, as the file that its examples read."""
-    if page.stem == "scenes":
-        (folder / "scene.yaml").write_text(blocks(page, "yaml")[0])
-
-
 @pytest.mark.filterwarnings("ignore")
-@pytest.mark.parametrize("page", with_blocks("python"))
-def test_python_of_a_page_runs(page, folder):
+@pytest.mark.parametrize(
+    "page", [pytest.param(page, id=page.stem) for page in PAGES if blocks(page, "python") or blocks(page, "")]
+)
+def test_python_of_a_page_runs_and_its_shell_names_what_exists(page, folder):
+    """In one folder: some commands read files that the Python before them has written, or the measured files."""
+    (folder / "docs").symlink_to(ROOT / "docs")
     if page.stem == "bag_to_figure":
         write_bag(folder / "bag", simulate(straight(period=0.8), 4.0, sample_period=0.02, load=True))
-    write_scene(page, folder)
+    if page.stem == "scenes":
+        (folder / "scene.yaml").write_text(blocks(page, "yaml")[0])
     space = run_python(page)
     if page.stem == "own_controller":
         assert space["heading"] > 0.3  # it turns left
-
-
-@pytest.mark.parametrize("page", with_blocks(""))
-def test_shell_of_a_page_names_what_exists(page, folder):
-    if page.stem in ("motions", "own_body", "identify"):
-        run_python(page)  # writes the file that its commands read
-        (folder / "docs").symlink_to(ROOT / "docs")  # the measured files
-    write_scene(page, folder)
     for block in blocks(page, ""):
         for words in lines_of(block):
             check(words)

@@ -24,7 +24,7 @@ from eel_viz import entities
 )
 @pytest.mark.parametrize("times", [1, pytest.param(10, marks=pytest.mark.soak)])
 def test_a_recorder_that_is_ended_with_the_run_has_every_sample(start, fresh_domain, tmp_path, times):
-    duration, count = 15, 1501
+    duration, count = 10, 1001
     start("gait_generator")
     for turn in range(times):
         recorder = start("record", "-o", str(tmp_path / f"bag{turn}"))
@@ -62,9 +62,9 @@ def swim(start, *settings):
 def test_a_disk_that_is_full(start, fresh_domain, tmp_path):
     """A limit on the size of files stands in for it: the operating system refuses to write in the same way."""
     (tmp_path / "run.rrd").write_bytes(b"RRF2 of yesterday")
-    node = visualise(start, "sink:=[save]", f"recording:={tmp_path / 'run.rrd'}", limit_of_files=5000)
+    node = visualise(start, "sink:=[save]", f"recording:={tmp_path / 'run.rrd'}", limit_of_files=2000)
     node.wait_for_output("saving to")
-    dynamics = swim(start, "real_time_factor:=0", "duration:=20", "wait_for_subscribers:=1")
+    dynamics = swim(start, "real_time_factor:=0", "duration:=8", "wait_for_subscribers:=1")
     node.wait_for_output("cannot be written any more: File too large; it ends here", LIMIT)
     assert dynamics.wait(LIMIT) == 0 and "stuck" not in dynamics.output(), dynamics.output()
     assert node.interrupt() == 1 and "Traceback" not in node.output(), node.output()
@@ -154,7 +154,7 @@ def test_a_viewer_that_stops_reading_or_is_killed(start, fresh_domain, tmp_path)
     late = visualise(start, "sink:=[connect]", address)
     late.wait_for_output("does not answer: it is tried again while running")
     assert late.interrupt() == 0 and "Traceback" not in late.output(), late.output()
-    dynamics = swim(start, "real_time_factor:=0", "duration:=20", "wait_for_subscribers:=2")
+    dynamics = swim(start, "real_time_factor:=0", "duration:=10", "wait_for_subscribers:=2")
     for each in (node, brief):
         each.wait_for_output("the viewer has not read for 2 s", LIMIT)
     assert brief.interrupt() == 0, brief.output()

@@ -20,13 +20,16 @@ def coordinates_of(simulation):
     return now, *(row[0, slice(*core.row[name])] for name in ("x", "rate", "acceleration"))
 
 
-@pytest.mark.parametrize("settings", [{}, {"metacentric_height": 0.02}, {"reactive": False, "resistive": False}])
-def test_accelerations_are_those_of_lagrange_s_equations(settings):
+@pytest.mark.parametrize(
+    ("settings", "times"),
+    [({}, (0.3, 0.83)), ({"metacentric_height": 0.02}, (0.83,)), ({"reactive": False, "resistive": False}, (0.3,))],
+)
+def test_accelerations_are_those_of_lagrange_s_equations(settings, times):
     settings = settings | {"friction": "laminar"}
     reference = BentReference(boyer_body(), MIXED, scene(**settings), law=WAVE, panels_per_span=2, nodes_per_panel=14)
     simulation = Simulation(robot=MIXED, law=WAVE, scene=Scene(**settings), accuracy="fine", stations=11)
     modes = len(reference.owner)
-    for time in (0.3, 0.83):
+    for time in times:
         simulation.advance(time)
         now, x, rate, acceleration = coordinates_of(simulation)
         up = np.array([0.0, 0.0, 1.0])

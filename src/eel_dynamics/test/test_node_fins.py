@@ -57,9 +57,11 @@ def test_commands_reach_the_fins_between_two_samples_as_in_the_library(start, cl
     assert states[stamp].position[2] > 0.1
 
 
-@pytest.mark.parametrize("text", ["top station=0.2", "pair station=0.2", "pair station=2 area=0.001 aspect_ratio=2.5"])
-def test_fins_that_do_not_fit_are_refused(start, text):
-    assert start("dynamics", "--ros-args", "-p", f"fins:={text}").wait(LIMIT) == 2
+def test_fins_that_do_not_fit_are_refused(start_in_turn):
+    texts = "top station=0.2", "pair station=0.2", "pair station=2 area=0.001 aspect_ratio=2.5"
+    lines = [["--ros-args", "-p", f"fins:={text}"] for text in texts]
+    for status, said in start_in_turn("eel_dynamics.ros.node", lines):
+        assert status == 2 and said.startswith("dynamics: ") and said.count("\n") == 1, said
 
 
 def test_the_text_of_fins_is_read_again(tmp_path):

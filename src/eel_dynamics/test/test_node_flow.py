@@ -391,7 +391,7 @@ def test_bad_samples_are_refused(start, client):
 @pytest.mark.fault(
     "samples",
     "a sample of 20,000 points, or of a million",
-    "refused: at most 1601 points, at most 2 MiB",
+    "refused: at most 1601 points",
 )
 @pytest.mark.fault(
     "samples",
@@ -404,21 +404,20 @@ def test_samples_of_too_many_points_and_too_many_of_them_are_refused(start, clie
     node = start("dynamics", "--ros-args")
     swim.until_time(0.2, "curvature")
     swim.until(lambda: swim.samples.get_subscription_count() == 1, "the node's subscription")
-    for points, said in (
-        (20_000, "curvature samples refused: x must have at most 1601 points, got 20000"),
-        (1_000_000, "ValueError: it must have at most 2097152 bytes, got 56000"),
-    ):
+    for points in (20_000, 1_000_000):
+        said = f"curvature samples refused: x must have at most 1601 points, got {points}"
         message, row = instant(1.0), array.array("d", bytes(8 * points))
         for name in ("x", *ROWS):
             setattr(message, name, row)
         swim.spin(1.1)  # errors of one kind are said once a second
         swim.samples.publish(message)
         swim.until(lambda said=said: said in node.output(), said)
+    before = len(node.output())
     x = np.linspace(0.0, 1.0, 1601)
     rows = {name: array.array("d", bytes(8 * 1601)) for name in ROWS}
     begin = swim.stop_the_clock("curvature") + 0.1
     swim.deliver([CurvatureSamples(header=instant(begin + 2.0 * k).header, x=x.tolist(), **rows) for k in range(600)])
-    assert "refused" not in node.output().partition("2097152")[2]
+    assert "refused" not in node.output()[before:]
     swim.spin(1.1)
     begin += 1200.0
     swim.deliver([CurvatureSamples(header=instant(begin + 2.0 * k).header, x=x.tolist(), **rows) for k in range(30)])

@@ -238,23 +238,17 @@ def test_a_torque_limit_is_lowered_in_mid_run_until_the_robot_cannot_follow(star
 
 
 @pytest.mark.fault("parameters", "a robot that there is not, or interfaces that do not fit", "status 2, with one line")
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
+def test_a_robot_that_does_not_fit_ends_the_start(start_in_turn):
+    cannot_be = {
         (
-            ("robot:=ten_servos",),
-            "robot must be one of eight_servos, sixteen_servos, series_elastic, passive_tail, a file",
-        ),
-        (("robot:=none.yaml",), "robot file 'none.yaml': there is no such file"),
-        (("servo_torque_limit:=0.2",), "servo_torque_limit must be 0 without servos, got 0.2 N m with robot ''"),
-        (("robot:=eight_servos", "yaw_joints:=3"), "yaw_joints and pitch_joints must be 0 with a robot"),
-        (
-            ("robot:=eight_servos", "command_interfaces:=[force]"),
-            "command_interfaces must be one of position, velocity",
-        ),
-        (("robot:=eight_servos", "command_interfaces:=[effort, effort]"), "or one for each of 8 joints, got 2"),
-    ],
-)
-def test_a_robot_that_does_not_fit_ends_the_start(start, words, told):
-    node = start("dynamics", "--ros-args", *(word for each in words for word in ("-p", each)))
-    assert node.wait(LIMIT) == 2 and told in node.output(), node.output()
+            "robot:=ten_servos",
+        ): "robot must be one of eight_servos, sixteen_servos, series_elastic, passive_tail, a file",
+        ("robot:=none.yaml",): "robot file 'none.yaml': there is no such file",
+        ("servo_torque_limit:=0.2",): "servo_torque_limit must be 0 without servos, got 0.2 N m with robot ''",
+        ("robot:=eight_servos", "yaw_joints:=3"): "yaw_joints and pitch_joints must be 0 with a robot",
+        ("robot:=eight_servos", "command_interfaces:=[force]"): "command_interfaces must be one of position, velocity",
+        ("robot:=eight_servos", "command_interfaces:=[effort, effort]"): "or one for each of 8 joints, got 2",
+    }
+    lines = [["--ros-args", *(word for each in given for word in ("-p", each))] for given in cannot_be]
+    for told, (status, said) in zip(cannot_be.values(), start_in_turn("eel_dynamics.ros.node", lines), strict=True):
+        assert status == 2 and said.count("\n") == 1 and told in said, said

@@ -136,27 +136,6 @@ def test_start_in_ros_frames(start, client):
     assert last.y - first.y > 0.5 and abs(last.x - first.x) < 0.1
 
 
-def test_two_eels_in_namespaces(start, client):
-    clients = {name: client(topics=("head_pose",), namespace=name) for name in ("left", "right")}
-    for name, amplitude in (("left", 1.0), ("right", 2.0)):
-        clients[name].laws.publish(law_to_message(falling(pitch_bend=amplitude)))
-    nodes = [
-        start("dynamics", "--ros-args", "-r", f"__ns:=/{name}", *FLAT_OUT, "-p", "duration:=2") for name in clients
-    ]
-    for node in nodes:
-        assert node.wait(LIMIT) == 0, node.output()
-    for name, client in clients.items():
-        client.until(lambda client=client: len(client.received["head_pose"]) >= 201, "201 samples")
-        client.until(
-            lambda client=client, name=name: any(
-                m.status[0].name == f"/{name}/dynamics" for m in client.received["/diagnostics"]
-            ),
-            "diagnostics",
-        )
-    ends = [client.received["head_pose"][-1].pose for client in clients.values()]
-    assert ends[0] != ends[1]
-
-
 @pytest.mark.fault(
     "laws",
     "a law that no body can swim, in a run with a duration, as fast as possible",

@@ -2,7 +2,6 @@
 """Water that moves, over DDS: the parameter flow, the topics current and flow_at_head."""
 
 import numpy as np
-import pytest
 from eel_gaits.ros.messages import law_to_message
 from geometry_msgs.msg import Vector3Stamped
 from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -79,14 +78,17 @@ def test_a_scene_s_file_gives_the_node_its_flow(start, client, tmp_path):
     ]
 
 
-@pytest.mark.parametrize("text", ["maelstrom", "shear width=0", "nowhere.nc"])
-def test_a_flow_that_does_not_fit_is_refused_at_the_start_and_later(start, client, text):
-    node = start("dynamics", "--ros-args", "-p", f"flow:={text}")
-    assert node.wait(LIMIT) == 2
+def test_a_flow_that_does_not_fit_is_refused_at_the_start_and_later(start, start_in_turn, client):
+    cannot_be = "maelstrom", "shear width=0", "nowhere.nc"
+    for status, said in start_in_turn(
+        "eel_dynamics.ros.node", [["--ros-args", "-p", f"flow:={text}"] for text in cannot_be]
+    ):
+        assert status == 2 and said.startswith("dynamics: ") and said.count("\n") == 1, said
     swim = client(topics=())
     start("dynamics", "--ros-args")
-    (result,) = swim.set(flow=text)
-    assert not result.successful and ("flow" in result.reason or "width" in result.reason)
+    for text in cannot_be:
+        (result,) = swim.set(flow=text)
+        assert not result.successful and ("flow" in result.reason or "width" in result.reason)
     (result,) = swim.set(flow="shear width=2.0")
     assert result.successful and swim.get("flow") == ["shear width=2.0"]
     assert swim.reset().success

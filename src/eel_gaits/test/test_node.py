@@ -289,25 +289,17 @@ def test_bad_parameters_at_start_are_one_line_each_and_status_2(start_in_turn):
         assert status == 2 and said.startswith(line) and said.count("\n") == 1, said
 
 
-def test_a_bad_params_file_ends_it_with_status_2(start, tmp_path):
+@pytest.mark.fault("names", "words for the gait generator that are no ROS arguments", "one line, status 2")
+def test_a_bad_params_file_or_a_word_that_is_no_ros_argument_ends_it_with_status_2(start_in_turn, tmp_path):
     file = tmp_path / "parameters.yaml"
     file.write_text("gait_generator:\n  ros__parameters:\n    gait: turning\n    left_bend: 1e9\n")
-    process = start("gait_generator", "--ros-args", "--params-file", str(file))
-    assert process.wait(90.0) == 2
-    assert process.output() == "gait_generator: left_bend must be <= 100000 rad/m, got 1000000000.0\n"
-    process = start("gait_generator", "--ros-args", "--params-file", str(tmp_path / "missing.yaml"))
-    assert process.wait(90.0) == 2
-    assert "missing.yaml" in process.output() and "Traceback" not in process.output()
-
-
-@pytest.mark.fault("names", "words for the gait generator that are no ROS arguments", "one line, status 2")
-@pytest.mark.parametrize("before", [(), ("--ros-args", "-p", "period:=2.0", "--")])
-def test_a_word_that_is_no_ros_argument_ends_it_with_one_line_and_status_2(start, before):
-    process = start("gait_generator", *before, "--rosargs", "-p", "period:=2.0")
-    assert process.wait(90.0) == 2
-    assert process.output() == (
-        "gait_generator: unknown argument '--rosargs' (parameters come after --ros-args as -p NAME:=VALUE)\n"
-    )
+    lines = [["--ros-args", "--params-file", str(tmp_path / name)] for name in ("parameters.yaml", "missing.yaml")]
+    lines += [[*before, "--rosargs", "-p", "period:=2.0"] for before in ((), ("--ros-args", "-p", "period:=2.0", "--"))]
+    large, missing, *unknown = start_in_turn("eel_gaits.ros.node", lines)
+    assert large == (2, "gait_generator: left_bend must be <= 100000 rad/m, got 1000000000.0\n")
+    assert missing[0] == 2 and "missing.yaml" in missing[1] and missing[1].count("\n") == 1
+    line = "gait_generator: unknown argument '--rosargs' (parameters come after --ros-args as -p NAME:=VALUE)\n"
+    assert unknown == [(2, line)] * 2
 
 
 def test_help_is_short_and_says_where_the_numbers_of_a_gait_are(start):
@@ -328,8 +320,7 @@ def test_overrides_that_are_no_parameters_are_named(generator):
     assert "not parameters of this node, ignored: 'perod' (did you mean 'period'?)\n" in process.output()
 
 
-@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("delay", [0.0, 0.05, 0.5])
+@pytest.mark.parametrize(("sent", "delay"), [(signal.SIGINT, 0.0), (signal.SIGTERM, 0.05), (signal.SIGINT, 0.5)])
 def test_a_signal_ends_it_promptly_with_status_0(generator, sent, delay):
     process = generator()
     time.sleep(delay)  # the moment of the signal is what is tried here
@@ -339,7 +330,7 @@ def test_a_signal_ends_it_promptly_with_status_0(generator, sent, delay):
 
 
 @pytest.mark.fault("ending", "a second signal while the gait generator ends", "status 0, no traceback")
-@pytest.mark.parametrize("delay", [0.0, 0.04, 0.08, 0.12])
+@pytest.mark.parametrize("delay", [0.0, 0.08, *(pytest.param(each, marks=pytest.mark.soak) for each in (0.04, 0.12))])
 def test_a_second_signal_does_no_harm(generator, delay):
     process = generator()
     process.process.send_signal(signal.SIGINT)

@@ -4,6 +4,8 @@
 The backbone is the integral of the curvature and the sections are orthonormal; the loads are made up.
 """
 
+import math
+
 import numpy as np
 
 STATIONS = 51
@@ -71,25 +73,17 @@ class Swimmer:
     def backbone(self, t: float) -> dict:
         """Positions (M, 3) and orientations (M, 4) by marching the curvature from the head with small rotations."""
         curvature, head = self.curvature(t), self.head(t)
-        position = np.empty((len(self.x), 3))
-        orientation = np.empty((len(self.x), 4))
-        position[0], q = head["position"], np.array(head["orientation"])
-        orientation[0] = q
-        for k in range(len(self.x) - 1):
-            h = self.x[k + 1] - self.x[k]
-            # section axes 2, 3 are -y, +z of base_link
-            turn = h * np.array(
-                [
-                    0.0,
-                    -0.5 * (curvature["pitch"][k] + curvature["pitch"][k + 1]),
-                    0.5 * (curvature["yaw"][k] + curvature["yaw"][k + 1]),
-                ]
-            )
-            middle = _times(q, _small(turn / 2))
-            position[k + 1] = position[k] + _rotate(middle, np.array([-h, 0.0, 0.0]))
-            q = _times(q, _small(turn))
-            orientation[k + 1] = q
-        return {"x": self.x, "position": position, "orientation": orientation}
+        q = tuple(head["orientation"].tolist())
+        positions, orientations = [head["position"].tolist()], [q]
+        step, pitch, yaw = np.diff(self.x), curvature["pitch"], curvature["yaw"]
+        # section axes 2, 3 are -y, +z of base_link
+        turns = np.stack([-0.5 * step * (pitch[:-1] + pitch[1:]), 0.5 * step * (yaw[:-1] + yaw[1:])], axis=1)
+        for h, (y, z) in zip(step.tolist(), turns.tolist(), strict=True):
+            back = _rotated(_times(q, _small(y / 2, z / 2)), -h)
+            positions.append([here + moved for here, moved in zip(positions[-1], back, strict=True)])
+            q = _times(q, _small(y, z))
+            orientations.append(q)
+        return {"x": self.x, "position": np.array(positions), "orientation": np.array(orientations)}
 
     def wrench(self, t: float) -> dict:
         x, ramp = self.x, min(t, 1.0) ** 2
@@ -149,14 +143,23 @@ class Swimmer:
         }
 
 
-def _small(turn: np.ndarray) -> np.ndarray:
-    angle = np.linalg.norm(turn)
-    return np.array([*(turn / 2 * np.sinc(angle / 2 / np.pi)), np.cos(angle / 2)])
+Quaternion = tuple[float, float, float, float]  # numbers of Python: of three or four they are faster than arrays
 
 
-def _times(p: np.ndarray, q: np.ndarray) -> np.ndarray:
-    return np.array([*(p[3] * q[:3] + q[3] * p[:3] + np.cross(p[:3], q[:3])), p[3] * q[3] - p[:3] @ q[:3]])
+def _small(y: float, z: float) -> Quaternion:
+    """The rotation by the vector (0, y, z)."""
+    angle = math.hypot(y, z)
+    share = math.sin(angle / 2) / angle if angle else 0.5
+    return 0.0, share * y, share * z, math.cos(angle / 2)
 
 
-def _rotate(q: np.ndarray, v: np.ndarray) -> np.ndarray:
-    return v + 2 * np.cross(q[:3], np.cross(q[:3], v) + q[3] * v)
+def _times(p: Quaternion, q: Quaternion) -> Quaternion:
+    (a, b, c, d), (e, f, g, h) = p, q
+    vector = d * e + h * a + b * g - c * f, d * f + h * b + c * e - a * g, d * g + h * c + a * f - b * e
+    return *vector, d * h - a * e - b * f - c * g
+
+
+def _rotated(q: Quaternion, along: float) -> tuple[float, float, float]:
+    """The vector (along, 0, 0), rotated."""
+    a, b, c, d = q
+    return along * (1.0 - 2.0 * (b * b + c * c)), along * 2.0 * (a * b + c * d), along * 2.0 * (a * c - b * d)

@@ -18,13 +18,14 @@ def sample(swimmer: made_up.Swimmer, stamp: int) -> dict:
     """What `Loggers` is given at `stamp` [ns]: method name to arguments."""
     t = stamp * 1e-9
     head, curvature, wrench, load = swimmer.head(t), swimmer.curvature(t), swimmer.wrench(t), swimmer.load(t)
+    backbone = swimmer.backbone(t)
     pose = messages.Pose(position=head["position"], orientation=head["orientation"])
     twist = messages.Twist(linear=head["linear"], angular=head["angular"])
     return {
         "head_pose": (pose,),
         "head_twist": (twist,),
         "odom": (pose, twist),
-        "backbone": (messages.Backbone(**swimmer.backbone(t)),),
+        "backbone": (messages.Backbone(**backbone),),
         "curvature": (profiles(curvature, messages.CURVATURE_FIELDS),),
         "internal_wrench": (profiles(wrench, messages.WRENCH_FIELDS),),
         "hydrodynamic_load": (
@@ -36,7 +37,7 @@ def sample(swimmer: made_up.Swimmer, stamp: int) -> dict:
                 fins=load["fin_force"],
             ),
         ),
-        "flow_vectors": (swimmer.backbone(t)["position"], swimmer.water(t)),
+        "flow_vectors": (backbone["position"], swimmer.water(t)),
         "energy": (swimmer.energy(t),),
     }
 

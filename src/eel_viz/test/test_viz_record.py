@@ -253,22 +253,17 @@ def test_a_folder_that_is_there_is_refused(start, tmp_path):
 
 
 @pytest.mark.fault("parameters", "a duration or a timeout of 0, below 0 or nan", "one line, status 2; nothing is made")
-@pytest.mark.parametrize(
-    ("words", "line"),
-    [
-        (("record", "-o", "bag", "--duration", "nan"), "eel record: --duration must be > 0 s, got nan"),
-        (("record", "-o", "bag", "--duration", "-1"), "eel record: --duration must be > 0 s, got -1"),
-        ((*ECHO, "x", "--timeout", "nan"), "eel echo: --timeout must be > 0 s, got nan"),
-        ((*ECHO, "x", "--timeout", "0"), "eel echo: --timeout must be > 0 s, got 0"),
-    ],
-)
-def test_a_time_that_cannot_be_is_refused_in_one_line(start, tmp_path, monkeypatch, words, line):
+def test_a_time_that_cannot_be_is_refused_in_one_line(start_in_turn, tmp_path, monkeypatch):
     folder = tmp_path / "empty"
     folder.mkdir()
     monkeypatch.chdir(folder)
-    process = start(*words)
-    assert process.wait(90.0) == 2
-    assert process.output() == line + "\n"
+    for module, words, given in (
+        ("record", ("-o", "bag", "--duration"), ("nan", "-1")),
+        ("echo", ("x", "--timeout"), ("nan", "0")),
+    ):
+        lines = [[*words, each] for each in given]
+        for each, answer in zip(given, start_in_turn(f"eel_viz.ros.{module}", lines), strict=True):
+            assert answer == (2, f"eel {module}: {words[-1]} must be > 0 s, got {each}\n")
     assert list(folder.iterdir()) == []
 
 

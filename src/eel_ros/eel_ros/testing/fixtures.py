@@ -30,10 +30,13 @@ MARKERS = (
 STARTS_IN_TURN = """
 import contextlib, importlib, io, json, sys
 main = importlib.import_module(sys.argv[1]).main
-for words in json.loads(sys.argv[2]):
+for words in json.load(open(sys.argv[2])):
     sys.argv = ["node", *words]
     with contextlib.redirect_stderr(io.StringIO()) as said:
-        status = main()
+        try:
+            status = main()
+        except SystemExit as end:
+            status = end.code
     print(json.dumps([status, said.getvalue()]), flush=True)
 """
 
@@ -113,12 +116,14 @@ def start_to_kill(tmp_path: Any) -> Any:
 
 
 @pytest.fixture
-def start_in_turn(start: Any) -> Any:
-    """start_in_turn(module, [words, ...]) -> [(status, what it said), ...]: the `main` of a node's module with one
-    command line after the other, each of which it refuses; in one process, as imports take most of a start."""
+def start_in_turn(start: Any, tmp_path: Path) -> Any:
+    """start_in_turn(module, [words, ...]) -> [(status, what it said), ...]: the `main` of a node's or command's module
+    with one command line after the other, each of which it refuses; in one process, as imports take most of a start."""
 
     def start_all(module: str, lines: list[list[str]]) -> list[tuple[int, str]]:
-        process = start(sys.executable, "-c", STARTS_IN_TURN, module, json.dumps(lines))
+        given = tmp_path / "lines.json"
+        given.write_text(json.dumps(lines))
+        process = start(sys.executable, "-c", STARTS_IN_TURN, module, str(given))
         assert process.wait(90.0) == 0, process.output()
         answers = [tuple(json.loads(line)) for line in process.output().splitlines() if "compiling" not in line]
         assert len(answers) == len(lines)
