@@ -28,7 +28,7 @@ def gust(flow):
         return 0.0 if np.real(part) < 0 else 1.0 if np.real(part) > 1 else part - np.sin(2 * np.pi * part) / (2 * np.pi)
 
     def u(x, t):
-        start, risen, falls, end = flow.breakpoints
+        start, risen, falls, end = flow.traits.breakpoints
         return 0 * x + np.array(flow.velocity) * (ramp(t, start, risen) - ramp(t, falls, end))
 
     return u

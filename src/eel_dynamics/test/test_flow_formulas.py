@@ -163,4 +163,4 @@ def test_a_wave_satisfies_laplace_s_equation_and_turns_as_deep_water_does():
     sample = flow.sample([0.3, 0.1, -0.4], 0.2)
     assert abs(np.trace(sample.jacobian)) < 1e-15
     assert np.allclose(sample.jacobian, sample.jacobian.T)
-    assert np.isclose((2 * np.pi / flow.time_scale) ** 2, 9.80665 * 2 * np.pi / 4.0)
+    assert np.isclose((2 * np.pi / flow.traits.time_scale) ** 2, 9.80665 * 2 * np.pi / 4.0)

@@ -175,7 +175,7 @@ class March:
         """Continue under the follower's law. The next step begins anew, unless the motion goes on `smoothly`."""
         setup, robot, follower = self.setup, self.robot, self.follower
         self.law_on_grid, self._bounds = follower.law_on_grid, self._step_bounds()
-        flow = () if setup.flow is None else setup.flow.breakpoints
+        flow = () if setup.flow is None else setup.flow.traits.breakpoints
         breakpoints = sorted({*follower.breakpoints, *flow, *knots_of(setup.fins)})  # s: a derivative jumps there
         water = setup.current, setup.core_flow, smoothly, given_angles(setup.fins, self._commands)
         if robot is None:
@@ -189,7 +189,7 @@ class March:
 
     def _step_bounds(self) -> eel_core.StepBounds:
         setup, follower, here = self.setup, self.follower, self.discretisation
-        of_flow = np.inf if setup.flow is None else setup.flow.time_scale
+        of_flow = np.inf if setup.flow is None else setup.flow.traits.time_scale
         return step_bounds_of(
             accuracy=setup.settings,
             ledger=bool(setup.scene.ledger),
@@ -277,7 +277,7 @@ class March:
         height, flow = self.core.state[2], self.setup.flow
         if status != MARCHED and self.core.outside is not None:
             stopped = self._left_grid(self.core.outside)
-        elif flow is not None and height > flow.surface_height:
+        elif flow is not None and height > flow.traits.surface_height:
             what = "the head is above the surface of the flow, z"
             stopped = SimulationStopped(self.time, what, height, "dive deeper")
         else:

@@ -116,7 +116,7 @@ class SampledSwimmers:
     def _check_flow(self, flow: Flow) -> None:
         if any(isinstance(part, FlowField) for part in parts_of(flow)):
             raise ValueError(f"flow must have no functions where many swim side by side, got {shown(flow)}")
-        waves = self.body.length / flow.shortest_wave
+        waves = self.body.length / flow.traits.shortest_wave
         if waves > MOST_WAVES:
             raise ValueError(f"flow must have at most {MOST_WAVES:g} waves on the body, got {waves:.3g}: {shown(flow)}")
 
@@ -162,7 +162,7 @@ class SampledSwimmers:
 
     def _bounds_of(self, setup: SimulationSetup) -> eel_core.StepBounds:
         """The bounds of the steps of a swimmer that starts as its `setup` has it."""
-        of_flow = np.inf if setup.flow is None else setup.flow.time_scale
+        of_flow = np.inf if setup.flow is None else setup.flow.traits.time_scale
         return step_bounds_of(
             accuracy=self.accuracy,
             ledger=bool(self.scene.ledger),

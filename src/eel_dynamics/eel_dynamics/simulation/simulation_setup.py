@@ -98,7 +98,7 @@ class SimulationSetup(EqualByFields):
     def grid_for(self, needs: ShapeNeeds) -> GridSettings:
         """The settings of the grid for the `needs` of a law, and those of the flow."""
         if self.flow is not None:
-            needs = needs._replace(waves=max(needs.waves, self.body.length / self.flow.shortest_wave))
+            needs = needs._replace(waves=max(needs.waves, self.body.length / self.flow.traits.shortest_wave))
         wanted = GridSettings.of(self.settings, needs)
         of_modes = () if self.modes is None else self.modes.edges
         edges = tuple(sorted({*of_modes, *edges_of(self.body, self.fins, of_modes)}))
@@ -158,7 +158,7 @@ def _checked_start(scene: Scene, position, orientation, twist, flow) -> InitialS
     check_covers(flow, 0.0)
     if flow is not None and (out := flow.outside(0.0, start.position)):
         raise ValueError(f"position must lie in the grid of the flow, {out[0]}, got {shown(start.position.tolist())}")
-    if flow is not None and start.position[2] > flow.surface_height:
+    if flow is not None and start.position[2] > flow.traits.surface_height:
         raise ValueError(f"flow surface must be above the head, at z = {start.position[2]:g} m, got {flow!r}")
     return start
 

@@ -6,7 +6,8 @@ the sum of both. Flows add by `+`.
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
+from itertools import chain
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -29,6 +30,16 @@ class FlowSample(NamedTuple):
     jacobian: np.ndarray  # (n, 3, 3) 1/s, du_i/dx_j
 
 
+class FlowTraits(NamedTuple):
+    """What the grid and the steps must know of a flow."""
+
+    breakpoints: tuple[float, ...] = ()  # s, at which a derivative of u by time jumps
+    time_scale: float = np.inf  # s, shortest period of what goes on at a fixed place; infinite where it is steady
+    shortest_wave: float = np.inf  # m, shortest wavelength of u; infinite where it is the same everywhere
+    surface_height: float = np.inf  # m, z of the water's surface; infinite without one
+    span: tuple[float, float] = -np.inf, np.inf  # s, first and last time at which it is known
+
+
 class Flow:
     """A flow of the water. It never changes; two are equal where their fields are.
 
@@ -41,35 +52,15 @@ class Flow:
         """Its sources as `eel_core.Flow` takes them; planar: of a planar scene."""
         raise NotImplementedError
 
-    @property
-    def breakpoints(self) -> tuple[float, ...]:
-        """Times [s] at which a derivative of u by time jumps."""
-        return ()
-
-    @property
-    def time_scale(self) -> float:
-        """Shortest period [s] of what goes on at a fixed place; infinite where it is steady."""
-        return np.inf
-
-    @property
-    def shortest_wave(self) -> float:
-        """Shortest wavelength [m] of u; infinite where it is the same everywhere."""
-        return np.inf
+    @cached_property
+    def traits(self) -> FlowTraits:
+        """Its scales in space and time."""
+        return FlowTraits()
 
     @property
     def in_plane(self) -> bool:
         """Whether u has no part along z and does not depend on it: a planar scene needs that."""
         return not any(np.atleast_2d(getattr(self, name))[:, 2].any() for name in self.vectors)
-
-    @property
-    def surface_height(self) -> float:
-        """Height z [m] of the water's surface; infinite without one."""
-        return np.inf
-
-    @property
-    def span(self) -> tuple[float, float]:
-        """First and last time [s] at which it is known."""
-        return -np.inf, np.inf
 
     def outside(self, time: float, place: ArrayLike) -> tuple[str, float] | None:
         """Where u is not known at a `place` (3,) [m]: the axis and its bounds in words, and the place along it."""
@@ -110,30 +101,16 @@ class FlowSum(Flow):
     def sources(self, planar: bool) -> list[tuple[Any, ...]]:
         return [source for part in self.parts for source in part.sources(planar)]
 
-    @property
-    def breakpoints(self) -> tuple[float, ...]:
-        return tuple(sorted({time for part in self.parts for time in part.breakpoints}))
-
-    @property
-    def time_scale(self) -> float:
-        return min(part.time_scale for part in self.parts)
-
-    @property
-    def shortest_wave(self) -> float:
-        return min(part.shortest_wave for part in self.parts)
+    @cached_property
+    def traits(self) -> FlowTraits:
+        times, periods, waves, heights, spans = zip(*(part.traits for part in self.parts), strict=True)
+        starts, ends = zip(*spans, strict=True)
+        breakpoints = tuple(sorted(set(chain(*times))))
+        return FlowTraits(breakpoints, min(periods), min(waves), min(heights), (max(starts), min(ends)))
 
     @property
     def in_plane(self) -> bool:
         return all(part.in_plane for part in self.parts)
-
-    @property
-    def surface_height(self) -> float:
-        return min(part.surface_height for part in self.parts)
-
-    @property
-    def span(self) -> tuple[float, float]:
-        starts, ends = zip(*(part.span for part in self.parts), strict=True)
-        return max(starts), min(ends)
 
     def outside(self, time: float, place: ArrayLike) -> tuple[str, float] | None:
         return next(filter(None, (part.outside(time, place) for part in self.parts)), None)
@@ -163,8 +140,8 @@ def checked_flow(flow: Any, planar: bool) -> Flow | None:
 
 def check_covers(flow: Flow | None, duration: float) -> None:
     """`ValueError` unless `flow` is known from 0 to `duration` [s]."""
-    if flow is not None and not flow.span[0] <= 0.0 <= duration <= flow.span[1]:
-        start, end = flow.span
+    start, end = FlowTraits().span if flow is None else flow.traits.span
+    if not start <= 0.0 <= duration <= end:
         raise ValueError(f"flow time must cover the run, 0 to {duration:g} s, got {start:g} to {end:g} s")
 
 

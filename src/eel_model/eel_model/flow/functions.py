@@ -3,13 +3,14 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from eel_base.quantity import number
 from eel_base.wording import shown
 
-from eel_model.flow.flow import ROWS, Flow
+from eel_model.flow.flow import ROWS, Flow, FlowTraits
 
 Field = Callable[[np.ndarray, float], Any]
 
@@ -76,13 +77,9 @@ class FlowField(Flow):
 
         return [("function", fill)]
 
-    @property
-    def time_scale(self) -> float:
-        return self.period or np.inf
-
-    @property
-    def shortest_wave(self) -> float:
-        return self.wave or np.inf
+    @cached_property
+    def traits(self) -> FlowTraits:
+        return FlowTraits(time_scale=self.period or np.inf, shortest_wave=self.wave or np.inf)
 
     def _rate(self, x: np.ndarray, time: float) -> np.ndarray:
         if self.rate is not None:

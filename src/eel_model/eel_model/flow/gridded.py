@@ -13,7 +13,7 @@ from eel_base.wording import shown
 from numpy.typing import ArrayLike
 
 from eel_model.equality import same_fields
-from eel_model.flow.flow import Flow
+from eel_model.flow.flow import Flow, FlowTraits
 from eel_model.flow.grid_files import AXES, read_grid
 
 ALONE = (0.0,)  # the points of an axis along which all is the same
@@ -109,21 +109,12 @@ class GriddedFlow(Flow):
     def sources(self, planar: bool) -> list[tuple[Any, ...]]:
         return [("grid", tuple(getattr(self, name) for name in AXES), self.velocity)]
 
-    @property
-    def span(self) -> tuple[float, float]:
-        return (self.time[0], self.time[-1]) if len(self.time) > 1 else (-np.inf, np.inf)
-
-    @property
-    def breakpoints(self) -> tuple[float, ...]:
-        return self.span if len(self.time) > 1 else ()
-
-    @property
-    def time_scale(self) -> float:
-        return self.period or RESOLVED * _finest(self.time)
-
-    @property
-    def shortest_wave(self) -> float:
-        return self.wave or RESOLVED * min(_finest(self.x), _finest(self.y), _finest(self.z))
+    @cached_property
+    def traits(self) -> FlowTraits:
+        time = (self.time[0], self.time[-1]) if len(self.time) > 1 else ()
+        period = self.period or RESOLVED * _finest(self.time)
+        wave = self.wave or RESOLVED * min(map(_finest, (self.x, self.y, self.z)))
+        return FlowTraits(time, period, wave, span=time or FlowTraits().span)
 
     @property
     def in_plane(self) -> bool:

@@ -3,13 +3,14 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from eel_base.quantity import Quantities, checked_row, documented, numbers, quantity
 from eel_base.wording import shown
 
-from eel_model.flow.flow import Flow
+from eel_model.flow.flow import Flow, FlowTraits
 
 GRAVITY = 9.80665  # m/s^2, standard
 TURN = 2.0 * math.pi
@@ -51,13 +52,11 @@ class Uniform(Flow):
         coefficients = np.ascontiguousarray(spline.c[::-1].transpose(1, 0, 2))  # from the constant one on
         return [("spline", np.array(self.time), coefficients)]
 
-    @property
-    def breakpoints(self) -> tuple[float, ...]:
-        return () if self.time is None else (self.time[0], self.time[-1])
-
-    @property
-    def time_scale(self) -> float:
-        return np.inf if self.time is None else FEW_ROWS * float(np.diff(self.time).min())
+    @cached_property
+    def traits(self) -> FlowTraits:
+        if self.time is None:
+            return FlowTraits()
+        return FlowTraits((self.time[0], self.time[-1]), FEW_ROWS * float(np.diff(self.time).min()))
 
 
 @documented
@@ -76,13 +75,13 @@ class Gust(Quantities, Flow):
     fall: float = quantity(1.0, "s", "how long it falls", 0.0, exclusive=True)
 
     def sources(self, planar: bool) -> list[tuple[Any, ...]]:
-        start, risen, falls, end = self.breakpoints
+        start, risen, falls, end = self.traits.breakpoints
         return [("ramped", np.array(self.velocity), [(start, risen, 1.0), (falls, end, -1.0)])]
 
-    @property
-    def breakpoints(self) -> tuple[float, ...]:
+    @cached_property
+    def traits(self) -> FlowTraits:
         risen = self.start + self.rise
-        return self.start, risen, risen + self.hold, risen + self.hold + self.fall
+        return FlowTraits((self.start, risen, risen + self.hold, risen + self.hold + self.fall))
 
 
 @documented
@@ -111,14 +110,10 @@ class Shear(Quantities, Flow):
         across, linear = _unit("flow across", self.across), self.profile == "linear"
         return [("shear", np.array(self.velocity), across, float(across @ self.centre), self.width, linear)]
 
-    @property
-    def time_scale(self) -> float:
-        speed = math.hypot(*self.velocity)
-        return TURN * self.width / speed if speed else np.inf
-
-    @property
-    def shortest_wave(self) -> float:
-        return np.inf if self.profile == "linear" else TURN * self.width
+    @cached_property
+    def traits(self) -> FlowTraits:
+        wave, speed = TURN * self.width, math.hypot(*self.velocity)
+        return FlowTraits((), wave / speed if speed else np.inf, np.inf if self.profile == "linear" else wave)
 
 
 class _Vortices(Flow):
@@ -130,14 +125,11 @@ class _Vortices(Flow):
     core: float
     drift: tuple[float, float, float]
 
-    @property
-    def time_scale(self) -> float:
-        speed = FASTEST_SWIRL * abs(self.circulation) / (TURN * self.core) + math.hypot(*self.drift)
-        return TURN * self.core / speed if speed else np.inf
-
-    @property
-    def shortest_wave(self) -> float:
-        return TURN * self.core
+    @cached_property
+    def traits(self) -> FlowTraits:
+        wave = TURN * self.core
+        speed = FASTEST_SWIRL * abs(self.circulation) / wave + math.hypot(*self.drift)
+        return FlowTraits((), wave / speed if speed else np.inf, wave)
 
 
 @documented
@@ -216,19 +208,12 @@ class Wave(Quantities, Flow):
     def sources(self, planar: bool) -> list[tuple[Any, ...]]:
         direction = np.append(_unit("flow direction", self.direction), 0.0)
         wavenumber = TURN / self.wavelength
-        return [("wave", self.amplitude, wavenumber, TURN / self.time_scale, self.surface, self.phase, direction)]
+        frequency = TURN / self.traits.time_scale
+        return [("wave", self.amplitude, wavenumber, frequency, self.surface, self.phase, direction)]
 
-    @property
-    def time_scale(self) -> float:
-        return math.sqrt(TURN * self.wavelength / GRAVITY)
-
-    @property
-    def shortest_wave(self) -> float:
-        return self.wavelength
-
-    @property
-    def surface_height(self) -> float:
-        return self.surface
+    @cached_property
+    def traits(self) -> FlowTraits:
+        return FlowTraits((), math.sqrt(TURN * self.wavelength / GRAVITY), self.wavelength, self.surface)
 
 
 def _unit(name: str, direction: tuple[float, ...]) -> np.ndarray:

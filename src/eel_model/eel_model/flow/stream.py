@@ -7,11 +7,12 @@ When samples stop, the rate dies out within another interval, and the last veloc
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from eel_model.flow.flow import Flow
+from eel_model.flow.flow import Flow, FlowTraits
 
 SHORTEST = 1e-3  # s, of an interval
 LONGEST = 10.0  # s, of one: a sample after a longer silence begins anew
@@ -39,13 +40,9 @@ class Course(Flow):
         pieces = np.ascontiguousarray(np.stack([u[:-1], v[:-1], square, cube], axis=1))
         return [("spline", np.array(self.knots), pieces)]
 
-    @property
-    def breakpoints(self) -> tuple[float, ...]:
-        return self.knots
-
-    @property
-    def time_scale(self) -> float:
-        return PERIODS * float(np.diff(self.knots).min())
+    @cached_property
+    def traits(self) -> FlowTraits:
+        return FlowTraits(self.knots, PERIODS * float(np.diff(self.knots).min()))
 
 
 class CurrentStream:
