@@ -29,11 +29,6 @@ inline constexpr std::size_t width = 2;
 inline constexpr std::size_t filled =
     8;  // nodes are filled up to a multiple of this on every machine: one grid for all
 
-#if defined(__AVX512F__)
-// Without a mask some operations make GCC 12 warn of its own header (bug 105593).
-inline constexpr __mmask8 all_lanes = 0xff;
-#endif
-
 class Mask;
 
 class Lanes {
@@ -42,10 +37,7 @@ class Lanes {
     using Bits = std::int64_t __attribute__((vector_size(width * sizeof(double))));
 
     Lanes() = default;
-    Lanes(double value)  // NOLINT(google-explicit-constructor): a double counts for all lanes
-        : Lanes(value, std::make_index_sequence<width>())
-    {
-    }
+    Lanes(double value) : native_(value - Native{}) {}  // NOLINT(google-explicit-constructor): counts for all lanes
     explicit Lanes(Native native) : native_(native) {}
 
     // From and to neighbouring doubles, which need not be aligned.
@@ -70,11 +62,6 @@ class Lanes {
   private:
     // The same in memory, unaligned. Unlike memcpy it tells GCC that a store changes doubles alone.
     using Neighbours __attribute__((aligned(alignof(double)))) = Native;
-
-    template <std::size_t... Lane>
-    Lanes(double value, std::index_sequence<Lane...>) : native_{(static_cast<void>(Lane), value)...}
-    {
-    }
 
     Native native_;
 };
@@ -110,12 +97,9 @@ class Mask {
 #if defined(__AVX512F__)
         return Mask(static_cast<Native>(count < width ? (1u << count) - 1u : ~0u));
 #else
-        Native number, limit;
-        for (std::size_t lane = 0; lane < width; ++lane) {
-            number[lane] = static_cast<std::int64_t>(lane);
-            limit[lane] = static_cast<std::int64_t>(count);
-        }
-        return Mask(number < limit);
+        Native number;
+        for (std::size_t lane = 0; lane < width; ++lane) number[lane] = static_cast<std::int64_t>(lane);
+        return Mask(number < static_cast<std::int64_t>(count));
 #endif
     }
 
@@ -179,7 +163,7 @@ inline Lanes with_sign_of(Lanes value, Lanes sign)
 
 // -- functions
 
-// What `of` gives for each lane by itself.
+// What `of` gives for each lane by itself. Compilers take all lanes at once where the processor can.
 template <class Of>
 Lanes lane_by_lane(Lanes value, const Of& of)
 {
@@ -194,25 +178,13 @@ inline Lanes abs(Lanes value) { return with_sign_of(value, Lanes(1.0)); }
 inline double sqrt(double value) { return std::sqrt(value); }
 inline Lanes sqrt(Lanes value)
 {
-#if defined(__AVX512F__)
-    return Lanes(_mm512_maskz_sqrt_pd(all_lanes, value.native()));
-#elif defined(__AVX__)
-    return Lanes(_mm256_sqrt_pd(value.native()));
-#else
     return lane_by_lane(value, [](double each) { return std::sqrt(each); });
-#endif
 }
 
 inline double round_down(double value) { return std::floor(value); }
 inline Lanes round_down(Lanes value)
 {
-#if defined(__AVX512F__)
-    return Lanes(_mm512_maskz_roundscale_pd(all_lanes, value.native(), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC));
-#elif defined(__AVX__)
-    return Lanes(_mm256_floor_pd(value.native()));
-#else
     return lane_by_lane(value, [](double each) { return std::floor(each); });
-#endif
 }
 
 // Sum of the lanes: the upper half on the lower one, until two are left.
