@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from eel_dynamics.runs.exchange.eel_viz_functions import messages_of_bag
+from eel_dynamics.runs.exchange.eel_viz_functions import function_of_eel_viz
 from eel_dynamics.runs.exchange.recorded_run import fields_of_messages
 from eel_ros.testing.node_process import NodeProcess
 from eel_ros.testing.ros_domain import reserve_domain
@@ -95,7 +95,7 @@ def swim() -> list[tuple[str, Any]]:
             await_end(dynamics, nodes, limit=60.0)
             await_end(visualiser, nodes, limit=30.0, finished=(dynamics, recorder))
             await_end(recorder, nodes, limit=30.0, finished=(dynamics, visualiser))
-            return list(messages_of_bag()(bag, None))
+            return list(function_of_eel_viz("messages")(bag, None))
         finally:
             for node in reversed(nodes):
                 node.end(descendants=not display)  # a viewer that was opened stays

@@ -19,7 +19,7 @@ from eel_dynamics.analysis.model_limits import warnings_of
 from eel_dynamics.analysis.peaks import FINER, MOST_SAMPLES, greatest_torque_of
 from eel_dynamics.analysis.run_summary import describe
 from eel_dynamics.analysis.settling import Unsettled
-from eel_dynamics.runs.exchange.eel_viz_functions import recorder_of_runs
+from eel_dynamics.runs.exchange.eel_viz_functions import function_of_eel_viz
 from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
 from eel_dynamics.runs.exchange.properties_of_run import properties_of_run
 from eel_dynamics.runs.exchange.recorded_run import fields_of_bag
@@ -178,7 +178,7 @@ class Run(RunData):
         own, by name, as the properties `numbers`. settings: of the visualiser, such as blueprint="torques",
         skin_rate=50. `ImportError` without the package eel_viz and rerun-sdk.
         """
-        record, runs = recorder_of_runs(), [self] if compare is None else [self, compare]
+        record, runs = function_of_eel_viz("rerun"), [self] if compare is None else [self, compare]
         runs = [run.with_load() if load else run for run in runs]
         names = [f"{run.law.name} {run.accuracy.name}" for run in runs]
         properties = properties_of_run(runs[0]) | ({"numbers": numbers} if numbers else {})

@@ -27,14 +27,7 @@ from typing import Annotated, Any
 import numpy as np
 from eel_model.equality import EqualByFields
 
-WORKS = (
-    "actuator",
-    "wake",
-    "nose",
-    "drag",
-    "flow",
-    "fins",
-)  # that have powers and works, as in eel_core
+WORKS = "actuator", "wake", "nose", "drag", "flow", "fins"  # that have powers and works, as in eel_core
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -283,11 +283,7 @@ class Simulation(Present):
         self._meter = ErrorMeter(self._march, self._meter.wanted)
 
     def record(
-        self,
-        times: np.ndarray,
-        wrench: bool,
-        load: bool,
-        look: Callable[[float], None] | None = None,
+        self, times: np.ndarray, wrench: bool, load: bool, look: Callable[[float], None] | None = None
     ) -> tuple[Observations, np.ndarray, int, SimulationStopped | None]:
         """March through `times` (T,) [s] under the law in force, and observe each.
 

@@ -16,7 +16,7 @@ from eel_base.command.command_line import Parser
 from eel_base.quantity import positive
 from eel_base.wording import shown
 from eel_dynamics.commands.options import add_options, add_repeated, scene_of, set_numbers
-from eel_dynamics.runs.exchange.eel_viz_functions import joints_of_bag
+from eel_dynamics.runs.exchange.eel_viz_functions import function_of_eel_viz
 from eel_dynamics.runs.storage.tables import write_columns
 from eel_gaits.sources.joint_log import JointLog, joint_log, law_of_links, read_joint_log
 from eel_model.body.body import Body, body_of
@@ -90,7 +90,7 @@ def _log(options: argparse.Namespace) -> JointLog:
     if path.is_dir() or path.suffix in (".mcap", ".db3"):
         if options.columns:
             raise ValueError("--columns belong to a .csv file; joints of a bag have names")
-        time, angles, names = joints_of_bag()(path, options.topic)
+        time, angles, names = function_of_eel_viz("joints")(path, options.topic)
         return joint_log(path.name, time, angles, tuple(names), unit=options.units, tail_first=options.tail_first)
     if options.topic is not None:
         raise ValueError("--topic belongs to a bag")

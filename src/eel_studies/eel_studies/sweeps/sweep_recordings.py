@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from eel_base.wording import shown
-from eel_dynamics.runs.exchange.eel_viz_functions import recorder_of_runs
+from eel_dynamics.runs.exchange.eel_viz_functions import function_of_eel_viz
 from eel_dynamics.runs.run import Run
 
 from eel_studies.points import label_of
@@ -21,7 +21,7 @@ class SweepRecordings:
     """
 
     def __init__(self, folder: str | Path, grid: dict[str, list[Any]]) -> None:
-        recorder_of_runs()
+        function_of_eel_viz("rerun")
         self.folder, self._grid = Path(folder), grid
         try:
             self.folder.mkdir(exist_ok=True)

@@ -5,35 +5,20 @@ from collections.abc import Callable
 from importlib.metadata import entry_points
 from typing import Any, cast
 
-Function = Callable[..., Any]
+FUNCTIONS = {  # by name: the group of its entry points, what uses it, and what it needs
+    "messages": ("eel_dynamics.bags", "from_bag", "rosbags and rerun-sdk"),  # of a bag: (path, namespace)
+    "joints": ("eel_dynamics.bags", "a bag of joint angles", "rosbags"),  # time, angles and names: (path, topic)
+    "rerun": ("eel_dynamics.drawing", "to_rerun", "rerun-sdk"),  # (target, messages of runs, names, properties, **how)
+}
 
 
-def messages_of_bag() -> Function:
-    """The function (path, namespace) that yields topic and message of the swimmer in a bag.
-
-    `ImportError` where eel_viz is not installed, or cannot be imported.
-    """
-    return _function("eel_dynamics.bags", "messages", "from_bag", "rosbags and rerun-sdk")
-
-
-def joints_of_bag() -> Function:
-    """The function (path, topic) that gives time, angles and names of the joints in a bag. `ImportError` as above."""
-    return _function("eel_dynamics.bags", "joints", "a bag of joint angles", "rosbags")
-
-
-def recorder_of_runs() -> Function:
-    """The function (target, messages of each run, names, properties, **settings) that records runs to Rerun.
-
-    `ImportError` where eel_viz is not installed, or cannot be imported.
-    """
-    return _function("eel_dynamics.drawing", "rerun", "to_rerun", "rerun-sdk")
-
-
-def _function(group: str, name: str, user: str, needs: str) -> Function:
+def function_of_eel_viz(name: str) -> Callable[..., Any]:
+    """One of the `FUNCTIONS`. `ImportError` where eel_viz is not installed, or cannot be imported."""
+    group, user, needs = FUNCTIONS[name]
     found = entry_points(group=group, name=name)
     try:
         (function,) = (each.load() for each in found)
     except (ValueError, ImportError) as error:
         reason = error if found else "it is not installed"
         raise ImportError(f"{user} needs the package eel_viz, with {needs}: {reason}") from error
-    return cast(Function, function)
+    return cast(Callable[..., Any], function)

@@ -28,7 +28,7 @@ from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.budget import Budget
-from eel_dynamics.runs.exchange.eel_viz_functions import messages_of_bag
+from eel_dynamics.runs.exchange.eel_viz_functions import function_of_eel_viz
 from eel_dynamics.runs.exchange.message_fields import FIELDS, OF_JOINTS, quantities_of
 from eel_dynamics.simulation.energy import WORKS, EnergyLedger
 
@@ -50,7 +50,7 @@ def fields_of_bag(
     if scene is not None:
         checked_instance("scene", scene, Scene)
     found = checked_robot(robot_of(robot) if isinstance(robot, str) else robot)
-    messages = messages_of_bag()
+    messages = function_of_eel_viz("messages")
     try:
         with reading(""):
             return fields_of_messages(messages(path, namespace), body, scene, found)

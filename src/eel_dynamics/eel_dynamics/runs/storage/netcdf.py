@@ -21,7 +21,7 @@ from eel_model.axes import CONVENTIONS, PAPER, REP103
 
 from eel_dynamics.runs.storage.digest import add_digest, check_digest
 from eel_dynamics.runs.storage.run_contents import in_rep103_axes
-from eel_dynamics.runs.storage.variables import LABELS, OF_SWIMMERS, VARIABLES, Contents
+from eel_dynamics.runs.storage.variables import LABELS, OF_SWIMMERS, VARIABLES, Contents, variable_of
 
 FORMAT = 2  # of the files; format 1 does not name its axes, the paper's; a later one cannot be read
 MOST_BYTES = 2**31 - 4  # of an array in a file
@@ -72,7 +72,7 @@ def write(contents: Contents, path: Any) -> None:
         for name, size in sizes.items():
             file.createDimension(name, size)
         for name, values in contents.arrays.items():
-            about = contents.variable(name)
+            about = variable_of(contents.kind, name)
             whole = values.dtype.kind != "f" and values.max(initial=0) < 2**31
             variable = file.createVariable(name, "i4" if whole else "f8", about.dimensions)
             variable[...] = values
@@ -131,7 +131,7 @@ def sizes_of(contents: Contents) -> dict[str, int]:
     """Length of each dimension. `ValueError` where arrays do not agree, or are empty."""
     sizes: dict[str, int] = {}
     for name, values in contents.arrays.items():
-        dimensions, shape = contents.variable(name).dimensions, values.shape
+        dimensions, shape = variable_of(contents.kind, name).dimensions, values.shape
         fit = len(dimensions) == len(shape) and values.size
         for dimension, size in zip(dimensions, shape, strict=False):
             fit = fit and size == sizes.setdefault(dimension, len(LABELS.get(dimension, ())) or size)

@@ -14,7 +14,7 @@ import numpy as np
 from eel_base.files.output_file import replacing
 
 from eel_dynamics.runs.storage.netcdf import attributes_of
-from eel_dynamics.runs.storage.variables import LABELS, LEDGER, Contents
+from eel_dynamics.runs.storage.variables import LABELS, LEDGER, Contents, variable_of
 
 COLUMNS = {"position": "xyz", "orientation": "xyzw", "center_of_mass": "xyz"}
 
@@ -32,7 +32,7 @@ def dataset_of(contents: Contents) -> Any:
     xarray = needed("xarray", "to_xarray")
     variables = {}
     for name, values in contents.arrays.items():
-        about = contents.variable(name)
+        about = variable_of(contents.kind, name)
         variables[name] = about.dimensions, values, {"units": about.unit, "long_name": about.description}
     used = {dimension for dimensions, *_ in variables.values() for dimension in dimensions}
     coordinates: dict[str, Any] = {name: variables.pop(name) for name in ("time", "x")}

@@ -150,7 +150,3 @@ class Contents(NamedTuple):
     values: dict[str, Any]
     arrays: dict[str, np.ndarray]
     axes: str = REP103
-
-    def variable(self, name: str) -> Variable:
-        """Dimensions, unit and meaning of an array of these contents."""
-        return variable_of(self.kind, name)
