@@ -91,6 +91,8 @@ class SwimRequest(NamedTuple, Generic[Kind]):
     @property
     def instants(self) -> np.ndarray:
         """(N,) [s], at which the swimmer is observed: the samples, and those between them."""
+        if self.every == 1:
+            return self.times
         between = np.arange(self.every) / self.every
         return np.append(self.times[:-1, None] + np.diff(self.times)[:, None] * between, self.times[-1])
 

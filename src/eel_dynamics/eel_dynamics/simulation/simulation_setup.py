@@ -27,6 +27,7 @@ from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS, check_cost
 from eel_dynamics.curvature.curvature_samples import check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 
+OF_PAPER = Scene()  # where none is given
 FITTING = 1e-6  # part of the body's length by which the rows of a law may be shorter or longer
 
 
@@ -64,7 +65,7 @@ class SimulationSetup(EqualByFields):
         """The set-up from the arguments of `Simulation`. `ValueError` names the one that does not fit."""
         robot = checked_robot(robot)
         body = checked_body(robot.body if body is None and robot is not None else body)
-        scene = Scene() if scene is None else checked_instance("scene", scene, Scene)
+        scene = OF_PAPER if scene is None else checked_instance("scene", scene, Scene)
         accuracy, x = Accuracy.of(accuracy), checked_stations(stations, body.length)
         start = _checked_start(scene, position, orientation, twist, flow)
         fins = checked_fins(fins, body, scene)
