@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The Python package: its sources, a compiled module per level, and built.py, which lists the levels.
 foreach(module IN LISTS modules)
-  pybind11_add_module(${module} MODULE NO_EXTRAS src/module.cpp src/bind_bent.cpp)
+  pybind11_add_module(${module} MODULE NO_EXTRAS src/module.cpp src/bind_march.cpp)
   eel_core_compile(${module} "${march_of_${module}}")
   target_compile_definitions(${module} PRIVATE EEL_CORE_MODULE=${module})
 endforeach()

@@ -161,6 +161,9 @@ class StepBounds(_Shared):
     @property
     def spare_steps(self) -> float:
         """Steps beyond these, to be spent at any time."""
+    @property
+    def torque_floor(self) -> float:
+        """[N m], of a robot: smaller torques count as none."""
 
 class Modes(_Shared):
     """The modes of a robot on a grid. It is copied from Python and never changes."""
@@ -169,109 +172,26 @@ class Modes(_Shared):
         """modes: with the attributes of `ModesOnGrid` (eel_dynamics/simulation/bending). `ValueError` for arrays that
         do not fit together."""
 
-class BentMarch:
-    """A swimmer with modes on its way: as `March`, where not said otherwise."""
-
-    def __init__(self, swimmer: Swimmer, modes: Modes, planar: bool) -> None:
-        """`ValueError` for modes on another grid."""
-
-    def __copy__(self) -> Self: ...
-    def __deepcopy__(self, memo: dict[int, Any]) -> Self: ...
-    def change(self, swimmer: Swimmer, modes: Modes, planar: bool) -> None:
-        """Goes on in another grid, with the same coordinates at the same rates; a law on the new grid must follow."""
-
-    def follow(
-        self,
-        law: LawOnGrid,
-        reference: Buffer,
-        drive: LawOnGrid | None,
-        push: Buffer,
-        breakpoints: Sequence[float],
-        bounds: StepBounds,
-        torque_floor: float,
-        ledger: bool,
-        current: Buffer,
-        flow: Flow | None,
-        smoothly: bool,
-        fin_angles: list[tuple[Buffer, Buffer]] = ...,
-    ) -> None:
-        """law: of R rows that are imposed and M of the modes. reference (S, R): what the servos follow, by the factors
-        of the imposed rows. drive: its factors, by push (C, its rows), are the muscles' forces on the coordinates.
-        bounds: an infinite tolerance gives steps of one length. torque_floor [N m]: smaller torques count as none."""
-
-    def start(self, position: Buffer, orientation: Buffer, twist: Buffer, x: Buffer, rate: Buffer) -> float:
-        """Stands at time 0 with coordinates x (C,) and their rates (C,) too. All energy [J]."""
-
-    def set_state(self, position: Buffer, orientation: Buffer, twist: Buffer) -> float: ...
-    def set_twist(self, twist: Buffer) -> float: ...
-    def twist(self) -> list[float]: ...
-    def set_slice(self, nodes: int) -> int: ...
-    def advance(self, time: float) -> int: ...
-    def record(
-        self,
-        times: Buffer,
-        first: int,
-        whole: Buffer,
-        works: Buffer,
-        rows: Buffer,
-        wrench: bool,
-        load: bool,
-        until: float,
-    ) -> tuple[int, int]:
-        """rows (T, size): writable, the coordinates' numbers as `row` has them."""
-
-    def observe(self, whole: Buffer, row: Buffer, wrench: bool, load: bool) -> bool: ...
-    def command(self, servo: int, kind: str, value: float) -> None:
-        """Have a servo do so from now on. kind: angle [rad], rate [rad/s], torque [N m]; law: what the law asks."""
-
-    def singular_mode(self) -> int | None:
-        """The first mode that makes the mass matrix singular in the present state; None where it is definite."""
-
-    @property
-    def time(self) -> float: ...
-    @property
-    def state(self) -> list[float]: ...
-    @property
-    def memory(self) -> int: ...
-    @property
-    def hardest(self) -> int:
-        """The coordinate with the greatest error in the last step."""
-    @property
-    def coordinates(self) -> list[float]:
-        """(C,)."""
-    @property
-    def rates(self) -> list[float]:
-        """(C,)."""
-    @property
-    def works(self) -> list[float]: ...
-    @property
-    def outside(self) -> tuple[float, float, float, float] | None: ...
-    @property
-    def row(self) -> dict[str, tuple[int, int]]:
-        """Where the numbers of an instant lie in a row, from and up to: x, rate, acceleration (C,) each; moment (M,),
-        the internal moment on each mode; torque (S,) of the servos; pushing (C,) of muscles and given torques; elastic
-        [J], rotors [J], motor_power [W], damping_power [W], damping_work [J]."""
-    @property
-    def counts(self) -> tuple[int, int, int]: ...
-
 class March:
     """A swimmer on its way. Its law comes first (`follow`), then the start; one thread at a time may call it.
 
-    Python's lock is free while it marches. `RuntimeError` where it follows no law on its grid yet, or another thread is
-    in it.
+    With the M modes of a robot it bends by itself: C coordinates, S servos. Python's lock is free while it marches.
+    `RuntimeError` where it follows no law on its grid yet, or another thread is in it.
     """
 
-    def __init__(self, swimmer: Swimmer, method: str, order: int, planar: bool) -> None:
-        """method: "adams" (orders 1 to 6), "dormand_prince" or "classical". planar: three degrees of freedom."""
+    def __init__(self, swimmer: Swimmer, method: str, order: int, planar: bool, modes: Modes | None = None) -> None:
+        """method: "adams" (orders 1 to 6), "dormand_prince" or "classical"; with modes their own. planar: three degrees
+        of freedom. `ValueError` for modes on another grid."""
 
     def __copy__(self) -> Self:
-        """A march of its own in the same state; it shares the swimmer and the law."""
+        """A march of its own in the same state; it shares the swimmer, the modes and the law."""
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Self:
         """As `copy.copy`."""
 
-    def change(self, swimmer: Swimmer, method: str, order: int, planar: bool) -> None:
-        """Goes on with another grid or method. The state keeps its momentum; a law on the new grid must follow."""
+    def change(self, swimmer: Swimmer, method: str, order: int, planar: bool, modes: Modes | None = None) -> None:
+        """Goes on with another grid or method, with the same momentum, and the same coordinates at the same rates; a
+        law on the new grid must follow."""
 
     def follow(
         self,
@@ -282,25 +202,28 @@ class March:
         current: Buffer,
         flow: Flow | None,
         smoothly: bool,
-        fin_angles: list[tuple[Buffer, Buffer]] = ...,
+        fin_angles: Sequence[tuple[Buffer, Buffer]] = ...,
+        reference: Buffer | None = None,
     ) -> None:
-        """What drives the body from now on. breakpoints: ascending times [s] at which a derivative of the shape or of
-        the flow jumps. ledger: the works are integrated too. current (3,) [m/s]: of the water, world. flow: how the
-        water moves besides. smoothly: the motion goes on as
-        before, so that the next step need not begin anew. fin_angles: what each
-        servo is given, knots (n,) [s] and coefficients (n - 1, 4) of cubics [rad]. `ValueError` for a law on another
-        grid."""
+        """What drives the body from now on. law: of R rows that are imposed, and M of the modes. breakpoints: ascending
+        times [s] at which a derivative of the shape or of the flow jumps. ledger: the works are integrated too.
+        current (3,) [m/s]: of the water, world. flow: how the water moves besides. smoothly: the motion goes on as
+        before, so that the next step need not begin anew. fin_angles: what each servo of the fins is given, knots (n,)
+        [s] and coefficients (n - 1, 4) of cubics [rad]. reference (S, R): what the servos of a robot follow, by the
+        factors of the imposed rows. `ValueError` for a law on another grid."""
 
-    def start(self, position: Buffer, orientation: Buffer, twist: Buffer) -> float:
-        """Stands at time 0 at a position (3,) [m] with an orientation (4,) (x y z w, world from head) and the head's
-        twist (6,). The kinetic and potential energy [J]."""
+    def start(
+        self, position: Buffer, orientation: Buffer, twist: Buffer, x: Buffer | None = None, rate: Buffer | None = None
+    ) -> float:
+        """Stands at time 0 at a position (3,) [m] with an orientation (4,) (x y z w, world from head), the head's twist
+        (6,), coordinates x (C,) and their rates (C,), or none. Kinetic, potential and elastic energy [J]."""
 
     def set_state(self, position: Buffer, orientation: Buffer, twist: Buffer) -> float:
         """Puts the head of the present shape at a position (3,) [m] with an orientation (4,) (x y z w, world from head)
-        and its twist (6,). The kinetic and potential energy [J]."""
+        and its twist (6,). The energy [J] as of `start`."""
 
     def set_twist(self, twist: Buffer) -> float:
-        """Gives the present state the momentum of the twist (6,). The kinetic and potential energy [J]."""
+        """Gives the present state the momentum of the twist (6,). The energy [J] as of `start`."""
 
     def twist(self) -> list[float]:
         """Twist (6,) in the present state. `ValueError` where the inertia is not positive definite."""
@@ -313,15 +236,30 @@ class March:
         evaluated: call again. At the others but "marched" the state stays the last good one."""
 
     def record(
-        self, times: Buffer, first: int, whole: Buffer, works: Buffer, wrench: bool, load: bool, until: float
+        self,
+        times: Buffer,
+        first: int,
+        whole: Buffer,
+        works: Buffer,
+        rows: Buffer,
+        wrench: bool,
+        load: bool,
+        until: float,
     ) -> tuple[int, int]:
         """Marches through the times (T,) [s] from number `first` on, up to `until` [s], and observes each. whole:
-        writable, as `layout` has it; works (T, 5) [J]: writable, of actuators, wake, nose, drag and flow since the
-        start. How many of the instants are complete, and the number of a status; as in `advance`."""
+        writable, as `layout` has it; works (T, 6) [J]: writable, as `works`; rows (T, size): writable, of the
+        coordinates as `row` has them. How many of the instants are complete, and the number of a status; as in
+        `advance`."""
 
-    def observe(self, whole: Buffer, wrench: bool, load: bool) -> bool:
-        """Writes what the present shows into `whole`, as `layout` has it for one sample. False where the inertia is not
-        positive definite."""
+    def observe(self, whole: Buffer, row: Buffer, wrench: bool, load: bool) -> bool:
+        """Writes what the present shows into `whole`, as `layout` has it for one sample, and the coordinates' numbers
+        into the row. False where the inertia is not positive definite."""
+
+    def command(self, servo: int, kind: str, value: float) -> None:
+        """Have a servo do so from now on. kind: angle [rad], rate [rad/s], torque [N m]; law: what the law asks."""
+
+    def singular_mode(self) -> int | None:
+        """The first mode that makes the mass matrix singular in the present state; None where it is definite."""
 
     @property
     def memory(self) -> int:
@@ -334,10 +272,24 @@ class March:
         """(13,)."""
     @property
     def works(self) -> list[float]:
-        """(5,) [J] of actuators, wake, nose, drag and flow since the start."""
+        """(6,) [J] of actuators, wake, nose, drag, flow and fins since the start."""
+    @property
+    def coordinates(self) -> list[float]:
+        """(C,)."""
+    @property
+    def rates(self) -> list[float]:
+        """(C,)."""
     @property
     def outside(self) -> tuple[float, float, float, float] | None:
         """Time [s] and place [m], world, outside the grid of the flow, where the last evaluation was there."""
+    @property
+    def row(self) -> dict[str, tuple[int, int]]:
+        """Where the numbers of an instant lie in a row, from and up to: x, rate, acceleration (C,) each; moment (M,),
+        the internal moment on each mode; torque (S,) of the servos; pushing (C,) of muscles and given torques; elastic
+        [J], rotors [J], motor_power [W], damping_power [W], damping_work [J]. Without modes all are empty."""
+    @property
+    def hardest(self) -> int:
+        """The coordinate with the greatest error in the last step."""
     @property
     def counts(self) -> tuple[int, int, int]:
         """Steps, rejected steps and evaluations of the head's dynamics so far."""

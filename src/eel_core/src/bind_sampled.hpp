@@ -61,15 +61,14 @@ class PySampledMarches {
         March& march = marches_[index].march();
         const Profiles profiles(1, march.swimmer().stations, wrench, load);
         const Numbers into = Numbers::sized(whole, "whole", profiles.begin[Profiles::quantities], true);
-        return march.observe(Observer(march.swimmer(), profiles, into.data()), 0);
+        return march.observe(profiles, into.data(), 0, nullptr);
     }
     // Of one swimmer: time, works, and counts as of `March`.
     auto present(std::size_t index)
     {
         const InUse in_use(in_use_, these);
         const March& march = marches_[index].march();
-        const Counts counts = march.counts();
-        return std::tuple(march.time(), march.works(), std::tuple(counts.steps, counts.rejected, counts.evaluations));
+        return std::tuple(march.now().time, march.now().works, tuple_of(march.counts()));
     }
 
   private:

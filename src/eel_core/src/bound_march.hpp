@@ -1,24 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the Python classes of marches share: one thread at a time, without Python's lock; state, works and counts.
+// A march that Python holds: one thread at a time, without Python's lock.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <stdexcept>
-#include <utility>
 
+#include "eel_core/march/march.hpp"
 #include "from_python.hpp"
 
 namespace eel_core {
-
-// Of a state, what Python sees.
-using PythonState = std::array<double, state_size>;
-inline PythonState shown(const State& state)
-{
-    const State turned = half_turn(state);
-    PythonState result;
-    std::copy_n(turned.begin(), state_size, result.begin());
-    return result;
-}
 
 // Held while a call uses what the flag stands for. Throws where another thread does.
 class InUse {
@@ -35,10 +26,58 @@ class InUse {
     std::atomic<bool>& flag_;
 };
 
-// A `March` or `BentMarch` that Python holds.
-template <class Core>
-class BoundMarch {
+inline auto tuple_of(const Counts& counts) { return std::tuple(counts.steps, counts.rejected, counts.evaluations); }
+
+class PyMarch {
   public:
+    PyMarch(std::shared_ptr<const Swimmer> swimmer, const std::string& method, std::size_t order, bool planar,
+            std::shared_ptr<const Modes> modes)
+        : march_(checked(std::move(swimmer), modes.get()), method_of(method, order, modes.get()), planar, modes)
+    {
+    }
+
+    // A march of its own, in the same state.
+    std::unique_ptr<PyMarch> copy()
+    {
+        const InUse in_use(in_use_);
+        return std::unique_ptr<PyMarch>(new PyMarch(march_, has_law_));
+    }
+    void change(std::shared_ptr<const Swimmer> swimmer, const std::string& method, std::size_t order, bool planar,
+                std::shared_ptr<const Modes> modes)
+    {
+        const InUse in_use(in_use_);
+        const std::size_t coordinates = modes ? modes->coordinates : 0;
+        if (coordinates != march_.now().x.size())
+            throw py::value_error("modes must have " + std::to_string(march_.now().x.size()) +
+                                  " coordinates as before, got " + std::to_string(coordinates));
+        has_law_ = false;
+        march_.change(checked(std::move(swimmer), modes.get()), method_of(method, order, modes.get()), planar, modes);
+    }
+    void follow(const std::shared_ptr<const LawOnGrid>& law, std::vector<double> breakpoints, const StepBounds& bounds,
+                bool ledger, const py::object& current, std::shared_ptr<Flow> flow, bool smoothly,
+                const py::list& fin_angles, const py::object& reference)
+    {
+        const InUse in_use(in_use_);
+        check_fits(*law);
+        BentSettings settings{
+            {*law, std::move(breakpoints), bounds, ledger, water_from(current, std::move(flow))}, 0, {}, {}};
+        settings.law.fins = angles_from(fin_angles);
+        if (const Modes* const modes = march_.modes()) {
+            settings.first_mode = law->tables->rows() - modes->modes;
+            const std::size_t imposed = modes->servos.size() * settings.first_mode;
+            settings.reference = Numbers::sized(reference, "reference", imposed).vector();
+        }
+        smoothly &= has_law_;
+        has_law_ = true;
+        march_.follow(std::move(settings), smoothly);
+    }
+    double start(const py::object& position, const py::object& orientation, const py::object& twist,
+                 const py::object& x, const py::object& rate)
+    {
+        const Driven in_use(*this);
+        return march_.start(vector_from(position, "position"), orientation_from(orientation),
+                            twist_from(twist, "twist"), coordinates_from(x, "x"), coordinates_from(rate, "rate"));
+    }
     double set_state(const py::object& position, const py::object& orientation, const py::object& twist)
     {
         const Driven in_use(*this);
@@ -55,11 +94,48 @@ class BoundMarch {
         const Driven in_use(*this);
         return components_of(half_turn(march_.twist()));
     }
+    void command(std::size_t servo, const std::string& kind, double value)
+    {
+        const Driven in_use(*this);
+        constexpr std::array kinds{"law", "angle", "rate", "torque"};
+        const auto* const found = std::find(kinds.begin(), kinds.end(), kind);
+        if (!march_.modes() || servo >= march_.modes()->servos.size() || found == kinds.end())
+            throw py::value_error("a command must be for a servo, and of a known kind");
+        march_.command(servo, static_cast<Command::Kind>(found - kinds.begin()), value);
+    }
     int advance(double time)
     {
         const Driven in_use(*this);
         const py::gil_scoped_release unlocked;
         return static_cast<int>(march_.advance(time));
+    }
+    // How many instants are complete, and the status.
+    py::tuple record(const py::object& times, std::size_t first, const py::object& whole, const py::object& works,
+                     const py::object& rows, bool wrench, bool load, double until)
+    {
+        const Numbers instants(times, "times");
+        const std::size_t n = instants.size();
+        const Profiles profiles = profiles_of(n, wrench, load);
+        const Numbers into = room_for(profiles, whole),
+                      works_into = Numbers::sized(works, "works", std::tuple_size_v<WorkDone> * n, true),
+                      rows_into = Numbers::sized(rows, "rows", march_.row().size() * n, true);
+        const Driven in_use(*this);
+        std::size_t done = 0;
+        Status status = Status::marched;
+        {
+            const py::gil_scoped_release unlocked;
+            status = march_.record(instants.span(), first, until, profiles, into.data(), works_into.data(),
+                                   rows_into.data(), done);
+        }
+        return py::make_tuple(done, static_cast<int>(status));
+    }
+    bool observe(const py::object& whole, const py::object& row, bool wrench, bool load)
+    {
+        const Profiles profiles = profiles_of(1, wrench, load);
+        const Numbers into = room_for(profiles, whole),
+                      row_into = Numbers::sized(row, "row", march_.row().size(), true);
+        const Driven in_use(*this);
+        return march_.observe(profiles, into.data(), 0, row_into.data());
     }
     std::int64_t set_slice(std::int64_t nodes)
     {
@@ -71,7 +147,11 @@ class BoundMarch {
         const Driven in_use(*this);
         return march_.memory();
     }
-    double time() const { return march_.time(); }
+    std::optional<std::size_t> singular_mode()
+    {
+        const Driven in_use(*this);
+        return march_.singular_mode();
+    }
     std::optional<std::tuple<double, double, double, double>> outside() const
     {
         const auto found = march_.outside();
@@ -79,32 +159,57 @@ class BoundMarch {
         const auto [time, x, y, z] = *found;
         return std::tuple(time, 0.0 - x, 0.0 - y, z);
     }
-    PythonState state() const { return shown(march_.state()); }
-    WorkDone works() const
+    // Where the numbers of an instant's coordinates lie in a row: name -> (begin, end).
+    py::dict row() const
     {
-        WorkDone works;
-        std::copy_n(march_.works().begin(), works.size(), works.begin());
-        return works;
+        const CoordinateRow row = march_.row();
+        py::dict places;
+        for (std::size_t q = 0; q < CoordinateRow::quantities; ++q)
+            places[CoordinateRow::names[q]] = py::make_tuple(row.begin[q], row.begin[q + 1]);
+        return places;
     }
-    auto counts() const
-    {
-        const Counts counts = march_.counts();
-        return std::tuple(counts.steps, counts.rejected, counts.evaluations);
-    }
+    March& march() { return march_; }
 
-  protected:
-    template <class... Given>
-    explicit BoundMarch(bool has_law, Given&&... given) : march_(std::forward<Given>(given)...), has_law_(has_law)
-    {
-    }
+  private:
+    PyMarch(const March& march, bool has_law) : march_(march), has_law_(has_law) {}
 
     struct Driven : InUse {
-        explicit Driven(BoundMarch& march) : InUse(march.in_use_)
+        explicit Driven(PyMarch& march) : InUse(march.in_use_)
         {
             if (!march.has_law_) throw std::runtime_error("this march follows no law on its grid yet");
         }
     };
 
+    static Method method_of(const std::string& name, std::size_t order, const Modes* modes)
+    {
+        return modes ? Method() : Method::of(name, order);
+    }
+    static std::shared_ptr<const Swimmer> checked(std::shared_ptr<const Swimmer> swimmer, const Modes* modes)
+    {
+        for (std::size_t m = 0; modes && m < modes->modes; ++m)
+            if (modes->first[m] >= modes->last[m] || modes->last[m] > swimmer->grid.nodes)
+                throw py::value_error("modes must have nodes of the grid");
+        return swimmer;
+    }
+    void check_fits(const LawOnGrid& law) const
+    {
+        const LawTables& t = *law.tables;
+        const Swimmer& swimmer = march_.swimmer();
+        const std::size_t rows = t.rows(), nodes = swimmer.grid.blocks, stations = blocks_of(swimmer.stations);
+        const auto fits = [&](const auto& table, std::size_t blocks) {
+            return table.lanes.size() == rows * blocks && (rows == 0 || table.blocks == blocks);
+        };
+        if (!(fits(t.node, nodes) && fits(t.angle, nodes) && fits(t.moments, nodes) && fits(t.station, stations) &&
+              fits(t.station_moments, stations)))
+            throw py::value_error("law must be tabulated on the nodes and stations of the swimmer");
+        if (march_.modes() && rows < march_.modes()->modes)
+            throw py::value_error("law must have the modes as its last rows");
+    }
+    std::vector<double> coordinates_from(const py::object& object, const char* name) const
+    {
+        const std::size_t n = march_.now().x.size();
+        return object.is_none() ? std::vector<double>(n) : Numbers::sized(object, name, n).vector();
+    }
     Profiles profiles_of(std::size_t samples, bool wrench, bool load) const
     {
         return {samples, march_.swimmer().stations, wrench, load, march_.swimmer().fins.size()};
@@ -114,58 +219,9 @@ class BoundMarch {
         return Numbers::sized(whole, "whole", profiles.begin[Profiles::quantities], true);
     }
 
-    // Records what `record` of the core gives for so many instants, into `whole` and `works`: how many are complete,
-    // and the status.
-    template <class Record>
-    py::tuple recorded(std::size_t instants, const py::object& whole, const py::object& works, bool wrench, bool load,
-                       const Record& record)
-    {
-        const Profiles profiles = profiles_of(instants, wrench, load);
-        const Numbers into = room_for(profiles, whole);
-        const auto works_into = Numbers::sized(works, "works", std::tuple_size_v<WorkDone> * instants, true);
-        const Driven in_use(*this);
-        std::size_t done = 0;
-        Status status = Status::marched;
-        {
-            const py::gil_scoped_release unlocked;
-            status = record(profiles, into.data(), works_into.data(), done);
-        }
-        return py::make_tuple(done, static_cast<int>(status));
-    }
-
-    Core march_;
-    bool has_law_;  // on the present grid
+    March march_;
+    bool has_law_ = false;  // on the present grid
     std::atomic<bool> in_use_{false};
 };
-
-template <class Bound>
-void bind_what_marches_share(py::class_<Bound>& bound)
-{
-    bound.def("__copy__", &Bound::copy)
-        .def(
-            "__deepcopy__", [](Bound& march, const py::dict&) { return march.copy(); }, py::arg("memo"))
-        .def("set_state", &Bound::set_state, py::arg("position"), py::arg("orientation"), py::arg("twist"))
-        .def("set_twist", &Bound::set_twist, py::arg("twist"))
-        .def("twist", &Bound::twist)
-        .def("set_slice", &Bound::set_slice, py::arg("nodes"))
-        .def("advance", &Bound::advance, py::arg("time"))
-        .def_property_readonly("memory", &Bound::memory)
-        .def_property_readonly("time", &Bound::time)
-        .def_property_readonly("state", &Bound::state)
-        .def_property_readonly("works", &Bound::works)
-        .def_property_readonly("outside", &Bound::outside)
-        .def_property_readonly("counts", &Bound::counts);
-}
-
-// Lets copies in Python share the object, which never changes.
-template <class Class>
-void share_in_copies(Class& bound)
-{
-    bound.def("__copy__", [](const py::object& self) { return self; })
-        .def("__deepcopy__", [](const py::object& self, const py::dict&) { return self; }, py::arg("memo"));
-}
-
-// The Python classes of bodies with modes (bind_bent.cpp).
-void bind_bent_marches(py::module_& module);
 
 }  // namespace eel_core

@@ -8,7 +8,8 @@
 #include <memory>
 #include <string>
 
-#include "eel_core/march/march.hpp"
+#include "eel_core/algebra/cubics.hpp"
+#include "eel_core/march/axes.hpp"
 
 namespace eel_core {
 
@@ -22,7 +23,7 @@ class Array {
         : info_(py::cast<py::buffer>(object).request(writable))
     {
         std::size_t step = sizeof(T);
-        for (std::size_t axis = info_.shape.size(); axis-- > 0; step *= length(axis))
+        for (std::size_t axis = info_.size > 0 ? info_.shape.size() : 0; axis-- > 0; step *= length(axis))
             if (length(axis) > 1 && static_cast<std::size_t>(info_.strides[axis]) != step)
                 throw py::value_error(name + " must be contiguous");
         if (!is_of_type())
@@ -130,6 +131,24 @@ inline std::vector<AngleLaw> angles_from(const py::list& given)
         laws.push_back(cubics_from<double>(knots, coefficients));
     }
     return laws;
+}
+
+// Of a state, what Python sees.
+using PythonState = std::array<double, state_size>;
+inline PythonState shown(const State& state)
+{
+    const State turned = half_turn(state);
+    PythonState result;
+    std::copy_n(turned.begin(), state_size, result.begin());
+    return result;
+}
+
+// Lets copies in Python share the object, which never changes.
+template <class Class>
+void share_in_copies(Class& bound)
+{
+    bound.def("__copy__", [](const py::object& self) { return self; })
+        .def("__deepcopy__", [](const py::object& self, const py::dict&) { return self; }, py::arg("memo"));
 }
 
 }  // namespace eel_core

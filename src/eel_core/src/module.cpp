@@ -5,16 +5,20 @@
 #include <sstream>
 
 #include "bind_flow.hpp"
-#include "bind_sampled.hpp"
 #include "bind_splines.hpp"
-#include "bound_march.hpp"
 #include "eel_core/build_info.hpp"
 #include "eel_core/march/instant.hpp"
+#include "eel_core/march/profiles.hpp"
 #include "from_python.hpp"
 #include "swimmer_from.hpp"
 
 namespace py = pybind11;
 using namespace eel_core;
+
+// The Python classes of marches (bind_march.cpp).
+namespace eel_core {
+void bind_marches(py::module_& module);
+}
 
 namespace {
 
@@ -92,88 +96,6 @@ std::array<std::vector<double>, 3> factors_at(const LawOnGrid& law, double time)
     return result;
 }
 
-void check_fits(const LawOnGrid& law, const Swimmer& swimmer)
-{
-    const LawTables& t = *law.tables;
-    const std::size_t rows = t.rows(), nodes = swimmer.grid.blocks, stations = blocks_of(swimmer.stations);
-    const auto fits = [&](const auto& table, std::size_t blocks) {
-        return table.lanes.size() == rows * blocks && (rows == 0 || table.blocks == blocks);
-    };
-    if (!(fits(t.node, nodes) && fits(t.angle, nodes) && fits(t.moments, nodes) && fits(t.station, stations) &&
-          fits(t.station_moments, stations)))
-        throw py::value_error("law must be tabulated on the nodes and stations of the swimmer");
-}
-
-class PyMarch : public BoundMarch<March> {
-  public:
-    PyMarch(const std::shared_ptr<const Swimmer>& swimmer, const std::string& method, std::size_t order, bool planar)
-        : BoundMarch(false, swimmer, Method::of(method, order), planar)
-    {
-    }
-
-    // A march of its own, in the same state.
-    std::unique_ptr<PyMarch> copy()
-    {
-        const InUse in_use(in_use_);
-        return std::unique_ptr<PyMarch>(new PyMarch(march_, has_law_));
-    }
-    void change(const std::shared_ptr<const Swimmer>& swimmer, const std::string& method, std::size_t order,
-                bool planar)
-    {
-        const InUse in_use(in_use_);
-        has_law_ = false;
-        march_.change(swimmer, Method::of(method, order), planar);
-    }
-    void follow(const std::shared_ptr<const LawOnGrid>& law, std::vector<double> breakpoints, const StepBounds& bounds,
-                bool ledger, const py::object& current, std::shared_ptr<Flow> flow, bool smoothly,
-                const py::list& fin_angles)
-    {
-        check_fits(*law, march_.swimmer());
-        LawOnGrid own = *law;
-        own.fins = angles_from(fin_angles);
-        const InUse in_use(in_use_);
-        smoothly &= has_law_;
-        has_law_ = true;
-        march_.follow({std::move(own), std::move(breakpoints), bounds, ledger, water_from(current, std::move(flow))},
-                      smoothly);
-    }
-    double start(const py::object& position, const py::object& orientation, const py::object& twist)
-    {
-        const Driven in_use(*this);
-        return march_.start(vector_from(position, "position"), orientation_from(orientation),
-                            twist_from(twist, "twist"));
-    }
-    py::tuple record(const py::object& times, std::size_t first, const py::object& whole, const py::object& works,
-                     bool wrench, bool load, double until)
-    {
-        const Numbers instants(times, "times");
-        const auto record = [&](const Profiles& profiles, double* into, double* works_into, std::size_t& done) {
-            return march_.record(instants.span(), first, until, profiles, into, works_into, done);
-        };
-        return recorded(instants.size(), whole, works, wrench, load, record);
-    }
-    bool observe(const py::object& whole, bool wrench, bool load)
-    {
-        const Profiles profiles = profiles_of(1, wrench, load);
-        const Numbers into = room_for(profiles, whole);
-        const Driven in_use(*this);
-        return march_.observe(Observer(march_.swimmer(), profiles, into.data()), 0);
-    }
-
-  private:
-    PyMarch(const March& march, bool has_law) : BoundMarch(has_law, march) {}
-};
-
-// Members of `StepBounds` by their names in Python.
-constexpr std::pair<const char*, double StepBounds::*> step_bounds[] = {{"tolerance", &StepBounds::tolerance},
-                                                                        {"longest", &StepBounds::longest},
-                                                                        {"smallest", &StepBounds::smallest},
-                                                                        {"length", &StepBounds::length},
-                                                                        {"momentum_floor", &StepBounds::momentum_floor},
-                                                                        {"part_of_span", &StepBounds::part_of_span},
-                                                                        {"most_steps", &StepBounds::most_steps},
-                                                                        {"spare_steps", &StepBounds::spare_steps}};
-
 // Evaluates the rate of a state again and again, for benchmarks.
 template <class M>
 void repeat_rate_in(const Swimmer& swimmer, const LawOnGrid& law, double time, const State& y, std::size_t count,
@@ -212,8 +134,6 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
                py::arg("fins") = 0);
     module.attr("MOST_SERVOS") = most_servos;
     module.attr("FRICTION_LAWS") = py::tuple(py::cast(friction_names));
-    module.attr("STATUSES") =
-        py::make_tuple("marched", "not_finite", "step_too_small", "singular", "too_many_steps", "unfinished");
 
     auto swimmer = py::class_<Swimmer, std::shared_ptr<Swimmer>>(module, "Swimmer");
     share_in_copies(swimmer);
@@ -234,30 +154,7 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
              py::arg("blend"))
         .def("factors", &factors_at, py::arg("time"));
 
-    auto bounds = py::class_<StepBounds>(module, "StepBounds");
-    share_in_copies(bounds);
-    bounds.def(py::init([](const py::kwargs& given) {
-        StepBounds made{};
-        for (const auto& [name, member] : step_bounds) made.*member = given[name].cast<double>();
-        return made;
-    }));
-    for (const auto& [name, member] : step_bounds) bounds.def_readonly(name, member);
-
-    auto marches = py::class_<PyMarch>(module, "March");
-    bind_what_marches_share(marches);
-    marches
-        .def(py::init<std::shared_ptr<Swimmer>, const std::string&, std::size_t, bool>(), py::arg("swimmer"),
-             py::arg("method"), py::arg("order"), py::arg("planar"))
-        .def("change", &PyMarch::change, py::arg("swimmer"), py::arg("method"), py::arg("order"), py::arg("planar"))
-        .def("follow", &PyMarch::follow, py::arg("law"), py::arg("breakpoints"), py::arg("bounds"), py::arg("ledger"),
-             py::arg("current"), py::arg("flow"), py::arg("smoothly"), py::arg("fin_angles") = py::list())
-        .def("start", &PyMarch::start, py::arg("position"), py::arg("orientation"), py::arg("twist"))
-        .def("record", &PyMarch::record, py::arg("times"), py::arg("first"), py::arg("whole"), py::arg("works"),
-             py::arg("wrench"), py::arg("load"), py::arg("until"))
-        .def("observe", &PyMarch::observe, py::arg("whole"), py::arg("wrench"), py::arg("load"));
-
-    bind_sampled_marches(module);
-    bind_bent_marches(module);
+    bind_marches(module);
     bind_splines(module);
 
     module.def("repeat_rate", &repeat_rate, py::arg("swimmer"), py::arg("planar"), py::arg("law"), py::arg("time"),

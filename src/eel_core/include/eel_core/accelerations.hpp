@@ -143,7 +143,8 @@ double water_on_nose(const Swimmer& swimmer, const Workspace<M>& work)
 // The load that eq. (60) leaves to accelerate the head, where it has no acceleration; `on_nose` [N]: of the water. Sets
 // the accelerations of the shape, and the `density` of the balance for them.
 template <class M>
-Wrench<M, double> accelerating_load(const Swimmer& swimmer, const LawOnGrid& law, double on_nose, Workspace<M>& work)
+EEL_CORE_INLINE inline Wrench<M, double> accelerating_load(const Swimmer& swimmer, const LawOnGrid& law, double on_nose,
+                                                           Workspace<M>& work)
 {
     find_shape_accelerations(swimmer, law, work);
     auto left = work.tail + work.drag - set_inertial_density(swimmer, work.shape_acceleration, work);
@@ -158,7 +159,7 @@ Wrench<M, double> accelerating_load(const Swimmer& swimmer, const LawOnGrid& law
 // Acceleration of the head: eq. (60) in accelerations. `work` holds the true velocities, the loads that go with them
 // and the factored inertia. The density of the balance and the forces of the fins stay those of a head without any.
 template <class M>
-void find_head_acceleration(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
+EEL_CORE_APART void find_head_acceleration(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
 {
     const double on_nose = water_on_nose(swimmer, work);
     auto head = components_of(accelerating_load(swimmer, law, on_nose, work));

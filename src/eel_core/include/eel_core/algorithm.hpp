@@ -10,7 +10,7 @@ namespace eel_core {
 
 // Loads on the body from its true velocities: wake, eq. (60), and drag, section 7.2.1.
 template <class M>
-void find_loads(const Swimmer& swimmer, Workspace<M>& work)
+EEL_CORE_INLINE inline void find_loads(const Swimmer& swimmer, Workspace<M>& work)
 {
     set_tail_load(swimmer, work);
     work.drag = {}, work.drag_power = 0.0, work.kink_count = 0;
@@ -69,7 +69,7 @@ bool rate_of_state(const Swimmer& swimmer, const LawOnGrid& law, const Water& wa
 
 // Powers [W] of all but the actuators, after the acceleration of the head.
 template <class M>
-Powers powers_of_loads(const Swimmer& swimmer, const Workspace<M>& work)
+EEL_CORE_INLINE inline Powers powers_of_loads(const Swimmer& swimmer, const Workspace<M>& work)
 {
     Powers powers{0.0, work.tail_speed * work.tail_energy, work.nose_force * work.twist.linear.x, work.drag_power, 0.0,
                   0.0};

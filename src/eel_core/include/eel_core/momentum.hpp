@@ -121,7 +121,7 @@ Momentum<M, double> inertia_and_momentum(const Swimmer& swimmer, Workspace<M>& w
 // Sets the head's twist from `work.momentum` in a configured body, and leaves the inertia factored. False where the
 // inertia is not positive definite.
 template <class M>
-bool find_twist(const Swimmer& swimmer, Workspace<M>& work)
+EEL_CORE_APART bool find_twist(const Swimmer& swimmer, Workspace<M>& work)
 {
     Momentum<M, double> shape = work.shape_momentum = inertia_and_momentum(swimmer, work);
     if (work.flowing) shape = shape - momentum_of_flow(swimmer, work);

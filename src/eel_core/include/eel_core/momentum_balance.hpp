@@ -85,7 +85,7 @@ inline void put_velocity(const Twist<Plane, double>& twist, const Frame2<double>
 
 // Rate of the momentum of world vectors, in the axes of the head, by the loads.
 template <class M>
-Momentum<M, double> momentum_rate_from_loads(const Swimmer& swimmer, const Workspace<M>& work)
+EEL_CORE_INLINE inline Momentum<M, double> momentum_rate_from_loads(const Swimmer& swimmer, const Workspace<M>& work)
 {
     const Twist<M, double>& twist = work.twist;
     Wrench<M, double> rate = work.tail + work.drag;

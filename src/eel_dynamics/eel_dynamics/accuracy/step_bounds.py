@@ -12,6 +12,7 @@ from eel_gaits.laws.law import Law
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import LONGEST_STEP, Accuracy
+from eel_dynamics.accuracy.error_estimate import TORQUE_FLOOR
 
 # A run takes at most so many evaluations per simulated second. They take seconds of wall time. The most exact runs need
 # a tenth of them.
@@ -64,12 +65,13 @@ def step_bounds_of(
     speed: float,
     scale: float,
     most_evaluations: float,
+    law_scale: float = math.inf,
 ) -> eel_core.StepBounds:
     """The bounds of the steps for a body of `length` [m] and `mass` [kg] on a grid of `nodes`.
 
     ledger: whether the energy ledger is kept. between_samples: whether the curvature is a quintic between two samples.
-    speed [m/s]: that the law gives to the body. scale [s]: the shortest time scale of the law and the initial velocity.
-    most_evaluations: per simulated second.
+    speed [m/s]: that the law gives to the body. scale [s]: the shortest time scale of all. most_evaluations: per
+    simulated second. law_scale [s]: of the law and the initial velocity, for the torques of robots.
     """
     longest = accuracy.longest_step * min(scale, 10.0)
     fixed = accuracy.step or (accuracy.fixed and min(scale, 1.0) / accuracy.fixed)
@@ -84,4 +86,5 @@ def step_bounds_of(
         part_of_span=1.0 if between_samples else min(1.0, part_of_span * accuracy.longest_step / LONGEST_STEP),
         most_steps=most_evaluations / EVALUATIONS[accuracy.method],
         spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / nodes)),
+        torque_floor=TORQUE_FLOOR * mass * (length / min(law_scale, 1.0)) ** 2,
     )

@@ -12,7 +12,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.fins.fins import given_angles, knots_of, servo_time
@@ -21,7 +20,6 @@ from eel_model.initial_state import InitialState, time_scale
 from eel_model.robot.robot import Robot
 
 import eel_core
-from eel_dynamics.accuracy.error_estimate import TORQUE_FLOOR
 from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
 from eel_dynamics.accuracy.step_bounds import step_bounds_of
 from eel_dynamics.curvature.curvature_samples import CurvatureSample
@@ -34,11 +32,13 @@ from eel_dynamics.simulation.observations import Observations, Snapshot
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import (
     SimulationStopped,
+    by_part,
     first_bad_sample,
     left_grid,
     not_begun,
     remedy,
     stopped_by,
+    stopped_in_flow,
 )
 
 UNCUT = 2**62  # nodes that a march evaluates before it comes back: all
@@ -69,14 +69,15 @@ class March:
         self._rows: np.ndarray | None = None  # (T, R), the numbers of a robot's coordinates in the last `record`
         self.discretisation, self.robot = self._on_grid(settings)
         self.follower = LawFollower(self.discretisation.tabulation, setup.default_transition, law, origin)
-        self.core: Any = (eel_core.March if self.robot is None else eel_core.BentMarch)(*self._mechanics)
+        self.core = eel_core.March(*self._mechanics)
+        self._places = self.core.row
         self._hand_over_law()
         position, orientation, _ = setup.initial_state
         shape = () if self.robot is None else self.robot.at_start(self.law_on_grid, self._reference)
         self.energy_at_start: float = self.core.start(position, orientation, setup.initial_twist, *shape)
         if not np.isfinite(self.energy_at_start):
             if self.core.outside is not None:
-                raise self._left_grid(self.core.outside)
+                raise left_grid(self.setup.flow, self.core.outside)
             raise SimulationStopped(0.0, "kinetic energy", self.energy_at_start, "start slower")
 
     def _on_grid(self, settings: GridSettings) -> tuple[Discretisation, ModesOnGrid | None]:
@@ -85,8 +86,8 @@ class March:
 
     @property
     def _mechanics(self) -> tuple[Any, ...]:
-        swimmer, settings, planar = self.discretisation.swimmer, self.setup.settings, bool(self.setup.scene.planar)
-        return (swimmer, *((settings.method, settings.order) if self.robot is None else (self.robot.modes,)), planar)
+        settings, modes = self.setup.settings, None if self.robot is None else self.robot.modes
+        return self.discretisation.swimmer, settings.method, settings.order, bool(self.setup.scene.planar), modes
 
     @classmethod
     def from_start(
@@ -177,19 +178,25 @@ class March:
         self.law_on_grid, self._bounds = follower.law_on_grid, self._step_bounds()
         flow = () if setup.flow is None else setup.flow.traits.breakpoints
         breakpoints = sorted({*follower.breakpoints, *flow, *knots_of(setup.fins)})  # s: a derivative jumps there
-        water = setup.current, setup.core_flow, smoothly, given_angles(setup.fins, self._commands)
-        if robot is None:
-            self.core.follow(self.law_on_grid, breakpoints, self._bounds, bool(setup.scene.ledger), *water)
-            return
-        bent, self._reference = robot.law(follower, self.discretisation.tabulation)
-        scale = min(follower.time_scale, self._time_scale, 1.0)
-        floor = TORQUE_FLOOR * self.discretisation.mass * (setup.body.length / scale) ** 2
-        steps = breakpoints, self._bounds, floor, bool(setup.scene.ledger)
-        self.core.follow(bent, self._reference, robot.drive, robot.push, *steps, *water)
+        law, self._reference = self.law_on_grid, np.zeros(0)
+        if robot is not None:
+            law, self._reference = robot.law(follower, self.discretisation.tabulation)
+        self.core.follow(
+            law,
+            breakpoints,
+            self._bounds,
+            bool(setup.scene.ledger),
+            setup.current,
+            setup.core_flow,
+            smoothly,
+            given_angles(setup.fins, self._commands),
+            self._reference,
+        )
 
     def _step_bounds(self) -> eel_core.StepBounds:
         setup, follower, here = self.setup, self.follower, self.discretisation
         of_flow = np.inf if setup.flow is None else setup.flow.traits.time_scale
+        of_law = min(follower.time_scale, self._time_scale)
         return step_bounds_of(
             accuracy=setup.settings,
             ledger=bool(setup.scene.ledger),
@@ -198,8 +205,9 @@ class March:
             mass=here.mass,
             length=setup.body.length,
             speed=follower.speed(setup.body.length),
-            scale=min(follower.time_scale, self._time_scale, here.weight_time, of_flow, servo_time(setup.fins)),
+            scale=min(of_law, here.weight_time, of_flow, servo_time(setup.fins)),
             most_evaluations=setup.most_evaluations,
+            law_scale=of_law,
         )
 
     # -- march
@@ -240,8 +248,7 @@ class March:
         """As `Simulation.record`."""
         out = Observations(len(times), len(self.setup.x), wrench, load, len(self.setup.fins))
         works, done, status = np.zeros((len(times), len(WORKS))), 0, MARCHED
-        self._rows = None if self.robot is None else self._empty_rows(len(times))
-        rows = () if self._rows is None else (self._rows,)
+        self._rows = rows = self._empty_rows(len(times))
         alone = look is None and threading.current_thread() is not threading.main_thread()
         slice_before = (
             self.core.set_slice(UNCUT) if alone else None
@@ -249,7 +256,7 @@ class March:
         while status == MARCHED and done < len(times):
             event, status = self._pass_event(), UNFINISHED
             while status == UNFINISHED:
-                done, status = self.core.record(times, done, out.whole, works, *rows, bool(wrench), bool(load), event)
+                done, status = self.core.record(times, done, out.whole, works, rows, bool(wrench), bool(load), event)
                 if status == MARCHED and done < len(times):
                     status = self.core.advance(event)
                 if look is not None and status == UNFINISHED:
@@ -268,35 +275,15 @@ class March:
         if failure:
             for place in out.backbone[done]:
                 if self.setup.flow is not None and self.setup.flow.outside(times[done], place):
-                    return out, works, done, self._left_grid((times[done], *place))
+                    return out, works, done, left_grid(self.setup.flow, (times[done], *place))
             return out, works, done, SimulationStopped(self.time, quantity, value, remedy(self.setup.settings))
         return out, works, done, None if status == MARCHED else self._stopped(status)
 
     def _stopped(self, status: int) -> SimulationStopped:
-        """The error for the `status` of a march; of a robot with the part that is to blame, and what would help."""
-        height, flow = self.core.state[2], self.setup.flow
-        if status != MARCHED and self.core.outside is not None:
-            stopped = self._left_grid(self.core.outside)
-        elif flow is not None and height > flow.traits.surface_height:
-            what = "the head is above the surface of the flow, z"
-            stopped = SimulationStopped(self.time, what, height, "dive deeper")
-        else:
-            stopped = stopped_by(status, self.time, self._bounds, self.setup.settings)
-        if self.robot is None:
-            return stopped
-        singular = self.core.singular_mode() if status == SINGULAR else None
-        part = shown(self.robot.part_of(self.core.hardest if singular is None else singular))
-        if status == SINGULAR:
-            hint = f"{part} has no inertia of its own: give it an armature, or a support apart from the others"
-        else:
-            hint = f"{part} asks for the shortest steps: give it damping or an armature; or {stopped.hint}"
-        return SimulationStopped(stopped.time, stopped.quantity, stopped.value, hint)
-
-    def _left_grid(self, where: tuple[float, ...]) -> SimulationStopped:
-        """The error for a swimmer with a point at a time [s] and a place [m] where the flow is not known."""
-        time, *place = map(float, where)
-        found = self.setup.flow and self.setup.flow.outside(time, place)
-        return left_grid(time, place, *(found or ("", np.nan)))
+        """The error for the `status` of a march."""
+        by_status = stopped_by(status, self.time, self._bounds, self.setup.settings)
+        stopped = stopped_in_flow(self.setup.flow, self.core, self.time) or by_status
+        return stopped if self.robot is None else by_part(stopped, self.core, self.robot, status == SINGULAR)
 
     # -- joints of a robot
 
@@ -306,11 +293,10 @@ class March:
         return None if self._rows is None else self._motion(self._rows)
 
     def _empty_rows(self, samples: int) -> np.ndarray:
-        return np.zeros((samples, max(end for _, end in self.core.row.values())))
+        return np.zeros((samples, self._places["damping_work"][1]))
 
-    def _motion(self, rows: np.ndarray) -> JointMotion:
-        assert self.robot is not None
-        return JointMotion(self.robot, self.core.row, rows)
+    def _motion(self, rows: np.ndarray) -> JointMotion | None:
+        return None if self.robot is None else JointMotion(self.robot, self._places, rows)
 
     def command(self, joint: str, kind: str, value: float) -> None:
         """As `Simulation.command`. kind: angle [rad], rate [rad/s], torque [N m], or law."""
@@ -325,14 +311,14 @@ class March:
         """As `Simulation.observe`."""
         scene = self.setup.scene
         wrench, load = bool(wrench and scene.internal_wrench), bool(load)
-        rows = () if self.robot is None else (self._empty_rows(1),)
+        rows = self._empty_rows(1)
         ledger = (np.array(self.core.works), self.energy_at_start) if scene.ledger else None
-        joints = self._motion(*rows) if rows else None
+        joints = self._motion(rows)
         snapshot = Snapshot(self.time, self.setup.x, wrench, load, len(self.setup.fins), ledger, joints)
-        if not self.core.observe(snapshot.whole, *rows, wrench, load):
+        if not self.core.observe(snapshot.whole, rows, wrench, load):
             raise self._stopped(SINGULAR)
         if self.setup.flow is not None and self.core.outside is not None:
-            raise self._left_grid(self.core.outside)
+            raise left_grid(self.setup.flow, self.core.outside)
         return snapshot
 
     @property

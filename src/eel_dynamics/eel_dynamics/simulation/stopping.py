@@ -8,15 +8,18 @@ excess is more than a share of all energy that was there or passed, the motion i
 """
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from eel_base.wording import WorkStopped, shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
+from eel_model.flow.flow import Flow
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.simulation.bending.modes_on_grid import ModesOnGrid
 
 OPEN = 0.2  # share of the energy; at twice the longest useful step of the robot's gaits it is 0.03, then grows at once
 
@@ -54,14 +57,33 @@ def stopped_by(status: int, time: float, bounds: eel_core.StepBounds, accuracy: 
     return SimulationStopped(time, quantity, bounds.smallest, "take a coarser accuracy, or a slower law")
 
 
-def left_grid(time: float, place: list[float], axis: str, value: float) -> SimulationStopped:
-    """The error at `time` [s] for a swimmer with a point at a `place` [m] where the flow is not known.
+def stopped_in_flow(flow: Flow | None, core: eel_core.March, time: float) -> SimulationStopped | None:
+    """The error at `time` [s] where the `flow` is not known, or none of water; else None."""
+    if core.outside is not None:
+        return left_grid(flow, core.outside)
+    if flow is not None and core.state[2] > flow.traits.surface_height:
+        what = "the head is above the surface of the flow, z"
+        return SimulationStopped(time, what, core.state[2], "dive deeper")
+    return None
 
-    axis, value: as `Flow.outside` gives them.
-    """
-    x, y, z = place
+
+def left_grid(flow: Flow | None, where: Sequence[float]) -> SimulationStopped:
+    """The error for a swimmer with a point at a time [s] and a place [m], `where` the `flow` is not known."""
+    time, x, y, z = map(float, where)
+    axis, value = (flow and flow.outside(time, (x, y, z))) or ("", np.nan)
     quantity = f"the swimmer has left the grid of the flow at ({x:.4g}, {y:.4g}, {z:.4g}) m, beyond {axis}"
     return SimulationStopped(time, quantity, value, "give a larger grid, or a shorter run")
+
+
+def by_part(stopped: SimulationStopped, core: eel_core.March, robot: ModesOnGrid, singular: bool) -> SimulationStopped:
+    """The error of a `robot`, with the part that is to blame. singular: whether the inertia is."""
+    mode = core.singular_mode() if singular else None
+    part = shown(robot.part_of(core.hardest if mode is None else mode))
+    if singular:
+        hint = f"{part} has no inertia of its own: give it an armature, or a support apart from the others"
+    else:
+        hint = f"{part} asks for the shortest steps: give it damping or an armature; or {stopped.hint}"
+    return SimulationStopped(stopped.time, stopped.quantity, stopped.value, hint)
 
 
 def remedy(accuracy: Accuracy) -> str:

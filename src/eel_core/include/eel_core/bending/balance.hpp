@@ -12,6 +12,8 @@
 // has (U x p, rho_f A a_u - g^T p) besides. Fins act on their sections, as in fins.hpp.
 #pragma once
 
+#include <optional>
+
 #include "eel_core/bending/columns.hpp"
 
 namespace eel_core {
@@ -49,7 +51,6 @@ class BentBody {
     Forces forces;
     std::vector<Target> target;  // of the servos
     State head_rate{};           // of the head's part of the state
-    std::size_t singular = 0;    // row of M that is not positive definite
 
     std::size_t bytes() const
     {
@@ -60,23 +61,44 @@ class BentBody {
     }
 
     // The shape at the coordinates x, and M. False where M is not positive definite.
-    bool configure_at(const BentLaw& law, const Water& water, double time, const State& y, const double* x)
+    bool configure_at(const BentSettings& settings, double time, const State& y, const double* x)
     {
-        law_ = &law.law, time_ = time, state_ = y;
-        work.factor.resize(law.law.tables->rows());
-        for (std::size_t m = 0; m < modes_->modes; ++m) work.factor[law.first_mode + m] = {x[m], 0.0, 0.0};
-        configure(*swimmer_, law.law, time, work);
-        set_targets(law, work.factor, time, target);
-        set_pushing(*modes_, law, time, drive_, forces.pushing);
+        law_ = &settings.law, time_ = time, state_ = y;
+        work.factor.resize(settings.law.tables->rows());
+        for (std::size_t m = 0; m < modes_->modes; ++m) work.factor[settings.first_mode + m] = {x[m], 0.0, 0.0};
+        configure(*swimmer_, settings.law, time, work);
+        set_targets(settings, work.factor, time, target);
+        set_pushing(*modes_, time, drive_, forces.pushing);
         work.head = head_frame(y, M());
         work.momentum = momentum_in_head(y, work.head);
-        set_flow(*swimmer_, water, time, Vector3{y[0], y[1], y[2]}, work);
+        set_flow(*swimmer_, settings.water, time, Vector3{y[0], y[1], y[2]}, work);
         if constexpr (!M::planar)
-            if (!work.fins.empty()) place_fins(*swimmer_, law.law, water, time, y, work);
-        columns.set(*swimmer_, *modes_, law, work);
+            if (!work.fins.empty()) place_fins(*swimmer_, settings.law, settings.water, time, y, work);
+        columns.set(*swimmer_, *modes_, settings, work);
         factored_ = columns.mass;
-        singular = factored_.factor();
-        return singular == Definite::definite;
+        singular_ = factored_.factor();
+        return singular_ == Definite::definite;
+    }
+
+    // Shape, motion and loads at present. False where M is not positive definite.
+    bool find_present(const BentSettings& settings, const Present& now)
+    {
+        if (!configure_at(settings, now.time, now.state, now.x.data())) return false;
+        move_by_rates(now.rate.data(), now.x.data());
+        return true;
+    }
+    // The first of the modes that make M singular at present; none where it is positive definite.
+    std::optional<std::size_t> singular_mode(const BentSettings& settings, const Present& now)
+    {
+        if (configure_at(settings, now.time, now.state, now.x.data())) return {};
+        return singular_ < head ? 0 : singular_ - head;
+    }
+    // Kinetic energy of the rotors and armatures [J].
+    double rotor_energy() const
+    {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < rate.size(); ++i) sum += 0.5 * modes_->inertia[i] * rate[i] * rate[i];
+        return sum;
     }
 
     // `rate` of a configured body, from the momenta of the coordinates; `move` goes on.
@@ -143,28 +165,29 @@ class BentBody {
     }
 
     // `head_rate` and `momentum_rate` in the motion that `work` holds, of state y.
-    void find_rates(const BentLaw& law, const Vector3<double>& current, const State& y)
+    void find_rates(const BentSettings& settings, const State& y)
     {
-        put_velocity(work.twist, work.head, current, y, head_rate);
+        put_velocity(work.twist, work.head, settings.water.current, y, head_rate);
         by_loads_ = momentum_rate_from_loads(*swimmer_, work);
         put_momentum(by_loads_, work.head, head_rate);
         for (std::size_t k = state_size; k < state_space; ++k) head_rate[k] = work.servo_rate[k];
         set_momentum_behind();
         for (std::size_t m = 0; m < modes_->modes; ++m)
-            momentum_rate[m] = gradient_of_energy(law, m) + mode_load_[m] - forces.total[m];
+            momentum_rate[m] = gradient_of_energy(settings, m) + mode_load_[m] - forces.total[m];
         if (work.flowing || !work.fins.empty())
             for (std::size_t m = 0; m < modes_->modes; ++m) momentum_rate[m] += added_[m];
         for (std::size_t i = modes_->modes; i < modes_->coordinates; ++i) momentum_rate[i] = -forces.total[i];
     }
 
     // `acceleration`, that of the head in `work`, and `drift`, after `find_rates`.
-    void find_accelerations_and_drift(const BentLaw& law)
+    void find_accelerations_and_drift(const BentSettings& settings)
     {
-        for (std::size_t m = 0; m < modes_->modes; ++m) work.factor[law.first_mode + m][1] = rate[m];
+        const LawOnGrid& law = settings.law;
+        for (std::size_t m = 0; m < modes_->modes; ++m) work.factor[settings.first_mode + m][1] = rate[m];
         for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k)
-            work.curvature_rate.store(k, law.law.combine_both(law.law.tables->node, work.factor, 1, k));
+            work.curvature_rate.store(k, law.combine_both(law.tables->node, work.factor, 1, k));
         const double on_nose = water_on_nose(*swimmer_, work);
-        const auto left = accelerating_load(*swimmer_, law.law, on_nose, work);
+        const auto left = accelerating_load(*swimmer_, law, on_nose, work);
         imposed_at_rest_ = power_of_shape(*swimmer_, work);
         for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {  // about the sections, weighed
             Wrench<M, Lanes> taken = work.density[k];
@@ -289,7 +312,7 @@ class BentBody {
     }
 
     // dT/dq_m, from `work.integrand`.
-    double gradient_of_energy(const BentLaw& law, std::size_t m) const
+    double gradient_of_energy(const BentSettings& settings, std::size_t m) const
     {
         const Column<M>& own = columns.column[m];
         const std::size_t end = (own.last_node + width - 1) / width;
@@ -301,7 +324,7 @@ class BentBody {
                 along = turned;
             else
                 along = modes_->axis[m] == LawOnGrid::pitch ? turned.y : turned.z;
-            sum += swimmer_->grid.weight[k] * (Columns<M>::shape(law, m, k) * along);
+            sum += swimmer_->grid.weight[k] * (Columns<M>::shape(settings, m, k) * along);
         }
         return -total(sum);
     }
@@ -309,6 +332,7 @@ class BentBody {
     const Swimmer* swimmer_;
     const Modes* modes_;
     Definite factored_;
+    std::size_t singular_ = 0;                   // row of M that is not positive definite
     Field<Wrench<M, double>> load_;              // about the sections, weighed by their length, in the axes of the head
     Field<Momentum<M, double>> momentum_ahead_;  // of each node, about the head
     std::vector<double> mode_load_, added_, solution_;  // `added_`: in the rates of momenta alone

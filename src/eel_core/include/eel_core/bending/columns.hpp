@@ -61,13 +61,13 @@ class Columns {
     std::vector<double> at_rest;   // the same, less that of the water's own motion: where head and coordinates rest
 
     // B_m of a block.
-    static Lanes shape(const BentLaw& law, std::size_t m, std::size_t k)
+    static Lanes shape(const BentSettings& settings, std::size_t m, std::size_t k)
     {
-        return law.law.tables->node.at(law.first_mode + m, k)[0];
+        return settings.law.tables->node.at(settings.first_mode + m, k)[0];
     }
 
     // Sets all of it for a body that is configured with the velocities of the imposed change of shape.
-    void set(const Swimmer& swimmer, const Modes& modes, const BentLaw& law, Workspace<M>& work)
+    void set(const Swimmer& swimmer, const Modes& modes, const BentSettings& settings, Workspace<M>& work)
     {
         const auto of_shape = components_of(inertia_and_momentum(swimmer, work));
         for (std::size_t i = 0; i < head; ++i) {
@@ -75,7 +75,7 @@ class Columns {
             for (std::size_t j = 0; j <= i; ++j) mass.at(i, j) = work.inertia.lower[work.inertia.at(i, j)];
         }
         for (std::size_t m = 0; m < modes.modes; ++m) {
-            set_column(swimmer, modes, law, m, work);
+            set_column(swimmer, modes, settings, m, work);
             set_momentum(swimmer, m, work);
             for (std::size_t other = 0; other <= m; ++other) mass.at(head + m, head + other) = product(m, other);
         }
@@ -148,7 +148,8 @@ class Columns {
         for (std::size_t m = 0; m < column.size(); ++m) at_rest[head + m] -= work_of(m, work.integrand);
     }
 
-    void set_column(const Swimmer& swimmer, const Modes& modes, const BentLaw& law, std::size_t m, Workspace<M>& work)
+    void set_column(const Swimmer& swimmer, const Modes& modes, const BentSettings& settings, std::size_t m,
+                    Workspace<M>& work)
     {
         Column<M>& own = column[m];
         blocks_ = swimmer.grid.blocks;
@@ -162,11 +163,11 @@ class Columns {
         };
         if constexpr (M::planar) {
             for (std::size_t k = own.first_block; k < blocks_; ++k)
-                own.omega.store(k, law.law.tables->angle.at(law.first_mode + m, k)[0]);
+                own.omega.store(k, settings.law.tables->angle.at(settings.first_mode + m, k)[0]);
         } else {
             for (std::size_t k = begin; k < end; ++k) {
                 const auto frame = work.frame[k];
-                const Lanes b = shape(law, m, k);
+                const Lanes b = shape(settings, m, k);
                 const auto turned = modes.axis[m] == LawOnGrid::pitch ? b * frame.axis2 : b * frame.axis3;
                 work.integrand.store(k, {turned, Vector<M, Lanes>{}});
             }

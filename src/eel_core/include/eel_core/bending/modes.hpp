@@ -15,7 +15,7 @@
 #include <memory>
 #include <vector>
 
-#include "eel_core/law.hpp"
+#include "eel_core/steppers/present.hpp"
 
 namespace eel_core {
 
@@ -50,6 +50,9 @@ struct Modes {
     std::vector<Servo> servos;
     std::vector<Stop> stops;
     std::vector<GivenTorque> torques;
+    // What muscles do to the coordinates: by the factors of a law of their own; none: nothing.
+    std::shared_ptr<const LawOnGrid> drive;
+    std::vector<double> push;  // (coordinates, rows of `drive`)
 };
 
 // A command to a servo, which holds in place of the law.
@@ -68,16 +71,21 @@ struct Target {
     bool by_torque = false;
 };
 
-// The law that drives a body with modes. The rows of the modes are the last ones of its tables.
-struct BentLaw {
-    LawOnGrid law;
+// As `MarchSettings`, of a body with modes. The rows of the modes are the last ones of the law's tables.
+struct BentSettings : MarchSettings {
     std::size_t first_mode = 0;     // row of the first mode
     std::vector<double> reference;  // (servos, first_mode): what a servo follows, by the factors of the law
-    // What muscles do to the coordinates: by the factors of another law.
-    std::shared_ptr<const LawOnGrid> drive;
-    std::vector<double> push;       // (coordinates, rows of `drive`)
     std::vector<Command> commands;  // (servos), or none
 };
+
+// Sets the modes' factors to their coordinates and rates, and to these accelerations; none: zero.
+inline void set_factors(const Modes& modes, const BentSettings& settings, const Present& now,
+                        const double* acceleration, std::vector<Jet>& factor)
+{
+    factor.resize(settings.law.tables->rows());
+    for (std::size_t m = 0; m < modes.modes; ++m)
+        factor[settings.first_mode + m] = {now.x[m], now.rate[m], acceleration ? acceleration[m] : 0.0};
+}
 
 // Forces at an instant, and what the ledger needs of them.
 struct Forces {
@@ -98,31 +106,31 @@ inline Target target_of(const Command& command, double time)
 }
 
 // What the servos follow at `time` [s].
-inline void set_targets(const BentLaw& law, const std::vector<Jet>& factor, double time, std::vector<Target>& target)
+inline void set_targets(const BentSettings& settings, const std::vector<Jet>& factor, double time,
+                        std::vector<Target>& target)
 {
     for (std::size_t s = 0; s < target.size(); ++s) {
-        if (!law.commands.empty() && law.commands[s].kind != Command::law) {
-            target[s] = target_of(law.commands[s], time);
+        if (!settings.commands.empty() && settings.commands[s].kind != Command::law) {
+            target[s] = target_of(settings.commands[s], time);
             continue;
         }
         target[s] = {};
-        for (std::size_t row = 0; row < law.first_mode; ++row)
+        for (std::size_t row = 0; row < settings.first_mode; ++row)
             for (std::size_t d = 0; d < 3; ++d)
-                target[s].reference[d] += law.reference[s * law.first_mode + row] * factor[row][d];
+                target[s].reference[d] += settings.reference[s * settings.first_mode + row] * factor[row][d];
     }
 }
 
 // What muscles and given torques do to the coordinates at `time` [s]; `factor`: work space.
-inline void set_pushing(const Modes& modes, const BentLaw& law, double time, std::vector<Jet>& factor,
-                        std::vector<double>& pushing)
+inline void set_pushing(const Modes& modes, double time, std::vector<Jet>& factor, std::vector<double>& pushing)
 {
     std::fill(pushing.begin(), pushing.end(), 0.0);
-    if (law.drive) {
-        factor.resize(law.drive->tables->rows());
-        law.drive->set_factors(time, factor);
+    if (modes.drive) {
+        factor.resize(modes.drive->tables->rows());
+        modes.drive->set_factors(time, factor);
         for (std::size_t i = 0; i < pushing.size(); ++i)
             for (std::size_t row = 0; row < factor.size(); ++row)
-                pushing[i] += law.push[i * factor.size() + row] * factor[row][0];
+                pushing[i] += modes.push[i * factor.size() + row] * factor[row][0];
     }
     for (const GivenTorque& torque : modes.torques) pushing[torque.coordinate] += torque.at(time);
 }

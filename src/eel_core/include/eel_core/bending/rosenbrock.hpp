@@ -20,15 +20,6 @@ struct BentState {
     std::vector<double> momentum, x;  // of the coordinates
 };
 
-struct BentSettings {
-    BentLaw law;
-    std::vector<double> breakpoints;  // [s], ascending
-    StepBounds bounds;
-    double torque_floor = 0.0;  // [N m], below which torques count as none
-    bool ledger = true;
-    Water water{};
-};
-
 inline constexpr std::size_t bent_works = std::tuple_size_v<Powers> + 1;
 using BentPowers = std::array<double, bent_works>;  // [W]: `Powers`, and that of the dampers
 
@@ -85,13 +76,12 @@ class BentStepper {
     }
 
     BentBody<M>& body() { return body_; }
-    const BentBody<M>& body() const { return body_; }
     Workspace<M>& work() { return body_.work; }
     const Workspace<M>& work() const { return body_.work; }
     const Counts& counts() const { return counts_; }
     std::size_t hardest() const { return hardest_; }  // coordinate with the greatest error in the last step
     double end_time() const { return here_.time; }
-    const BentPoint<M>& end() const { return here_; }
+    std::size_t bytes() const { return body_.bytes(); }
 
     void forget(const State& y, double spare_steps)
     {
@@ -105,10 +95,13 @@ class BentStepper {
         proposed_ = other.proposed_;
     }
 
-    void begin(double time, const BentState& y, const BentPowers& works, double first_length)
+    void begin(const BentSettings& settings, const Present& now)
     {
-        here_.time = before_.time = time, here_.y = y, works_ = works, anew_ = true, known_ends_ = 0;
-        if (proposed_ == 0.0) proposed_ = first_length;
+        BentState y{now.state, std::vector<double>(now.x.size()), now.x};
+        if (body_.find_present(settings, now)) body_.momenta_of(body_.work.twist, now.rate.data(), y.momentum.data());
+        here_.time = before_.time = now.time, here_.y = y, works_ = with_dampers(now.works, now.damping_work);
+        anew_ = true, known_ends_ = 0;
+        if (proposed_ == 0.0) proposed_ = first_step * settings.bounds.longest;
     }
 
     Status march(const BentSettings& settings, double until, Slice& slice)
@@ -145,18 +138,25 @@ class BentStepper {
         return status == Status::marched;
     }
 
-    // Head, coordinates, their rates and the works at `time` [s] within the step.
-    void state_at(double time, State& head, std::vector<double>& x, std::vector<double>& rate, BentPowers& works) const
+    // Puts state, coordinates, their rates and the works at the present time, which lies within the step.
+    EEL_CORE_APART void put_state(bool, Present& now) const
     {
         const double length = here_.time - before_.time;
-        if (std::abs(here_.time - time) <= 1e-12 * std::max(1.0, std::abs(time)) || length == 0.0) {
-            head = here_.y.head, x = here_.y.x, rate = here_.rate, works = works_;
-            return;
+        BentPowers works = works_;
+        if (std::abs(here_.time - now.time) <= 1e-12 * std::max(1.0, std::abs(now.time)) || length == 0.0) {
+            now.state = here_.y.head, now.x = here_.y.x, now.rate = here_.rate;
+        } else {
+            const double theta = std::clamp((now.time - before_.time) / length, 0.0, 1.0);
+            interpolate(theta, now.state, now.x, now.rate);
+            double square = 0.0;  // by fused products: they round alike wherever this is compiled
+            for (std::size_t k = 3; k < 7; ++k) square = std::fma(now.state[k], now.state[k], square);
+            for (std::size_t k = 3; k < 7; ++k) now.state[k] /= std::sqrt(square);
+            for (std::size_t k = 0; k < bent_works; ++k)
+                works[k] =
+                    works_before_[k] + length * work_until(theta, before_.powers[k], middle_[k], here_.powers[k]);
         }
-        const double theta = std::clamp((time - before_.time) / length, 0.0, 1.0);
-        interpolate(theta, head, x, rate);
-        for (std::size_t k = 0; k < bent_works; ++k)
-            works[k] = works_before_[k] + length * work_until(theta, before_.powers[k], middle_[k], here_.powers[k]);
+        std::copy_n(works.begin(), now.works.size(), now.works.begin());
+        now.damping_work = works.back();
     }
 
   private:
@@ -170,6 +170,7 @@ class BentStepper {
         return theta * (a + theta * (slope / 2.0 + theta * bend / 3.0));
     }
 
+    // The orientation of `head` is not normalised.
     void interpolate(double theta, State& head, std::vector<double>& x, std::vector<double>& rate) const
     {
         const double length = here_.time - before_.time, left = 1.0 - theta;
@@ -178,7 +179,6 @@ class BentStepper {
         for (std::size_t k = 0; k < state_space; ++k)
             head[k] = before_.y.head[k] + b1 * (here_.y.head[k] - before_.y.head[k]) + r0 * before_.head_rate[k] +
                       r1 * here_.head_rate[k];
-        normalise(head);
         // The derivative of this cubic is nearer to the stiff rates between the ends than their own at the ends are.
         const double slope = 6.0 * theta * left / length, s0 = left * (1.0 - 3.0 * theta),
                      s1 = theta * (3.0 * theta - 2.0);
@@ -199,19 +199,18 @@ class BentStepper {
     bool evaluate(const BentSettings& settings, double time, const BentState& y)
     {
         ++counts_.evaluations;
-        if (!body_.configure_at(settings.law, settings.water, time, y.head, y.x.data())) return false;
+        if (!body_.configure_at(settings, time, y.head, y.x.data())) return false;
         body_.find_rates_of(y.momentum.data());
         body_.move(y.x.data());
-        body_.find_rates(settings.law, settings.water.current, y.head);
+        body_.find_rates(settings, y.head);
         return true;
     }
 
-    BentPowers all_powers() const
+    static BentPowers with_dampers(const Powers& powers, double dampers)
     {
-        const Powers powers = body_.powers();
         BentPowers all;
         std::copy(powers.begin(), powers.end(), all.begin());
-        all.back() = body_.forces.damping_power;
+        all.back() = dampers;
         return all;
     }
 
@@ -220,7 +219,7 @@ class BentStepper {
     bool find_point(const BentSettings& settings, BentPoint<M>& point, bool smoothed)
     {
         ++counts_.evaluations;
-        if (!body_.configure_at(settings.law, settings.water, point.time, point.y.head, point.y.x.data())) return false;
+        if (!body_.configure_at(settings, point.time, point.y.head, point.y.x.data())) return false;
         body_.find_rates_of(point.y.momentum.data());
         if (smoothed && smooth_rates(point)) {
             body_.move_by_rates(body_.rate.data(), point.y.x.data());
@@ -228,15 +227,15 @@ class BentStepper {
         } else {
             body_.move(point.y.x.data());
         }
-        body_.find_rates(settings.law, settings.water.current, point.y.head);
-        body_.find_accelerations_and_drift(settings.law);
+        body_.find_rates(settings, point.y.head);
+        body_.find_accelerations_and_drift(settings);
         point.head_rate = body_.head_rate, point.momentum_rate = body_.momentum_rate, point.rate = body_.rate;
         point.drift = body_.drift, point.head = body_.work.head;
         point.force = body_.forces.total;
         point.mass = body_.columns.mass;
         linearise(*modes_, body_.target, point.y.x.data(), point.rate.data(), point.stiffness, point.damping,
                   point.in_time);
-        if (settings.ledger) point.powers = all_powers();
+        if (settings.ledger) point.powers = with_dampers(body_.powers(), body_.forces.damping_power);
         return true;
     }
 
@@ -379,7 +378,7 @@ class BentStepper {
         for (std::size_t i = 0; i < modes_->modes; ++i)
             if (modes_->continuous[i]) du[i] -= smoothed[M::freedoms + i];
         double worst = 0.0;
-        const double scale = std::max(torque_scale_, settings.torque_floor);
+        const double scale = std::max(torque_scale_, settings.bounds.torque_floor);
         for (std::size_t i = 0; i < c; ++i) {
             double torque = 0.0;
             for (std::size_t j = 0; j < c; ++j)
@@ -446,12 +445,13 @@ class BentStepper {
         State head{};
         std::vector<double> x, rate;
         interpolate(0.5, head, x, rate);
+        normalise(head);
         ++counts_.evaluations;
-        if (!body_.configure_at(settings.law, settings.water, time, head, x.data())) return Status::singular;
+        if (!body_.configure_at(settings, time, head, x.data())) return Status::singular;
         body_.move_by_rates(rate.data(), x.data());
-        body_.find_rates(settings.law, settings.water.current, head);
-        body_.find_accelerations_and_drift(settings.law);
-        middle_ = all_powers();
+        body_.find_rates(settings, head);
+        body_.find_accelerations_and_drift(settings);
+        middle_ = with_dampers(body_.powers(), body_.forces.damping_power);
         for (std::size_t k = 0; k < bent_works; ++k)
             works_[k] += length * work_until(1.0, before_.powers[k], middle_[k], here_.powers[k]);
         return Status::marched;

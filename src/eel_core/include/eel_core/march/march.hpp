@@ -2,159 +2,245 @@
 // A swimmer on its way: its state, what drives it, the steps it takes, and what is seen of it.
 #pragma once
 
-#include "eel_core/march/marching.hpp"
+#include <memory>
+
+#include "eel_core/bending/coordinate_row.hpp"
+#include "eel_core/march/observe.hpp"
+#include "eel_core/march/steps.hpp"
 
 namespace eel_core {
 
 using HeadMotion = std::array<double, 13>;  // see `March::head`
 
-// A copy goes on by itself: state, steps and work space are its own; swimmer and law, which never change, are shared.
-class March : public Marching<March, Stepper> {
+// Gives the present state the momentum of the head's twist, in the shape by the factors in `work`. Returns the kinetic
+// and potential energy [J].
+inline double put_twist(const Swimmer& swimmer, const MarchSettings& settings, const Twist<Space, double>& twist,
+                        Present& now, Workspace<Space>& work)
+{
+    State& y = now.state;
+    configure(swimmer, settings.law, now.time, work);
+    work.head = head_frame(y, Space());
+    set_flow(swimmer, settings.water, now.time, Vector3{y[0], y[1], y[2]}, work);
+    if (!work.fins.empty()) place_fins(swimmer, settings.law, settings.water, now.time, y, work);
+    put_momentum(momentum_of(swimmer, twist, work), work.head, y);
+    set_velocities(swimmer, twist, work);
+    if (work.flowing) set_flow_load(swimmer, work);
+    if (swimmer.weighs()) set_weight(swimmer, height_in(settings.water, now.time, y), work);
+    const auto [body, fluid, potential] = energies_of(swimmer, work);
+    return body + fluid + potential;
+}
+
+// A copy goes on by itself: state, steps and work space are its own; swimmer, modes and law, which never change, are
+// shared.
+class March {
   public:
-    March(const std::shared_ptr<const Swimmer>& swimmer, const Method& method, bool planar)
-        : Marching(swimmer, made(*swimmer, method, planar))
+    // `modes`: of a body that bends by itself, whose steps have a method of their own; none: its shape is imposed.
+    March(std::shared_ptr<const Swimmer> swimmer, const Method& method, bool planar,
+          std::shared_ptr<const Modes> modes = {})
+        : swimmer_(std::move(swimmer)),
+          modes_(std::move(modes)),
+          steps_(*swimmer_, method, planar, modes_.get()),
+          here_(*swimmer_)
     {
+        now_.state[6] = 1.0;
+        if (modes_) now_.x.resize(modes_->coordinates), now_.rate.resize(modes_->coordinates);
     }
 
-    const WorkDone& works() const { return works_; }
+    const Present& now() const { return now_; }
+    const Swimmer& swimmer() const { return *swimmer_; }
+    const Modes* modes() const { return modes_.get(); }
+    CoordinateRow row() const { return modes_ ? CoordinateRow(*modes_) : CoordinateRow(); }
+    Counts counts() const { return steps_.counts(); }
     // Bytes that an evaluation reads and writes: work space, weights of the integral, rows of the law.
     std::size_t memory() const
     {
-        const std::size_t work = std::visit([](const auto& stepper) { return stepper.work().bytes(); }, stepper_);
         const LawTables& law = *settings_.law.tables;
-        return work + swimmer_->grid.from_nose.bytes() +
+        return steps_.bytes() + swimmer_->grid.from_nose.bytes() +
                (law.node.lanes.size() + law.angle.lanes.size() + 3 * law.moments.lanes.size()) * sizeof(Lanes);
     }
 
-    // Goes on in another grid or by another method; the next step begins anew. The state keeps its momentum.
-    void change(const std::shared_ptr<const Swimmer>& swimmer, const Method& method, bool planar)
+    // Sets the nodes that are evaluated before a march comes back unfinished; returns what they were.
+    std::int64_t set_slice(std::int64_t nodes) { return std::exchange(slice_, nodes); }
+
+    // Goes on in another grid or by another method, with the same momentum of the head, and the same coordinates at the
+    // same rates. What drives the body must follow.
+    void change(std::shared_ptr<const Swimmer> swimmer, const Method& method, bool planar,
+                std::shared_ptr<const Modes> modes)
     {
-        Marching::change(swimmer, made(*swimmer, method, planar));
-        begin();
+        Steps next(*swimmer, method, planar, modes.get());
+        next.take_over(steps_);
+        steps_ = std::move(next), swimmer_ = std::move(swimmer), modes_ = std::move(modes);
+        here_ = StationWork(*swimmer_);
     }
 
-    // What drives the body from now on. The next step begins anew, unless the motion goes on as before (`smoothly`).
-    void follow(MarchSettings settings, bool smoothly)
+    // What drives the body from now on; commands hold. The next step begins anew, unless the motion goes on as before
+    // (`smoothly`).
+    void follow(BentSettings settings, bool smoothly)
     {
+        if (!smoothly) steps_.end(settings_, now_);
+        settings.commands = std::move(settings_.commands);
         settings_ = std::move(settings);
-        if (!smoothly) begin();
+        if (!smoothly) steps_.begin(settings_, now_);
     }
 
-    // Stands at the start, at time 0, with the momentum of the head's twist relative to the water. Returns the
-    // kinetic and potential energy [J].
-    double start(const Vector3<double>& position, const Quaternion<double>& orientation,
-                 const Twist<Space, double>& twist)
+    // Has a servo of a robot do so from now on, whatever the law; the next step begins anew.
+    void command(std::size_t servo, Command::Kind kind, double value)
     {
-        stand_at_start(), works_ = {};
+        steps_.end(settings_, now_);
+        std::vector<Command>& commands = settings_.commands;
+        commands.resize(modes_->servos.size());
+        const Command& last = commands[servo];
+        const bool by_angle = last.kind == Command::angle || last.kind == Command::rate;
+        const double from =
+            by_angle ? target_of(last, now_.time).reference[0] : now_.x[modes_->servos[servo].coordinate];
+        commands[servo] = {kind, value, now_.time, from};
+    }
+
+    // Stands at the start, at time 0, with these coordinates and rates, the momenta of the head's twist relative to the
+    // water, and the fins' first angles. Returns all energy [J].
+    double start(const Vector3<double>& position, const Quaternion<double>& orientation,
+                 const Twist<Space, double>& twist, std::vector<double> x = {}, std::vector<double> rate = {})
+    {
+        now_ = {0.0, {}, std::move(x), std::move(rate), {}, 0.0};
+        for (const FinServo& servo : swimmer_->servos)
+            if (servo.time_constant > 0.0) now_.state[servo.slot] = servo.initial;
         const double energy = set_state(position, orientation, twist);
-        std::visit([&](auto& stepper) { stepper.forget(state_, settings_.bounds.spare_steps); }, stepper_);
-        begin();
+        steps_.forget(settings_.bounds, now_);
+        steps_.begin(settings_, now_);
         return energy;
+    }
+
+    // Puts the head elsewhere, with the momenta of its twist relative to the water; the shape, its rates and the angles
+    // of the fins stay. Returns all energy [J].
+    double set_state(const Vector3<double>& position, const Quaternion<double>& orientation,
+                     const Twist<Space, double>& twist)
+    {
+        std::ranges::copy(
+            std::array{position.x, position.y, position.z, orientation.x, orientation.y, orientation.z, orientation.w},
+            now_.state.begin());
+        return set_twist(twist);
+    }
+
+    // Gives the present state the momenta of the head's twist. Returns all energy [J].
+    double set_twist(const Twist<Space, double>& twist)
+    {
+        const double energy = put_twist(*swimmer_, settings_, twist, now_, shaped());
+        steps_.begin(settings_, now_);
+        if (!modes_) return energy;
+        return steps_.of_modes<double>(
+            [energy](auto& stepper) { return energy + stepper.body().forces.elastic + stepper.body().rotor_energy(); });
+    }
+
+    // The head's twist relative to the water, in the present state. Throws where the inertia is not positive definite.
+    Twist<Space, double> twist()
+    {
+        if (!find_head()) throw std::domain_error("inertia is not positive definite");
+        return steps_.work().twist;
     }
 
     // Position [m], orientation x y z w and twist over ground [rad/s, m/s] of the head in the present state; none where
     // the inertia is not positive definite.
     std::optional<HeadMotion> head()
     {
-        std::optional<Twist<Space, double>> twist = std::visit(
-            [&](const auto& stepper) -> std::optional<Twist<Space, double>> {
-                const auto found = stepper.twist_at_end(time_);
-                if (!found) return {};
-                return in_space(*found);
-            },
-            stepper_);
+        std::optional<Twist<Space, double>> twist = steps_.twist_at_end(now_.time);
         if (!twist) {
             if (!find_head()) return {};
-            twist = workspace().twist;
+            twist = steps_.work().twist;
         }
         HeadMotion head;
-        std::copy_n(state_.begin(), 7, head.begin());
+        std::copy_n(now_.state.begin(), 7, head.begin());
         put(twist->angular, head.data() + 7);
-        put(twist->linear + head_frame(state_, Space()).local(settings_.water.current), head.data() + 10);
+        put(twist->linear + head_frame(now_.state, Space()).local(settings_.water.current), head.data() + 10);
         return head;
     }
 
-    // Puts the head of the present shape elsewhere, with the momentum of its twist relative to the water. Returns the
-    // kinetic and potential energy [J].
-    double set_state(const Vector3<double>& position, const Quaternion<double>& orientation,
-                     const Twist<Space, double>& twist)
+    // Time [s] and place [m] in the world outside the grid of the flow, where the last evaluation was there.
+    std::optional<std::array<double, 4>> outside() const
     {
-        put_pose(position, orientation);
-        return set_twist(twist);
+        const auto found = steps_.outside();
+        return found ? found : here_.flow.outside();
     }
 
-    // Gives the present state the momentum of the head's twist. Returns the kinetic and potential
-    // energy [J].
-    double set_twist(const Twist<Space, double>& twist)
-    {
-        const double energy = put_twist(twist);
-        begin();
-        return energy;
-    }
-
-    using Marching::advance;
-
-    // Marches through the instants [s], from number `first` on and up to `until` [s], and observes each. `done`: how
-    // many are complete.
-    Status record(std::span<const double> times, std::size_t first, double until, const Profiles& profiles,
-                  double* whole, double* works, std::size_t& done)
+    // Marches to `time` [s]. Unless it gets there, the present is the end of the last step (unfinished), or unchanged.
+    Status advance(double time)
     {
         Slice slice{slice_};
-        const Observer observer(*swimmer_, profiles, whole);
+        return steps_.march(settings_, time, slice, now_);
+    }
+
+    // Marches through the instants [s], from number `first` on and up to `until` [s], and observes each. `done`: how
+    // many are complete; `rows`: of the coordinates, one behind the other.
+    Status record(std::span<const double> times, std::size_t first, double until, const Profiles& profiles,
+                  double* whole, double* works, double* rows, std::size_t& done)
+    {
+        Slice slice{slice_};
         for (done = first; done < times.size() && times[done] <= until; ++done) {
-            const Status status = slice.used_up() ? Status::unfinished : advance(times[done], slice);
+            const Status status =
+                slice.used_up() ? Status::unfinished : steps_.march(settings_, times[done], slice, now_);
             if (status != Status::marched) return status;
-            if (!observe(observer, done)) return Status::singular;
-            std::copy(works_.begin(), works_.end(), works + works_.size() * done);
+            if (!observe(profiles, whole, done, rows + done * row().size())) return Status::singular;
+            std::ranges::copy(now_.works, works + now_.works.size() * done);
             slice.spend(4 * (swimmer_->grid.nodes + swimmer_->stations));
         }
         return Status::marched;
     }
 
-    // Fills the `sample` with what the present shows. False where the inertia is not positive definite.
-    bool observe(const Observer& observer, std::size_t sample)
+    // Fills the `sample` of `whole` and the `row` of the coordinates with what the present shows. The kinetic energy of
+    // a body with modes has the rotors', and its actuators are the motors and what imposes a change of shape. False
+    // where the inertia is not positive definite.
+    bool observe(const Profiles& profiles, double* whole, std::size_t sample, double* row)
     {
-        return observer.observe(settings_.law, settings_.water, time_, state_, sample, workspace(), here_);
+        const CoordinateRow places = this->row();
+        double actuators = 0.0;
+        const auto show = [&](auto& stepper) {
+            if (!places.put(settings_, *modes_, now_, stepper.body(), row)) return false;
+            actuators = stepper.body().powers()[0];
+            return true;
+        };
+        if (modes_ && !steps_.of_modes<bool>(show)) return false;
+        Workspace<Space>& work = shaped(row + places.begin[CoordinateRow::acceleration]);
+        const Observer observer(*swimmer_, profiles, whole);
+        if (!observer.observe(settings_.law, settings_.water, now_.time, now_.state, sample, work, here_)) return false;
+        if (!modes_) return true;
+        profiles.at(whole, Profiles::energies, sample)[0] += row[places.begin[CoordinateRow::rotors]];
+        profiles.at(whole, Profiles::powers, sample)[0] = actuators;
+        return true;
+    }
+
+    // Of a body with modes: the coordinate that has asked for the last step's length, and the first of the modes that
+    // make M singular in the present state; none where it is positive definite.
+    std::size_t hardest()
+    {
+        return steps_.of_modes<std::size_t>([](auto& stepper) { return stepper.hardest(); });
+    }
+    std::optional<std::size_t> singular_mode()
+    {
+        return steps_.of_modes<std::optional<std::size_t>>(
+            [&](auto& stepper) { return stepper.body().singular_mode(settings_, now_); });
     }
 
   private:
-    friend Marching;
-
-    const LawOnGrid& law_on_grid(Workspace<Space>&) const { return settings_.law; }
-    const Water& water() const { return settings_.water; }
-
-    static Steppers made(const Swimmer& swimmer, const Method& method, bool planar)
+    // Work space with the factors of the modes, for these accelerations; none: zero.
+    Workspace<Space>& shaped(const double* acceleration = nullptr)
     {
-        if (planar) return Stepper<Plane>(swimmer, method);
-        return Stepper<Space>(swimmer, method);
+        Workspace<Space>& work = steps_.work();
+        if (modes_) set_factors(*modes_, settings_, now_, acceleration, work.factor);
+        return work;
     }
 
-    void begin()
+    // Finds shape and head's twist of the present state. False where the inertia is not positive definite.
+    bool find_head()
     {
-        const double first_length = first_step * settings_.bounds.longest;
-        std::visit([&](auto& stepper) { stepper.begin(time_, state_, works_, first_length); }, stepper_);
+        return find_head_motion(*swimmer_, settings_.law, settings_.water, now_.time, now_.state, shaped());
     }
 
-    void begin_later() { begin(); }
-
-    Status march_to(double time, Slice& slice)
-    {
-        return std::visit(
-            [&](auto& stepper) {
-                const Status status = stepper.march(settings_, time, slice);
-                if (status != Status::marched && status != Status::unfinished) {
-                    begin();
-                    return status;
-                }
-                time_ = status == Status::marched ? time : std::max(time_, stepper.end_time());
-                stepper.state_at(time_, settings_.ledger, state_, works_);
-                return status;
-            },
-            stepper_);
-    }
-
-    MarchSettings settings_;
-    WorkDone works_{};
+    std::shared_ptr<const Swimmer> swimmer_;
+    std::shared_ptr<const Modes> modes_;
+    Steps steps_;
+    StationWork here_;
+    std::int64_t slice_ = Slice{}.left;
+    Present now_;
+    BentSettings settings_;
 };
 
 }  // namespace eel_core

@@ -96,7 +96,7 @@ class SampledMarch {
 
     void take_sample(double time, const double* values)
     {
-        const double start = march_.time();
+        const double start = march_.now().time;
         const bool begins = !under_way_;
         law_.segment.row = 0, law_.segment.start = start, law_.segment.end = time;
         if (begins) {
@@ -169,7 +169,8 @@ class SampledMarch {
 
     void follow(std::vector<double> breakpoints, bool smoothly)
     {
-        march_.follow({law_, std::move(breakpoints), bounds_, kind_->ledger, {kind_->current, flow_}}, smoothly);
+        march_.follow({{law_, std::move(breakpoints), bounds_, kind_->ledger, {kind_->current, flow_}}, 0, {}, {}},
+                      smoothly);
     }
 
     std::shared_ptr<const SampledKind> kind_;

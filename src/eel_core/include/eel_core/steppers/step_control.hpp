@@ -17,14 +17,15 @@ namespace eel_core {
 
 // What bounds the steps of a march.
 struct StepBounds {
-    double tolerance;       // relative error per step
-    double longest;         // [s], of a time step; a fixed method takes all as long, or a little shorter
-    double smallest;        // [s]
-    double length;          // [m], scale of positions
-    double momentum_floor;  // [kg m/s], below which momentum counts as none
-    double part_of_span;    // of the time between two breakpoints, that a step may take
-    double most_steps;      // per second of motion
-    double spare_steps;     // beyond these, to be spent at any time
+    double tolerance;           // relative error per step
+    double longest;             // [s], of a time step; a fixed method takes all as long, or a little shorter
+    double smallest;            // [s]
+    double length;              // [m], scale of positions
+    double momentum_floor;      // [kg m/s], below which momentum counts as none
+    double part_of_span;        // of the time between two breakpoints, that a step may take
+    double most_steps;          // per second of motion
+    double spare_steps;         // beyond these, to be spent at any time
+    double torque_floor = 0.0;  // [N m], of a body with modes: below it torques count as none
 };
 
 // Sum of the squares of some entries.
@@ -74,6 +75,7 @@ inline constexpr double no_error = 1e-4;  // of the tolerance: the step grows by
 // Ours:
 inline constexpr double shrinking_of_lost = 0.1;  // of a step at whose end no motion is found
 inline constexpr double accepted_of_adams = 4.0;  // error over tolerance: the next step is shorter, and none repeated
+inline constexpr double first_step = 0.02;        // of the longest: the first of all steps
 inline constexpr double equal_steps = 8.0;        // of Adams' method, or fewer: those up to a breakpoint are made equal
 
 // How many times longer a step may be whose error goes with the power `order` of its length.

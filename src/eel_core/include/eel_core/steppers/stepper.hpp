@@ -9,34 +9,10 @@
 
 #include "eel_core/algorithm.hpp"
 #include "eel_core/steppers/adams.hpp"
-#include "eel_core/steppers/ledger.hpp"
 #include "eel_core/steppers/method.hpp"
-#include "eel_core/steppers/step_control.hpp"
+#include "eel_core/steppers/present.hpp"
 
 namespace eel_core {
-
-enum class Status { marched, not_finite, step_too_small, singular, too_many_steps, unfinished };
-
-// Nodes that may still be evaluated before a march comes back unfinished, to be asked to go on: some milliseconds.
-struct Slice {
-    std::int64_t left = 40'000;
-
-    bool used_up() const { return left <= 0; }
-    void spend(std::size_t nodes) { left -= static_cast<std::int64_t>(nodes); }
-};
-
-// What is fixed while a march goes on undisturbed.
-struct MarchSettings {
-    LawOnGrid law;
-    std::vector<double> breakpoints;  // [s], ascending
-    StepBounds bounds;
-    bool ledger = true;  // integrate the works
-    Water water{};
-};
-
-struct Counts {
-    std::int64_t steps = 0, rejected = 0, evaluations = 0;
-};
 
 // The step that the present lies in, and what the next ones need to know.
 template <class M>
@@ -49,9 +25,9 @@ class Stepper {
 
     Workspace<M>& work() { return work_; }
     const Workspace<M>& work() const { return work_; }
-    const Method& method() const { return method_; }
     const Counts& counts() const { return counts_; }
     double end_time() const { return start_ + length_; }
+    std::size_t bytes() const { return work_.bytes(); }
 
     // The head's twist relative to the water at `time` [s], where the last step ends there: it is known already.
     std::optional<Twist<M, double>> twist_at_end(double time) const
@@ -74,12 +50,12 @@ class Stepper {
         scale_ = other.scale_, counts_ = other.counts_, budget_ = other.budget_, proposed_ = other.proposed_;
     }
 
-    // Lets the next step begin at `time` [s] in state y. `first_length` [s]: of the first of all steps.
-    void begin(double time, const State& y, const WorkDone& works, double first_length)
+    // Lets the next step begin at present.
+    void begin(const MarchSettings& settings, const Present& now)
     {
-        end_ = y, works_ = works;
-        start_ = time, length_ = 0.0, anew_ = true;
-        if (proposed_ == 0.0) proposed_ = first_length;
+        end_ = now.state, works_ = now.works;
+        start_ = now.time, length_ = 0.0, anew_ = true;
+        if (proposed_ == 0.0) proposed_ = first_step * settings.bounds.longest;
     }
 
     // Marches until the step holds the time `until` [s].
@@ -97,17 +73,17 @@ class Stepper {
         return Status::marched;
     }
 
-    // State and works at `time` [s] within the step.
-    void state_at(double time, bool ledger, State& y, WorkDone& works) const
+    // Puts state and works at the present time, which lies within the step.
+    void put_state(bool ledger, Present& now) const
     {
         double theta = 1.0;
-        if (ends_at(time)) {
-            y = end_;
+        if (ends_at(now.time)) {
+            now.state = end_;
         } else {
-            theta = std::clamp((time - start_) / length_, 0.0, 1.0);
-            y = interpolated(theta);
+            theta = std::clamp((now.time - start_) / length_, 0.0, 1.0);
+            now.state = interpolated(theta);
         }
-        if (ledger) works = powers_.works_until(works_, length_, theta);
+        if (ledger) now.works = powers_.works_until(works_, length_, theta);
     }
 
   private:

@@ -38,7 +38,6 @@ class ModesOnGrid:
         motors: the servos.
         rows: (M, width) of the modes.
         mask: (2, width) 1 where the law is imposed in pitch, yaw.
-        drive, push: the law of the muscles' moments, and (C, its rows) what it does to the coordinates.
         modes: the following for the compiled mechanics.
         axis, first, last: (M,) 0 pitch, 1 yaw; first node of the support, and the node behind its last.
         continuous: (M,) 1 for a mode of a tail or muscle, 0 for a joint.
@@ -47,6 +46,7 @@ class ModesOnGrid:
         servos: (coordinate, kp, kd, torque limit, speed limit) each.
         stops: (mode, low, high, stiffness, damping) each.
         torques: (coordinate, function of the time), or (coordinate, knots [s], cubics).
+        drive, push: the law of the muscles' moments, and (C, its rows) what it does to the coordinates.
     """
 
     def __init__(self, table: ModeTable, grid: Grid, tabulation: Tabulation):
@@ -86,12 +86,12 @@ class ModesOnGrid:
             for mode, actuator in table.motors
             if isinstance(actuator, Torque)
         ]
+        self.drive, self.push = _muscles(table, size)
         self.modes = eel_core.Modes(self)
         self.rows = tabulation.columns(table.shape(tabulation.x))
         imposed, n, s = table.imposed(tabulation.x).astype(float), tabulation.nodes, tabulation.stations
         nodes, stations, further = imposed[:, :n], imposed[:, n : n + s], np.ones((2, tabulation.further))
         self.mask = np.concatenate((nodes, np.tile(nodes, 3), stations, np.tile(stations, 3), further), axis=1)
-        self.drive, self.push = _muscles(table, size)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> "ModesOnGrid":
         return self

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// The steps of a march, in space or in the plane: of a body whose shape is imposed, or of one with modes.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "eel_core/bending/rosenbrock.hpp"
+#include "eel_core/steppers/stepper.hpp"
+
+namespace eel_core {
+
+class Steps {
+  public:
+    // modes: none where the shape is imposed. With them the steps have a method of their own.
+    Steps(const Swimmer& swimmer, const Method& method, bool planar, const Modes* modes)
+        : swimmer_(&swimmer), stepper_(made(swimmer, method, planar, modes))
+    {
+    }
+
+    // Goes on as `last` would, which takes steps of another swimmer or by another method.
+    void take_over(const Steps& last)
+    {
+        const auto take_over = [](auto& stepper, const auto& other) {
+            if constexpr (requires { stepper.take_over(other); }) stepper.take_over(other);
+        };
+        std::visit(take_over, stepper_, last.stepper_);
+    }
+
+    Counts counts() const
+    {
+        return std::visit([](const auto& stepper) { return stepper.counts(); }, stepper_);
+    }
+    std::size_t bytes() const
+    {
+        return std::visit([](const auto& stepper) { return stepper.bytes(); }, stepper_);
+    }
+    // Time [s] and place [m] in the world outside the grid of the flow, where the last evaluation was there.
+    std::optional<std::array<double, 4>> outside() const
+    {
+        const auto found = std::visit([](const auto& stepper) { return stepper.work().flow.outside(); }, stepper_);
+        return found || !observing_ ? found : observing_->flow.outside();
+    }
+    // The head's twist relative to the water, where the last step ends at `time` [s] and it is known already.
+    std::optional<Twist<Space, double>> twist_at_end(double time) const
+    {
+        if (due_) return {};
+        return std::visit(
+            [time](const auto& stepper) -> std::optional<Twist<Space, double>> {
+                if constexpr (requires { stepper.twist_at_end(time); })
+                    if (const auto found = stepper.twist_at_end(time)) return in_space(*found);
+                return {};
+            },
+            stepper_);
+    }
+
+    // Work space for what is observed: the stepper's own, unless that is for the plane.
+    Workspace<Space>& work()
+    {
+        if (auto* const imposed = std::get_if<Stepper<Space>>(&stepper_)) return imposed->work();
+        if (auto* const bent = std::get_if<BentStepper<Space>>(&stepper_)) return bent->work();
+        return observing_ ? *observing_ : observing_.emplace(*swimmer_);
+    }
+    // What `find` gives of the stepper of a body with modes; without them: nothing.
+    template <class Result>
+    Result of_modes(const auto& find)
+    {
+        return std::visit(
+            [&](auto& stepper) -> Result {
+                if constexpr (requires { stepper.body(); }) return find(stepper);
+                return {};
+            },
+            stepper_);
+    }
+
+    // Forgets what was before the first of all steps, which begins at present.
+    void forget(const StepBounds& bounds, const Present& now)
+    {
+        std::visit([&](auto& stepper) { stepper.forget(now.state, bounds.spare_steps); }, stepper_);
+    }
+    // Lets the next step begin at present.
+    void begin(const BentSettings& settings, const Present& now)
+    {
+        due_ = true;  // also where this fails
+        std::visit([&](auto& stepper) { stepper.begin(settings, now); }, stepper_);
+        due_ = false;
+    }
+
+    // Has the last step of a body with modes end at present, where something is about to change.
+    void end(BentSettings& settings, Present& now)
+    {
+        if (std::exchange(due_, true)) return;
+        of_modes<bool>([&](auto& stepper) {
+            const bool ended = stepper.end_at(settings, now.time);
+            if (ended) stepper.put_state(settings.ledger, now);
+            return ended;
+        });
+    }
+
+    // Marches to `time` [s]. Unless it gets there, the present is the end of the last step (unfinished), or unchanged.
+    Status march(const BentSettings& settings, double time, Slice& slice, Present& now)
+    {
+        if (due_) begin(settings, now);
+        due_ = true;  // also where a flow or a torque throws that is a function
+        return std::visit(
+            [&](auto& stepper) {
+                const Status status = stepper.march(settings, time, slice);
+                if (status != Status::marched && status != Status::unfinished) return status;
+                now.time = status == Status::marched ? time : std::max(now.time, stepper.end_time());
+                stepper.put_state(settings.ledger, now);
+                due_ = false;
+                return status;
+            },
+            stepper_);
+    }
+
+  private:
+    using Steppers = std::variant<Stepper<Space>, Stepper<Plane>, BentStepper<Space>, BentStepper<Plane>>;
+
+    static Steppers made(const Swimmer& swimmer, const Method& method, bool planar, const Modes* modes)
+    {
+        if (modes && planar) return BentStepper<Plane>(swimmer, *modes);
+        if (modes) return BentStepper<Space>(swimmer, *modes);
+        if (planar) return Stepper<Plane>(swimmer, method);
+        return Stepper<Space>(swimmer, method);
+    }
+
+    const Swimmer* swimmer_;
+    Steppers stepper_;
+    std::optional<Workspace<Space>> observing_;
+    bool due_ = false;  // the next step is to begin at present
+};
+
+}  // namespace eel_core
