@@ -42,7 +42,17 @@ def test_the_heading_controller_turns_left_and_right_and_repeats_itself(start, s
     nodes = []
     for name, target in targets.items():
         space = ("--ros-args", "-r", f"__ns:=/{name}", "-p")
-        pace = ("real_time_factor:=0", "-p", "duration:=8", "-p", "rate:=50", "-p", clocks[name])
+        pace = (
+            "real_time_factor:=0",
+            "-p",
+            "duration:=8",
+            "-p",
+            "rate:=50",
+            "-p",
+            "estimate_error:=false",
+            "-p",
+            clocks[name],
+        )
         nodes.append(start("dynamics", *space, *pace, "-p", "wait_for_subscribers:=2", "-p", "subscriber_timeout:=60"))
         start("heading_controller", *space, f"heading:={target}", "-p", "period:=0.02")
         nodes[-1].wait_for_output("waiting for", LIMIT)

@@ -85,7 +85,8 @@ def test_fins_in_place_of_a_keel_hold_the_roll_of_a_piloted_swim(start, fresh_do
     pilot = start("pilot", "--ros-args", "-p", "lead:=0.02", "-p", "heading:=0.8", "-p", "depth:=0.3")
     swim.until(lambda: swim.node.count_publishers("curvature_samples"), "the pilot")
     pace = ("real_time_factor:=0", "-p", "rate:=50", "-p", "duration:=30", "-p", "subscriber_timeout:=60")
-    dynamics = start("dynamics", "--ros-args", "-p", f"fins:={PAIR}", "-p", *pace, "-p", "internal_wrench:=false")
+    bare = ("-p", "scene.internal_wrench:=false", "-p", "estimate_error:=false")
+    dynamics = start("dynamics", "--ros-args", "-p", f"fins:={PAIR}", "-p", *pace, *bare)
     assert dynamics.wait(2 * LIMIT) == 0 and "ERROR" not in dynamics.output(), dynamics.output()
     swim.until(lambda: len(swim.received["head_pose"]) > 1500, "the last pose")
     last = [pose.pose for pose in swim.received["head_pose"][-50:]]  # a period

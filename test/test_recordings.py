@@ -29,7 +29,13 @@ def test_a_recorder_that_is_ended_with_the_run_has_every_sample(start, fresh_dom
     for turn in range(times):
         recorder = start("record", "-o", str(tmp_path / f"bag{turn}"))
         recorder.wait_for_output("recording to")
-        settings = ("real_time_factor:=0", f"duration:={duration}", "wait_for_subscribers:=1", "stations:=201")
+        settings = (
+            "real_time_factor:=0",
+            f"duration:={duration}",
+            "wait_for_subscribers:=1",
+            "stations:=201",
+            "estimate_error:=false",
+        )
         dynamics = start("dynamics", "--ros-args", *[word for setting in settings for word in ("-p", setting)])
         assert dynamics.wait(LIMIT) == 0 and "stuck" not in dynamics.output(), dynamics.output()
         assert recorder.interrupt() == 0, recorder.output()
@@ -50,6 +56,7 @@ def visualise(start, *settings, limit_of_files=None):
 
 def swim(start, *settings):
     start("gait_generator")
+    settings = (*settings, "estimate_error:=false")
     return start("dynamics", "--ros-args", *[word for setting in settings for word in ("-p", setting)])
 
 
