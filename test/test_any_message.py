@@ -198,7 +198,8 @@ def test_the_dynamics_node_stands_any_message(start, network, fresh_domain, swim
             each for message in swim.received["/diagnostics"] for each in message.status if each.name == "/dynamics"
         ]
 
-    swim.until(lambda: own() and own()[-1].message == "swimming", "good diagnostics")
+    good = "swimming", "late by"  # on a busy machine
+    swim.until(lambda: own() and own()[-1].message.startswith(good), "good diagnostics")
     swim.close()
     assert node.interrupt() == 0 and "Traceback" not in node.output()
 
