@@ -13,6 +13,7 @@ from eel_base.wording import not_one_of, one_line, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.simulation.commanded_robots import CommandedRobots
 from eel_dynamics.simulation.sampled_swimmers import LEFT_OUT, Array, SampledSwimmers
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_gaits.pilot.head_motion import HeadMotion
 from eel_model.body.body import Body
 from eel_model.flow.flow import Flow
@@ -79,15 +80,14 @@ class SwimmerEnv(Task):
             raise ValueError(f"flow must be a Flow, or a function of random numbers that draws one, got {shown(flow)}")
         self.render_mode, self.flow = render_mode, flow
         self.metadata = self.metadata | {"render_fps": round(1.0 / self.numbers.control_period)}
-        count, stations = math.prod(shape), 51 if render_mode else 2
-        swims: dict[str, Any] = {"body": self.body, "scene": self.scene, "accuracy": accuracy}
-        swims |= {"stations": stations, "threads": checked_count("threads", threads)}
+        count, threads, stations = math.prod(shape), checked_count("threads", threads), 51 if render_mode else 2
+        own = {"body": self.body, "scene": self.scene, "robot": getattr(self.action, "robot", None)}
+        setup = SimulationSetup.of(**own, accuracy=accuracy, stations=stations)
         self.swimmers: SampledSwimmers | CommandedRobots
         if isinstance(self.action, JointAction):
-            joints, kind = self.action.names, self.action.kind
-            self.swimmers = CommandedRobots(count, self.action.robot, joints, kind, **swims)
+            self.swimmers = CommandedRobots(count, self.action.names, self.action.kind, setup, threads)
         else:
-            self.swimmers = SampledSwimmers(count, self.action.x, self.action.waves, **swims)
+            self.swimmers = SampledSwimmers(count, self.action.x, self.action.waves, setup, threads)
         self._recordings = [EpisodeRecording(recordings, self.name) for _ in range(count * (render_mode == "rerun"))]
         self._mean_heading = MeanHeading(max(1, round(self.action.period / self.numbers.control_period)), self.shape)
         self.ticks: np.ndarray = np.zeros(count, dtype=int)  #: (N,) control steps of the present episodes

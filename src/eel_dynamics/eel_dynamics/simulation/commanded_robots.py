@@ -3,16 +3,13 @@
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 from eel_gaits.laws.law import Law
-from eel_model.body.body import Body
 from eel_model.flow.flow import Flow
-from eel_model.robot.robot import Robot
-from eel_model.scene import Scene
 from numpy.typing import NDArray
 
-from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.sampled_swimmers import LEFT_OUT, Array
@@ -29,35 +26,22 @@ class CommandedRobots:
     """N robots. Each swims as a `Simulation` with the same commands, to the last bit, for any number of threads.
 
     Args:
-        count: N. robot: of all. names: of the joints that are commanded. kind: "position", "velocity" or "torque".
-        body, scene, accuracy, stations: as of `Simulation`. threads: how many march.
+        count: N. names: of the joints that are commanded. kind: "position", "velocity" or "torque".
+        setup: of all, with a robot. threads: how many march.
 
     Attributes:
         heads: (13, N) position [m], orientation x y z w, angular velocity [rad/s] and velocity [m/s] of each.
         joints: (2, J, N) angle [rad] and rate [rad/s] of all joints of each.
     """
 
-    def __init__(
-        self,
-        count: int,
-        robot: Robot,
-        names: Sequence[str],
-        kind: str,
-        *,
-        body: Body | None = None,
-        scene: Scene | None = None,
-        accuracy: str | float | Accuracy = "standard",
-        stations: int = 51,
-        threads: int = 1,
-    ):
-        self.robot, self._names, self._mode = robot, tuple(names), MODES[kind]
-        setup = SimulationSetup.of(body=body, scene=scene, accuracy=accuracy, stations=stations, robot=robot)
-        setup = self._setup = affordable(setup)
-        self.body, self.scene, self.x, self.accuracy = setup.body, setup.scene, setup.x, setup.settings
-        self._swims = [March.from_start(setup, NO_LAW)] * count
+    def __init__(self, count: int, names: Sequence[str], kind: str, setup: SimulationSetup, threads: int = 1):
+        assert setup.robot is not None
+        self._names, self._mode, self.accuracy = tuple(names), MODES[kind], affordable(setup).settings
+        self.setup = replace(setup, accuracy=self.accuracy)
+        self._swims = [March.from_start(self.setup, NO_LAW)] * count
         self.grid = self._swims[0].discretisation.grid
         self.heads: Array = np.zeros((13, count))
-        self.joints: Array = np.zeros((2, len(robot.joints), count))
+        self.joints: Array = np.zeros((2, len(setup.robot.joints), count))
         self._pool = ThreadPoolExecutor(threads, thread_name_prefix="robot") if threads > 1 else None
 
     def start(self, index: int, position, orientation, twist, commands: Array, flow: Flow | None = None) -> None:
@@ -65,7 +49,7 @@ class CommandedRobots:
 
         position, orientation, twist, flow: as of `Simulation`.
         """
-        self._swims[index] = March.from_start(self._setup.starting(position, orientation, twist, flow), NO_LAW)
+        self._swims[index] = March.from_start(self.setup.starting(position, orientation, twist, flow), NO_LAW)
         self._command(index, commands)
         self._look(index)
 

@@ -5,14 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 from eel_base.wording import shown
-from eel_model.body.body import Body
 from eel_model.flow.flow import Flow, parts_of
 from eel_model.flow.functions import FlowField
-from eel_model.scene import Scene
 from numpy.typing import NDArray
 
 import eel_core
-from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
 from eel_dynamics.accuracy.step_bounds import step_bounds_of
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
@@ -41,32 +38,19 @@ class SampledSwimmers:
         count: N.
         points: (n,) [m], of the samples.
         waves: on the body, which the grid must resolve; None: as many as the points can carry.
-        body, scene, accuracy, stations: as of `Simulation`.
+        setup: of all, whose accuracy changes as of `Accuracy.for_control_steps`.
         threads: how many march.
 
     Attributes:
-        accuracy: the settings in force, see `Accuracy.for_control_steps`.
+        accuracy: the settings in force.
         heads: (13, N) position [m], orientation x y z w, angular velocity [rad/s] and velocity [m/s] of each, as of
             `Simulation.head`. In the plane the velocities are those of the steps, which integrate the rate of bending
             exactly.
     """
 
-    def __init__(
-        self,
-        count: int,
-        points: Array,
-        waves: float | None,
-        *,
-        body: Body | None = None,
-        scene: Scene | None = None,
-        accuracy: str | float | Accuracy = "standard",
-        stations: int = 51,
-        threads: int = 1,
-    ):
-        setup = affordable(SimulationSetup.of(body=body, scene=scene, accuracy=accuracy, stations=stations))
-        self.accuracy = setup.settings.for_control_steps()
-        setup = self._setup = replace(setup, accuracy=self.accuracy)
-        self.body, self.scene, self.x = setup.body, setup.scene, setup.x
+    def __init__(self, count: int, points: Array, waves: float | None, setup: SimulationSetup, threads: int = 1):
+        self.accuracy = affordable(setup).settings.for_control_steps()
+        setup = self.setup = replace(setup, accuracy=self.accuracy)
         self._points, self._waves = points, waves
         sample = self.check(np.zeros((6, len(points))))
         settings = GridSettings.of(self.accuracy, ShapeNeeds(sample.waves))
@@ -76,8 +60,8 @@ class SampledSwimmers:
             self._discretisation.swimmer,
             method=self.accuracy.method,
             order=self.accuracy.order,
-            planar=bool(self.scene.planar),
-            ledger=bool(self.scene.ledger),
+            planar=bool(self.setup.scene.planar),
+            ledger=bool(self.setup.scene.ledger),
             current=setup.current,
             weights=self._discretisation.tabulation.weights_of(points),
             transition=DEFAULT_TRANSITION,
@@ -91,7 +75,7 @@ class SampledSwimmers:
     def check(self, rows: Array) -> CurvatureSample:
         """A sample with these `rows` (6, n); `ValueError` for one that `Simulation.add_samples` refuses."""
         check_points(len(self._points))
-        length, planar = self.body.length, self.scene.planar
+        length, planar = self.setup.body.length, self.setup.scene.planar
         return CurvatureSample.checked(
             0.0, self._points, tuple(rows), waves=self._waves, length=length, planar=planar, now=0.0, begun=False
         )
@@ -103,7 +87,7 @@ class SampledSwimmers:
         The nodes stay those of the samples: `ValueError` for a flow that asks for more.
         """
         self.check(rows)
-        setup = self._setup.starting(position, orientation, twist, flow)
+        setup = self.setup.starting(position, orientation, twist, flow)
         if flow is not None:
             self._check_flow(flow)
         self._bounds[index] = bounds = self._bounds_of(setup)
@@ -116,7 +100,7 @@ class SampledSwimmers:
     def _check_flow(self, flow: Flow) -> None:
         if any(isinstance(part, FlowField) for part in parts_of(flow)):
             raise ValueError(f"flow must have no functions where many swim side by side, got {shown(flow)}")
-        waves = self.body.length / flow.traits.shortest_wave
+        waves = self.setup.body.length / flow.traits.shortest_wave
         if waves > MOST_WAVES:
             raise ValueError(f"flow must have at most {MOST_WAVES:g} waves on the body, got {waves:.3g}: {shown(flow)}")
 
@@ -145,10 +129,10 @@ class SampledSwimmers:
 
     def observe(self, index: int, *, wrench: bool = True, load: bool = True) -> Snapshot:
         """The snapshot of a swimmer at present, as of `Simulation.observe`."""
-        wrench, load = bool(wrench and self.scene.internal_wrench), bool(load)
+        wrench, load = bool(wrench and self.setup.scene.internal_wrench), bool(load)
         time, works, _ = self._marches.present(index)
-        ledger = (np.array(works), float(self._energy_at_start[index])) if self.scene.ledger else None
-        snapshot = Snapshot(time, self.x, wrench, load, ledger=ledger)
+        ledger = (np.array(works), float(self._energy_at_start[index])) if self.setup.scene.ledger else None
+        snapshot = Snapshot(time, self.setup.x, wrench, load, ledger=ledger)
         if not self._marches.observe(index, snapshot.whole, wrench, load):
             raise self._stopped(index, SINGULAR)
         return snapshot
@@ -165,11 +149,11 @@ class SampledSwimmers:
         of_flow = np.inf if setup.flow is None else setup.flow.traits.time_scale
         return step_bounds_of(
             accuracy=self.accuracy,
-            ledger=bool(self.scene.ledger),
+            ledger=bool(self.setup.scene.ledger),
             between_samples=True,
             nodes=len(self.grid.x),
             mass=self._discretisation.mass,
-            length=self.body.length,
+            length=self.setup.body.length,
             speed=0.0,
             scale=min(setup.time_scale, self._discretisation.weight_time, of_flow),
             most_evaluations=setup.most_evaluations,
