@@ -180,7 +180,8 @@ def _point(values: Numbers, gait: Gait, base: Swim) -> Swim:
     except (ValueError, TypeError) as error:
         raise ValueError(f"{error}{_of_robot(robot, own)}") from None
     body = body.changed(**groups["body"]) if groups["body"] else body
-    scene, start = replace(base.scene, **groups["scene"]), _start(base.start, groups["initial"])
+    scene = replace(base.scene, **groups["scene"]) if groups["scene"] else base.scene
+    start = _start(base.start, groups["initial"])
     flow, fins = _flow_with(flow, groups["flow"]), fins_with(checked_fins(fins, body, scene), groups["fins"])
     changes = {"law": law, "body": body, "scene": scene, "accuracy": accuracy, "start": start}
     return base._replace(**changes, flow=flow, fins=fins, robot=robot)

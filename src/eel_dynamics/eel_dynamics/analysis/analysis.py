@@ -8,9 +8,8 @@ A ratio with a zero denominator is None: a swimmer at rest has no Strouhal numbe
 lacks (ledger, internal wrench) raise `ValueError`.
 """
 
-from functools import cached_property
-
 import numpy as np
+from eel_base.cached import cached_property
 from eel_model.section_data import GRAVITY
 
 import eel_core

@@ -5,9 +5,8 @@ The averaged centre of mass moves with |c(t + T) - c(t)| / T (Kern and Koumoutsa
 over a cycle likewise).
 """
 
-from functools import cached_property
-
 import numpy as np
+from eel_base.cached import cached_property
 
 from eel_dynamics.analysis.averaging_window import AveragingWindow
 from eel_dynamics.analysis.powers import area

@@ -6,10 +6,10 @@ water: a current is subtracted.
 """
 
 import math
-from functools import cached_property
 from typing import Any
 
 import numpy as np
+from eel_base.cached import cached_property
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.term import Term

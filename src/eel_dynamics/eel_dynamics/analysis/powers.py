@@ -43,7 +43,8 @@ def drag_powers(run) -> np.ndarray:
     here = discretise(setup, setup.grid_for(setup.shape_needs(run.law)))
     instant, powers = eel_core.Instant(here.swimmer), np.zeros((len(run.time), 4))
     time, relative = np.ascontiguousarray(run.time), run.twist.copy()
-    relative[:, 3:] -= np.asarray(run.scene.current) @ world_from_body(run.orientation)
+    if setup.current.any():
+        relative[:, 3:] -= setup.current @ world_from_body(run.orientation)
     water = setup.current, setup.core_flow
     poses = np.concatenate([run.position, run.orientation], axis=1)
     if setup.modes is not None:

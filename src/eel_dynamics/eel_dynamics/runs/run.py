@@ -4,10 +4,10 @@
 import os
 import warnings
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
+from eel_base.cached import cached_property
 from eel_base.cell import cell_of
 from eel_model.body.body import Body
 from eel_model.robot.robot import Robot

@@ -2,9 +2,9 @@
 """The set-up of a simulation: its checked arguments, and the accuracy and grid that follow from them."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
+from eel_base.cached import cached_property
 from eel_base.quantity import checked_instance, checked_row, positive
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
