@@ -150,12 +150,10 @@ class SwimmerEnv(Task):
         self, swimmers: list[int], options: dict[str, Any], draws: Sequence[np.random.Generator]
     ) -> None:
         """Begin an episode of each of these `swimmers`, drawn from its own of the random numbers `draws` of all."""
-        flows = []
         for index in swimmers:
             self._end(index)
             self.np_random = draws[index]
             self.starts[index] = start = self.begin(options)
-            flows.append(self.flow if self.flow is None or isinstance(self.flow, Flow) else self.flow(self.np_random))
             if len(start.goal) != len(self.goal):
                 self.goal = np.zeros((len(start.goal), *self.shape))
             self.goal.reshape(len(start.goal), len(self.ticks))[:, index] = start.goal
@@ -166,8 +164,9 @@ class SwimmerEnv(Task):
         else:
             rows = self.restart(begun[0].own_time)[None]
         self._add_trim(rows, trims[:, None])
-        for index, start, row, flow in zip(swimmers, begun, rows, flows, strict=True):
+        for index, start, row in zip(swimmers, begun, rows, strict=True):
             twist = (start.roll_rate, 0.0, 0.0, start.speed, 0.0, 0.0)
+            flow = self.flow if self.flow is None or isinstance(self.flow, Flow) else self.flow(draws[index])
             self.swimmers.start(index, start.position, level_orientation(start.heading), twist, row, flow)
         self.ticks[swimmers] = self._status[swimmers] = 0
         self._look()

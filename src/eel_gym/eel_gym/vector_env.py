@@ -91,7 +91,7 @@ class ThreadedVectorEnv(VectorEnv[Any, Any, Any]):
         if not self._begun or (self._mode is AutoresetMode.DISABLED and over.any()):
             raise gymnasium.error.ResetNeeded("environments whose episode has ended must be reset before step")
         observations, rewards, terminated, truncated, stopped = self.swimmers.march(values)
-        rewards, terminated, truncated = np.array(rewards), terminated | np.zeros_like(over), np.array(truncated)
+        rewards, terminated = np.array(rewards), terminated | np.zeros(self.num_envs, dtype=bool)
         if self._limit is not None:
             truncated |= self.swimmers.ticks >= self._limit
         infos: dict[str, Any] = {}
