@@ -122,20 +122,14 @@ class TabulatedLaw(NamedTuple):
         return self.segment or tuple(self.origin + time for time in self.ramp_ends)
 
 
-@lru_cache(maxsize=256)
-def _straight(tabulation: Tabulation) -> TabulatedLaw:
-    """The straight shape at rest."""
-    straight = TabulatedLaw.constant(np.zeros((2, tabulation.width)))
-    return straight._replace(tables=tabulation.law_tables(straight.rows, straight.axis))
-
-
 @lru_cache(maxsize=1024)
 def _tabulated(law: Law | None, tabulation: Tabulation) -> TabulatedLaw:
     """`law`, or the straight shape where there is none. Terms of equal axis, period and envelope share their rows; laws
     that differ in periods and envelopes alone share their tables."""
     groups = groups_of(law) if law is not None else {}
     if not groups:
-        return _straight(tabulation)
+        straight = TabulatedLaw.constant(np.zeros((2, tabulation.width)))
+        return straight._replace(tables=tabulation.law_tables(straight.rows, straight.axis))
     moving = tuple((axis, period > 0.0, tuple(terms)) for (axis, period, _), terms in groups.items())
     rows, axis, tables, sine, cosine = _rows_of(moving, tabulation)
     envelopes = [

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <new>
+#include <numbers>
 #include <utility>
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -212,6 +213,13 @@ Lanes moved(Lanes value, double filling)
         return Lanes(
             __builtin_shufflevector(value.native(), Lanes(filling).native(), (Lane < Steps ? width : Lane - Steps)...));
     }(std::make_index_sequence<width>());
+}
+
+// The smooth ramp f_r of eq. (64) over a part of the way, 0 to 1.
+inline double smooth_ramp(double part)
+{
+    constexpr double turn = 2.0 * std::numbers::pi;
+    return part - std::sin(turn * part) / turn;
 }
 
 // -- functions to round-off, without branches

@@ -8,8 +8,6 @@
 // (pi e AR) + k c_n S^2. The momentum m_a (e_n . V) e_n is part of that of the body.
 #pragma once
 
-#include <numbers>
-
 #include "eel_core/loads/moving_water.hpp"
 
 namespace eel_core {
@@ -20,9 +18,7 @@ inline constexpr double stall_begins = 0.29552020666133957, stall_ends = 0.56464
 // f_r of eq. (64) in the sine of the incidence.
 inline double share_of_stall(double sine)
 {
-    const double part = std::clamp((std::abs(sine) - stall_begins) / (stall_ends - stall_begins), 0.0, 1.0);
-    const double turn = 2.0 * std::numbers::pi;
-    return part - std::sin(turn * part) / turn;
+    return smooth_ramp(std::clamp((std::abs(sine) - stall_begins) / (stall_ends - stall_begins), 0.0, 1.0));
 }
 
 // Lift and drag [N] for the velocity w through the water, in the axes of the vectors.

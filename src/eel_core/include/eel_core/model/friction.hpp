@@ -11,8 +11,6 @@
 // (1952), doi:10.1098/rspa.1952.0159). Where it goes straight the laminar plate's remains: the squares of both add up.
 #pragma once
 
-#include <numbers>
-
 #include "eel_core/model/section.hpp"
 
 namespace eel_core {
@@ -38,8 +36,7 @@ inline double turbulent_share(double ratio)
 {
     if (ratio <= 0.5) return 0.0;
     if (ratio >= 2.0) return 1.0;
-    const double part = std::log(2.0 * ratio) / std::log(4.0), turn = 2.0 * std::numbers::pi;
-    return part - std::sin(turn * part) / turn;
+    return smooth_ramp(std::log(2.0 * ratio) / std::log(4.0));
 }
 
 // Speed across the section.

@@ -68,20 +68,15 @@ class FromNose {
     // from. Over the stretches from `begin` up to `end` alone, if the integrand is zero before them and so is `known`.
     template <class Value, class Source>
     void integrate(const Field<Source>& integrand, std::size_t first_row, const Value& at_nose,
-                   const Field<Value>& known, Field<Value>& result, std::size_t begin, std::size_t end) const
+                   const Field<Value>& known, Field<Value>& result, std::size_t begin = 0,
+                   std::size_t end = static_cast<std::size_t>(-1)) const
     {
-        for (std::size_t s = begin; s < end; ++s) {
+        for (std::size_t s = begin; s < std::min(end, stretches_.size()); ++s) {
             const auto here = within<Value>(integrand, first_row, stretches_[s]);
             const std::size_t first = stretches_[s].begin;
             const Value before = first > 0 ? known.node(first - 1) : at_nose;
             for (std::size_t part = 0; part < parts; ++part) result.store(parts * s + part, before + here[part]);
         }
-    }
-    template <class Value, class Source>
-    void integrate(const Field<Source>& integrand, std::size_t first_row, const Value& at_nose,
-                   const Field<Value>& known, Field<Value>& result) const
-    {
-        integrate(integrand, first_row, at_nose, known, result, 0, stretches_.size());
     }
     // The integral from the nose, at the nodes, from zero on.
     template <class Value, class Source>
