@@ -262,9 +262,6 @@ class March:
         """The first mode that makes the mass matrix singular in the present state; None where it is definite."""
 
     @property
-    def memory(self) -> int:
-        """Bytes that an evaluation reads and writes."""
-    @property
     def time(self) -> float:
         """[s]."""
     @property

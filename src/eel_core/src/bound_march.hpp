@@ -142,11 +142,6 @@ class PyMarch {
         const InUse in_use(in_use_);
         return march_.set_slice(nodes);
     }
-    std::size_t memory()
-    {
-        const Driven in_use(*this);
-        return march_.memory();
-    }
     std::optional<std::size_t> singular_mode()
     {
         const Driven in_use(*this);

@@ -163,8 +163,3 @@ class Present:
     def lost_at(self) -> float | None:
         """[s], when it first began again because of that; None where it never did."""
         return self._meter.lost_at if self._meter.wanted else None
-
-    @property
-    def memory(self) -> int:
-        """Bytes that an evaluation reads and writes."""
-        return int(self._march.core.memory)

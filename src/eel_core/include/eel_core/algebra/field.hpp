@@ -37,7 +37,6 @@ class Field {
     double* row(std::size_t component) { return rows_.data() + component * stride_; }
     const double* row(std::size_t component) const { return rows_.data() + component * stride_; }
     std::size_t stride() const { return stride_; }
-    std::size_t bytes() const { return rows_.size() * sizeof(double); }
 
   private:
     std::size_t stride_ = 0;

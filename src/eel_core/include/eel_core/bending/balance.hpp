@@ -52,14 +52,6 @@ class BentBody {
     std::vector<Target> target;  // of the servos
     State head_rate{};           // of the head's part of the state
 
-    std::size_t bytes() const
-    {
-        std::size_t sum = work.bytes() + load_.bytes() + momentum_ahead_.bytes();
-        for (const Column<M>& each : columns.column)
-            sum += each.omega.bytes() + each.velocity.bytes() + each.momentum.bytes();
-        return sum;
-    }
-
     // The shape at the coordinates x, and M. False where M is not positive definite.
     bool configure_at(const BentSettings& settings, double time, const State& y, const double* x)
     {

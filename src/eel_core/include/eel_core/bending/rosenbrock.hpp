@@ -81,7 +81,6 @@ class BentStepper {
     const Counts& counts() const { return counts_; }
     std::size_t hardest() const { return hardest_; }  // coordinate with the greatest error in the last step
     double end_time() const { return here_.time; }
-    std::size_t bytes() const { return body_.bytes(); }
 
     void forget(const State& y, double spare_steps)
     {

@@ -18,7 +18,6 @@ class FlowValues {
     const FlowSample<M, double>& nose() const { return nose_; }
     // Time [s] and place [m] in the world where the flow was asked for last and is not known: outside a grid.
     const std::optional<std::array<double, 4>>& outside() const { return outside_; }
-    std::size_t bytes() const { return place_.bytes() + in_world_.bytes() + here_.bytes(); }
 
     // Sets the values at the first `count` of the points at `position` [m], about the head and in its axes, which are
     // `head`; the head is at `nose` [m] in the world. Rates are those at a point that moves with the current.

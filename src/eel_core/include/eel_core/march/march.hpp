@@ -51,13 +51,6 @@ class March {
     const Modes* modes() const { return modes_.get(); }
     CoordinateRow row() const { return modes_ ? CoordinateRow(*modes_) : CoordinateRow(); }
     Counts counts() const { return steps_.counts(); }
-    // Bytes that an evaluation reads and writes: work space, weights of the integral, rows of the law.
-    std::size_t memory() const
-    {
-        const LawTables& law = *settings_.law.tables;
-        return steps_.bytes() + swimmer_->grid.from_nose.bytes() +
-               (law.node.lanes.size() + law.angle.lanes.size() + 3 * law.moments.lanes.size()) * sizeof(Lanes);
-    }
 
     // Sets the nodes that are evaluated before a march comes back unfinished; returns what they were.
     std::int64_t set_slice(std::int64_t nodes) { return std::exchange(slice_, nodes); }

@@ -32,10 +32,6 @@ class Steps {
     {
         return std::visit([](const auto& stepper) { return stepper.counts(); }, stepper_);
     }
-    std::size_t bytes() const
-    {
-        return std::visit([](const auto& stepper) { return stepper.bytes(); }, stepper_);
-    }
     // Time [s] and place [m] in the world outside the grid of the flow, where the last evaluation was there.
     std::optional<std::array<double, 4>> outside() const
     {

@@ -57,7 +57,6 @@ class FromNose {
         }
     }
 
-    std::size_t bytes() const { return columns_.size() * sizeof(Column) + place_.bytes(); }
     std::span<const Stretch> stretches() const { return stretches_; }
     const Column* columns(const Stretch& stretch) const { return columns_.data() + stretch.column; }
     // Of each point: the index of the first node of its panel, plus its fraction of the panel; it rises along the body.

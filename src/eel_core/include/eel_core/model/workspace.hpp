@@ -108,18 +108,6 @@ struct Workspace {
     Twist<M, double> head_acceleration;
     Wrench<M, double> balance;  // integral over the body of the density, as the head equation has it
     double nose_force = 0.0;    // [N], along t1(0)
-
-    std::size_t bytes() const
-    {
-        std::size_t sum = frame.bytes() + quaternion.bytes() + position.bytes() + shape_omega.bytes() + omega.bytes() +
-                          shape_velocity.bytes() + velocity.bytes() + curvature_rate.bytes() + integrand.bytes() +
-                          2 * (acceleration.angular.bytes() + acceleration.linear.bytes()) + density.bytes() +
-                          friction_laminar.bytes() + friction_excess.bytes() + turbulent_share.bytes() +
-                          turbulent_weight.bytes() + flow.bytes() + relative.bytes();
-        for (const Row& row : speed) sum += row.bytes();
-        for (const Row& row : load_weight) sum += row.bytes();
-        return sum + sizeof(*this);
-    }
 };
 
 }  // namespace eel_core

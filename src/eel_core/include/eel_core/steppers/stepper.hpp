@@ -27,7 +27,6 @@ class Stepper {
     const Workspace<M>& work() const { return work_; }
     const Counts& counts() const { return counts_; }
     double end_time() const { return start_ + length_; }
-    std::size_t bytes() const { return work_.bytes(); }
 
     // The head's twist relative to the water at `time` [s], where the last step ends there: it is known already.
     std::optional<Twist<M, double>> twist_at_end(double time) const
