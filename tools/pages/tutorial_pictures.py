@@ -91,7 +91,7 @@ def motors(figure: Figure, values: Values) -> None:
     errors, speeds = [100.0 * each.tracking_error for _, each in found], [each.speed for _, each in found]
     labelled = ("tracking error [%]", errors), ("speed [m/s]", speeds)
     for axes, (label, row) in zip(figure.subplots(1, 2), labelled, strict=True):
-        axes.semilogx([limit for limit, _ in found], row, marker="o", color=BLUE)
+        axes.semilogx([limit for limit, _ in found], row, marker="o", color=BLUE, clip_on=False)
         axes.set(xlabel="torque limit [N m]", ylabel=label, ylim=(0.0, None))
         axes.margins(x=0.0)
 
