@@ -62,7 +62,7 @@ class Quantities:
     def __post_init__(self) -> None:
         for item in fields(self):
             value, about = getattr(self, item.name), item.metadata
-            if about.get("plain") or (value is None is item.default) or (about.get("profile") and callable(value)):
+            if value is item.default or about.get("plain") or (about.get("profile") and callable(value)):
                 continue
             take = _in_bounds if item.default is None else checked
             object.__setattr__(self, item.name, take(item, value, f"{self.what} {item.name}".lstrip()))

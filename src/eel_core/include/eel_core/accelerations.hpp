@@ -24,8 +24,9 @@ inline Vector3<Lanes> angular_acceleration_slope(const LawOnGrid& law, const Wor
 }
 // acc', that of the linear acceleration, by the angular one.
 template <class M>
-Vector<M, Lanes> linear_acceleration_slope(const Workspace<M>& work, const Field<Angular<M, double>>& angular,
-                                           std::size_t k)
+EEL_CORE_INLINE inline Vector<M, Lanes> linear_acceleration_slope(const Workspace<M>& work,
+                                                                  const Field<Angular<M, double>>& angular,
+                                                                  std::size_t k)
 {
     const auto t1 = work.frame[k].t1();
     const auto omega = work.omega[k];
@@ -51,8 +52,8 @@ inline void set_turning_acceleration(const Swimmer& swimmer, const LawOnGrid& la
 //
 //     f_N = M Vdot + Omega x M V      f_C = J Omegadot + Omega x J Omega + V x M V
 template <class M>
-Wrench<M, Lanes> inertial_wrench(const Section<Lanes>& section, const Workspace<M>& work,
-                                 const Accelerations<M>& acceleration, std::size_t k)
+EEL_CORE_INLINE inline Wrench<M, Lanes> inertial_wrench(const Section<Lanes>& section, const Workspace<M>& work,
+                                                        const Accelerations<M>& acceleration, std::size_t k)
 {
     const auto frame = work.frame[k];
     const Angular<M, Lanes> omega = frame.local(work.omega[k]), omega_rate = frame.local(acceleration.angular[k]);

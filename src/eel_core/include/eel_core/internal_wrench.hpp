@@ -35,7 +35,8 @@ Wrench<M, Lanes> internal_wrench(const Swimmer& swimmer, const Workspace<M>& wor
 
 // Drag and weight on a block of sections, about them and weighed by their length, in the axes of the head.
 template <class M>
-Wrench<M, Lanes> loads_on_sections(const Swimmer& swimmer, const Workspace<M>& work, std::size_t k)
+EEL_CORE_INLINE inline Wrench<M, Lanes> loads_on_sections(const Swimmer& swimmer, const Workspace<M>& work,
+                                                          std::size_t k)
 {
     Wrench<M, Lanes> load{};
     const auto frame = work.frame[k];

@@ -62,9 +62,7 @@ class EnergyLedger(EqualByFields):
         return f"EnergyLedger({'an instant' if not shape else ' x '.join(map(str, shape)) + ' samples'})"
 
     def __getitem__(self, name: str) -> Any:
-        if name not in self.keys():
-            raise KeyError(name)
-        return getattr(self, name)
+        return vars(self)[name]
 
     @staticmethod
     def keys() -> list[str]:
@@ -75,12 +73,12 @@ class EnergyLedger(EqualByFields):
     def of(energies: Any, powers: Any, works: Any, start: Any, robot: Any = None) -> "EnergyLedger":
         """A ledger from its numbers.
 
-        energies (..., 3) [J]: kinetic of body and of water, potential. powers (..., 6) [W] and works (..., 6) [J]: of
-        actuators, wake, nose, drag, flow and fins. start [J]: the sum of the energies at the start. robot (..., 3):
-        elastic energy [J], power [W] and work [J] of the dampers; None: 0.
+        energies (T, 3) [J]: kinetic of body and of water, potential. powers (T, 6) [W] and works (T, 6) [J]: of
+        actuators, wake, nose, drag, flow and fins. start [J]: the sum of the energies at the start. robot (T, 3):
+        elastic energy [J], power [W] and work [J] of the dampers; None: 0. Of an instant without the dimension T.
         """
         if robot is not None:
-            elastic, damping_power, damping_work = np.moveaxis(robot, -1, 0)
+            elastic, damping_power, damping_work = robot.T
             ledger = EnergyLedger.of(energies, powers, works, start)
             residual = ledger.residual + elastic - damping_work
             more = {"elastic": elastic, "damping_power": damping_power, "damping_work": damping_work}
@@ -88,8 +86,6 @@ class EnergyLedger(EqualByFields):
         if energies.ndim == 1:  # an instant, for a node at real time
             energies, powers, works = energies.tolist(), powers.tolist(), works.tolist()
             return EnergyLedger(*(*energies, *powers, sum(energies) - start - sum(works), *works, 0.0, 0.0, 0.0))
-        residual = energies.sum(axis=-1) - start - works.sum(axis=-1)
-        columns = (np.moveaxis(each, -1, 0) for each in (energies, powers, works))
-        energies, powers, works = columns
-        none = np.zeros_like(residual)
-        return EnergyLedger(*(*energies, *powers, residual, *works, none, none, none))
+        residual = energies.sum(axis=1) - start - works.sum(axis=1)
+        none = np.zeros(residual.shape)
+        return EnergyLedger(*(*energies.T, *powers.T, residual, *works.T, none, none, none))

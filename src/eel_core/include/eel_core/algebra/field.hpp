@@ -20,8 +20,8 @@ class Field {
     Field() = default;
     explicit Field(std::size_t blocks) : stride_(width * (blocks + 1)), rows_(Components<Block>::count * stride_) {}
 
-    Block operator[](std::size_t block) const { return from(width * block); }
-    Block from(std::size_t node) const
+    EEL_CORE_INLINE Block operator[](std::size_t block) const { return from(width * block); }
+    EEL_CORE_INLINE Block from(std::size_t node) const
     {
         return Components<Block>::make([&](std::size_t k) { return Lanes::load(row(k) + node); });
     }
