@@ -48,7 +48,7 @@ def test_a_reset_that_the_law_refuses_leaves_the_run_as_it_is(monkeypatch):
     def publish(snapshot, nanoseconds):
         stamps.append(nanoseconds)
         if nanoseconds == 250_000_000:
-            monkeypatch.setattr("eel_dynamics.simulation.march.March.from_start", refuse)
+            monkeypatch.setattr("eel_dynamics.simulation.simulation.March", refuse)
             run.requests.put(run.reset, urgent=True)
 
     publishers = fake_publishers(publish)

@@ -71,7 +71,7 @@ def _swum_anew(run, time: float, station: int) -> tuple[np.ndarray, np.ndarray, 
     if depends_on_its_start(run):
         first = 0
     setup, start = run.setup_at(first, x, run.accuracy.as_it_is()), float(run.time[first])
-    out, _, _, stopped = March.from_start(setup, run.law, -start).record(times - start, True, False)
+    out, _, _, stopped = March(setup, run.law, -start).record(times - start, True, False)
     if stopped is not None:
         raise stopped
     return times, x, out.torque

@@ -49,7 +49,7 @@ def settling_time(law: Any, setup: SimulationSetup) -> float:
     """
     period, last_ramp = period_of(law, setup.body.length), _last_ramp(law)
     coarse = affordable(replace(setup, accuracy=_coarse(setup.accuracy), x=setup.x[:1]))
-    march, before, energy, work = March.from_start(coarse, law), [0.0] * 3, 0.0, 0.0
+    march, before, energy, work = March(coarse, law), [0.0] * 3, 0.0, 0.0
     ways: list[float] = []  # m, of the centre of mass in each period
     works: list[float] = []  # J, of the actuators
     for count in range(MOST_PERIODS + 1):

@@ -99,7 +99,7 @@ class SwimRequest(NamedTuple, Generic[Kind]):
     def march(self, accuracy: Accuracy | None = None) -> March:
         """Its march at the start, with other settings if `accuracy` is given."""
         setup = self.setup if accuracy is None else replace(self.setup, accuracy=accuracy)
-        return March.from_start(affordable(setup), self.law)
+        return March(affordable(setup), self.law)
 
     def swim(self, march: March, look: Callable[[float], None] | None = None) -> SwimResult[Kind]:
         """Swim it by a `march` of its own, at its start. look: as in `Simulation.record`."""

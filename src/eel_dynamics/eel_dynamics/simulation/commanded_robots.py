@@ -38,7 +38,7 @@ class CommandedRobots:
         assert setup.robot is not None
         self._names, self._mode, self.accuracy = tuple(names), MODES[kind], affordable(setup).settings
         self.setup = replace(setup, accuracy=self.accuracy)
-        self._swims = [March.from_start(self.setup, NO_LAW)] * count
+        self._swims = [March(self.setup, NO_LAW)] * count
         self.grid = self._swims[0].discretisation.grid
         self.heads: Array = np.zeros((13, count))
         self.joints: Array = np.zeros((2, len(setup.robot.joints), count))
@@ -49,7 +49,7 @@ class CommandedRobots:
 
         position, orientation, twist, flow: as of `Simulation`.
         """
-        self._swims[index] = March.from_start(self.setup.starting(position, orientation, twist, flow), NO_LAW)
+        self._swims[index] = March(self.setup.starting(position, orientation, twist, flow), NO_LAW)
         self._command(index, commands)
         self._look(index)
 

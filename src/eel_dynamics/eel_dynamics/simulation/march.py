@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.fins.fins import given_angles, knots_of, servo_time
+from eel_model.fins.fins import given_angles
 from eel_model.flow.flow import Flow
 from eel_model.initial_state import InitialState, time_scale
 from eel_model.robot.robot import Robot
@@ -22,11 +22,10 @@ from eel_model.robot.robot import Robot
 import eel_core
 from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
 from eel_dynamics.accuracy.step_bounds import step_bounds_of
-from eel_dynamics.curvature.curvature_samples import CurvatureSample
 from eel_dynamics.curvature.law_follower import LawFollower
 from eel_dynamics.simulation.bending.joint_motion import JointMotion
 from eel_dynamics.simulation.bending.modes_on_grid import ModesOnGrid
-from eel_dynamics.simulation.discretisation import Discretisation, discretise
+from eel_dynamics.simulation.discretisation import discretise
 from eel_dynamics.simulation.energy import WORKS
 from eel_dynamics.simulation.observations import Observations, Snapshot
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
@@ -36,6 +35,7 @@ from eel_dynamics.simulation.stopping import (
     first_bad_sample,
     left_grid,
     not_begun,
+    outside_flow,
     remedy,
     stopped_by,
     stopped_in_flow,
@@ -46,10 +46,10 @@ MARCHED, SINGULAR, UNFINISHED = (eel_core.STATUSES.index(name) for name in ("mar
 
 
 class March:
-    """A march from the initial state of a `setup`, on a grid of these `settings`.
+    """A march of a `setup` from its initial state under `law`, whose own t = 0 lies at `origin` [s].
 
-    It begins under `law`, which has these `needs` and whose own t = 0 lies at `origin` [s]. Without a law the body is
-    straight. `SimulationStopped` where the initial state has no finite energy.
+    It begins on a grid of these `settings`, or a finer one that the law needs. Without a law the body is straight.
+    `ValueError` where the law cannot be begun, `SimulationStopped` where the initial state has no finite energy.
 
     Attributes:
         core: the march of eel_core: state, works and counts.
@@ -62,56 +62,31 @@ class March:
         energy_at_start: [J], kinetic and potential.
     """
 
-    def __init__(self, setup: SimulationSetup, settings: GridSettings, needs: ShapeNeeds, law=None, origin=0.0):
-        self.setup, self._needs, self._time_scale = setup, needs, setup.time_scale
-        self.time, self.settings = 0.0, settings
+    @np.errstate(over="ignore", invalid="ignore")  # what is not finite is reported
+    def __init__(
+        self,
+        setup: SimulationSetup,
+        law: Law | SampledLaw | None = None,
+        origin: float = 0.0,
+        settings: GridSettings | None = None,
+    ):
+        self.setup, self.time, self._time_scale = setup, 0.0, setup.time_scale
+        self._needs = setup.shape_needs(law)
         self._commands: dict[str, float] = {}  # rad, of fins
-        self._rows: np.ndarray | None = None  # (T, R), the numbers of a robot's coordinates in the last `record`
-        self.discretisation, self.robot = self._on_grid(settings)
-        self.follower = LawFollower(self.discretisation.tabulation, setup.default_transition, law, origin)
-        self.core = eel_core.March(*self._mechanics)
+        self._reference = np.zeros((0, 0))  # what the servos of a robot follow, by the law's factors
+        wanted = setup.grid_for(self._needs)
+        self.core = eel_core.March(*self._on_grid(wanted if settings is None else settings.at_least(wanted)))
         self._places = self.core.row
+        self._rows = self._empty_rows(0)  # (T, R), the numbers of a robot's coordinates in the last `record`
+        self.follower = LawFollower(self.discretisation.tabulation, setup.default_transition, law, origin)
         self._hand_over_law()
         position, orientation, _ = setup.initial_state
         shape = () if self.robot is None else self.robot.at_start(self.law_on_grid, self._reference)
         self.energy_at_start: float = self.core.start(position, orientation, setup.initial_twist, *shape)
         if not np.isfinite(self.energy_at_start):
-            if self.core.outside is not None:
-                raise left_grid(self.setup.flow, self.core.outside)
-            raise SimulationStopped(0.0, "kinetic energy", self.energy_at_start, "start slower")
-
-    def _on_grid(self, settings: GridSettings) -> tuple[Discretisation, ModesOnGrid | None]:
-        here, table = discretise(self.setup, settings), self.setup.modes
-        return here, None if table is None else ModesOnGrid(table, here.grid, here.tabulation)
-
-    @property
-    def _mechanics(self) -> tuple[Any, ...]:
-        settings, modes = self.setup.settings, None if self.robot is None else self.robot.modes
-        return self.discretisation.swimmer, settings.method, settings.order, bool(self.setup.scene.planar), modes
-
-    @classmethod
-    def from_start(
-        cls,
-        setup: SimulationSetup,
-        law: Law | SampledLaw | None,
-        origin: float = 0.0,
-        settings: GridSettings | None = None,
-    ) -> "March":
-        """A march from the initial state under `law`, on a grid of these `settings`, or a finer one that it needs.
-
-        `ValueError` where the law cannot be begun.
-        """
-        needs = setup.shape_needs(law)
-        wanted = setup.grid_for(needs)
-        try:
-            with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is reported
-                return cls(setup, wanted if settings is None else settings.at_least(wanted), needs, law, origin)
-        except SimulationStopped as stopped:
-            raise stopped if law is None else not_begun(law, stopped) from None
-
-    def begun_with(self, law: Law | SampledLaw, origin: float) -> "March":
-        """A march from the start under `law`, on a grid that is no coarser. `ValueError` as of `from_start`."""
-        return March.from_start(self.setup, law, origin, self.settings)
+            stopped = SimulationStopped(0.0, "kinetic energy", self.energy_at_start, "start slower")
+            stopped = stopped_in_flow(setup.flow, self.core, 0.0) or stopped
+            raise stopped if law is None else not_begun(law, stopped)
 
     def copy_with(self, setup: SimulationSetup) -> "March":
         """A copy in the present state, on a grid for the accuracy of `setup`, which differs in that or in its robot."""
@@ -149,53 +124,52 @@ class March:
         self._commands = self._commands | commands
         self._hand_over_law()
 
+    def command(self, joint: str, kind: str, value: float) -> None:
+        """As `Simulation.command`. kind: angle [rad], rate [rad/s], torque [N m], or law."""
+        assert self.robot is not None
+        servo, sign = self.robot.servo_of(joint)
+        self.core.command(servo, kind, sign * value)
+
     def _fit(self, needs: ShapeNeeds):
         """Make the grid fine enough for the `needs` and, once no finer motion is left, not much finer."""
         wanted = self.setup.grid_for(needs)
         self._use(self.settings.at_least(wanted) if self.follower.blending else self.settings.fitted(wanted))
 
-    def _fit_samples(self, samples: list[CurvatureSample]):
-        self._fit(ShapeNeeds(max(sample.waves for sample in samples)))
-
     def _use(self, settings: GridSettings):
-        """Continue on a grid of these `settings`. The head's motion does not change."""
         if settings is not self.settings:
             self._change_grid(settings)
 
     def _change_grid(self, settings: GridSettings):
+        """Continue on a grid of these `settings`. The head's motion does not change."""
         old, twist = self.discretisation.grid, self.twist
-        self.discretisation, self.robot = self._on_grid(settings)
+        self.core.change(*self._on_grid(settings))
         there = self.discretisation.tabulation
         self.follower.move(there, old.interpolation_at(there.x))
-        self.settings = settings
-        self.core.change(*self._mechanics)
         self._hand_over_law()
         self.core.set_twist(twist)
 
+    def _on_grid(self, settings: GridSettings) -> tuple[Any, ...]:
+        """What the core's march is of, on a grid of these `settings`, which are in force from now on."""
+        self.settings, self.discretisation = settings, discretise(self.setup, settings)
+        grid, _, swimmer, *_, tabulation = self.discretisation
+        table, by = self.setup.modes, self.setup.settings
+        self.robot = None if table is None else ModesOnGrid(table, grid, tabulation)
+        modes = None if self.robot is None else self.robot.modes
+        return swimmer, by.method, by.order, bool(self.setup.scene.planar), modes
+
     def _hand_over_law(self, smoothly: bool = False):
         """Continue under the follower's law. The next step begins anew, unless the motion goes on `smoothly`."""
-        setup, robot, follower = self.setup, self.robot, self.follower
-        self.law_on_grid, self._bounds = follower.law_on_grid, self._step_bounds()
-        flow = () if setup.flow is None else setup.flow.traits.breakpoints
-        breakpoints = sorted({*follower.breakpoints, *flow, *knots_of(setup.fins)})  # s: a derivative jumps there
-        law, self._reference = self.law_on_grid, np.zeros(0)
-        if robot is not None:
-            law, self._reference = robot.law(follower, self.discretisation.tabulation)
-        self.core.follow(
-            law,
-            breakpoints,
-            self._bounds,
-            bool(setup.scene.ledger),
-            setup.current,
-            setup.core_flow,
-            smoothly,
-            given_angles(setup.fins, self._commands),
-            self._reference,
-        )
+        setup, follower = self.setup, self.follower
+        law = self.law_on_grid = follower.law_on_grid
+        self._bounds, breakpoints = self._step_bounds(), sorted({*follower.breakpoints, *setup.breakpoints})
+        if self.robot is not None:
+            law, self._reference = self.robot.law(follower, self.discretisation.tabulation)
+        steps, water = (breakpoints, self._bounds, bool(setup.scene.ledger)), (setup.current, setup.core_flow)
+        angles = given_angles(setup.fins, self._commands)
+        self.core.follow(law, *steps, *water, smoothly, angles, self._reference)
 
     def _step_bounds(self) -> eel_core.StepBounds:
         setup, follower, here = self.setup, self.follower, self.discretisation
-        of_flow = np.inf if setup.flow is None else setup.flow.traits.time_scale
         of_law = min(follower.time_scale, self._time_scale)
         return step_bounds_of(
             accuracy=setup.settings,
@@ -205,7 +179,7 @@ class March:
             mass=here.mass,
             length=setup.body.length,
             speed=follower.speed(setup.body.length),
-            scale=min(of_law, here.weight_time, of_flow, servo_time(setup.fins)),
+            scale=min(of_law, here.weight_time, setup.time_scale_of_surroundings),
             most_evaluations=setup.most_evaluations,
             law_scale=of_law,
         )
@@ -239,7 +213,7 @@ class March:
         smoothly: the rate of the momentum depends on the curvature and its rate.
         """
         before = self.follower.between_samples
-        self.follower.pass_event(self.time, self._fit_samples)
+        self.follower.pass_event(self.time, lambda ahead: self._fit(ShapeNeeds(max(each.waves for each in ahead))))
         if self.follower.law_on_grid is not self.law_on_grid:
             self._hand_over_law(smoothly=before and self.follower.between_samples)
         return self.follower.next_event(self.time)
@@ -250,9 +224,7 @@ class March:
         works, done, status = np.zeros((len(times), len(WORKS))), 0, MARCHED
         self._rows = rows = self._empty_rows(len(times))
         alone = look is None and threading.current_thread() is not threading.main_thread()
-        slice_before = (
-            self.core.set_slice(UNCUT) if alone else None
-        )  # no signal arrives, returns wait for Python's lock
+        cut = self.core.set_slice(UNCUT) if alone else None  # no signal arrives, returns wait for Python's lock
         while status == MARCHED and done < len(times):
             event, status = self._pass_event(), UNFINISHED
             while status == UNFINISHED:
@@ -262,21 +234,18 @@ class March:
                 if look is not None and status == UNFINISHED:
                     look(self.core.time)
             self.time = self.core.time
-        if slice_before is not None:
-            self.core.set_slice(slice_before)
+        if cut is not None:
+            self.core.set_slice(cut)
         checked = bool(self.setup.scene.ledger) and self.setup.settings.method == "classical"
         floor = self._bounds.momentum_floor**2 / self.discretisation.mass if checked else np.inf
         ledger = None if self.joints is None else self.joints.ledger
         failure = first_bad_sample(out, works, done, self.energy_at_start, floor, ledger)
-        if failure:
-            done, quantity, value = failure
+        done = failure[0] if failure else done
         if done:
             self.time = float(times[done - 1])
         if failure:
-            for place in out.backbone[done]:
-                if self.setup.flow is not None and self.setup.flow.outside(times[done], place):
-                    return out, works, done, left_grid(self.setup.flow, (times[done], *place))
-            return out, works, done, SimulationStopped(self.time, quantity, value, remedy(self.setup.settings))
+            bad = SimulationStopped(self.time, *failure[1:], remedy(self.setup.settings))
+            return out, works, done, outside_flow(self.setup.flow, times[done], out.backbone[done]) or bad
         return out, works, done, None if status == MARCHED else self._stopped(status)
 
     def _stopped(self, status: int) -> SimulationStopped:
@@ -285,27 +254,18 @@ class March:
         stopped = stopped_in_flow(self.setup.flow, self.core, self.time) or by_status
         return stopped if self.robot is None else by_part(stopped, self.core, self.robot, status == SINGULAR)
 
-    # -- joints of a robot
+    # -- the present
 
     @property
     def joints(self) -> JointMotion | None:
         """As `Simulation.joints`."""
-        return None if self._rows is None else self._motion(self._rows)
+        return self._joints(self._rows) if len(self._rows) else None
+
+    def _joints(self, rows: np.ndarray) -> JointMotion | None:
+        return None if self.robot is None else JointMotion(self.robot, self._places, rows)
 
     def _empty_rows(self, samples: int) -> np.ndarray:
         return np.zeros((samples, self._places["damping_work"][1]))
-
-    def _motion(self, rows: np.ndarray) -> JointMotion | None:
-        return None if self.robot is None else JointMotion(self.robot, self._places, rows)
-
-    def command(self, joint: str, kind: str, value: float) -> None:
-        """As `Simulation.command`. kind: angle [rad], rate [rad/s], torque [N m], or law."""
-        assert self.robot is not None
-        modes, table = [motor.mode for motor in self.robot.motors], self.robot.table
-        mode = table.name.index(joint)
-        self.core.command(modes.index(mode), kind, float(table.sign[mode] * value))
-
-    # -- the present
 
     def observe(self, wrench: bool = True, load: bool = True) -> Snapshot:
         """As `Simulation.observe`."""
@@ -313,7 +273,7 @@ class March:
         wrench, load = bool(wrench and scene.internal_wrench), bool(load)
         rows = self._empty_rows(1)
         ledger = (np.array(self.core.works), self.energy_at_start) if scene.ledger else None
-        joints = self._motion(rows)
+        joints = self._joints(rows)
         snapshot = Snapshot(self.time, self.setup.x, wrench, load, len(self.setup.fins), ledger, joints)
         if not self.core.observe(snapshot.whole, rows, wrench, load):
             raise self._stopped(SINGULAR)

@@ -146,7 +146,6 @@ class SampledSwimmers:
 
     def _bounds_of(self, setup: SimulationSetup) -> eel_core.StepBounds:
         """The bounds of the steps of a swimmer that starts as its `setup` has it."""
-        of_flow = np.inf if setup.flow is None else setup.flow.traits.time_scale
         return step_bounds_of(
             accuracy=self.accuracy,
             ledger=bool(self.setup.scene.ledger),
@@ -155,6 +154,6 @@ class SampledSwimmers:
             mass=self._discretisation.mass,
             length=self.setup.body.length,
             speed=0.0,
-            scale=min(setup.time_scale, self._discretisation.weight_time, of_flow),
+            scale=min(setup.time_scale, self._discretisation.weight_time, setup.time_scale_of_surroundings),
             most_evaluations=setup.most_evaluations,
         )

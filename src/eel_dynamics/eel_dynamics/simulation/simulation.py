@@ -90,7 +90,7 @@ class Simulation(Present):
         )
         self._setup = setup = affordable(asked)
         self.body, self.scene, self.x, self.robot = setup.body, setup.scene, setup.x, setup.robot
-        self._march = March.from_start(setup, law)
+        self._march = March(setup, law)
         self.ready, self._started = law is not None, False
         self.currents = CurrentStream(setup.default_transition)
         self._meter = ErrorMeter(self._march, measure_error)
@@ -111,7 +111,7 @@ class Simulation(Present):
         if self._started:
             self._on_both(lambda march: march.change_law(law, origin, blend, needs))
         else:
-            self._on_both(lambda march: march.begun_with(law, origin))
+            self._on_both(lambda march: March(march.setup, law, origin, march.settings))
         self._meter.keep_apart(self._march)
         self.ready = True
 
@@ -277,7 +277,7 @@ class Simulation(Present):
 
         `ValueError` for a law that cannot begin from the initial state; the simulation then stays as it is.
         """
-        self._march = March.from_start(self._setup, self.law)
+        self._march = March(self._setup, self.law)
         self.currents = CurrentStream(self._setup.default_transition)
         self.ready, self._started = self.law is not None, False
         self._meter = ErrorMeter(self._march, self._meter.wanted)

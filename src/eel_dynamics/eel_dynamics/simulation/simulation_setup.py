@@ -11,7 +11,7 @@ from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.body.body import Body, checked_body
 from eel_model.equality import EqualByFields
-from eel_model.fins.fins import Fin, checked_fins, edges_of
+from eel_model.fins.fins import Fin, checked_fins, edges_of, knots_of, servo_time
 from eel_model.flow.flow import Flow, check_covers, checked_flow, core_flow
 from eel_model.initial_state import InitialState, checked_state, time_scale
 from eel_model.robot.compiled import ModeTable, mode_table
@@ -95,6 +95,16 @@ class SimulationSetup(EqualByFields):
     def core_flow(self) -> eel_core.Flow | None:
         """The flow for the compiled mechanics."""
         return None if self.flow is None else core_flow(self.flow, bool(self.scene.planar))
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Times [s] at which a derivative of the flow or of the fins' angles jumps."""
+        return *(() if self.flow is None else self.flow.traits.breakpoints), *knots_of(self.fins)
+
+    @property
+    def time_scale_of_surroundings(self) -> float:
+        """Shortest time scale [s] of flow and fins; inf where they have none."""
+        return min(servo_time(self.fins), np.inf if self.flow is None else self.flow.traits.time_scale)
 
     def grid_for(self, needs: ShapeNeeds) -> GridSettings:
         """The settings of the grid for the `needs` of a law, and those of the flow."""

@@ -75,6 +75,13 @@ def left_grid(flow: Flow | None, where: Sequence[float]) -> SimulationStopped:
     return SimulationStopped(time, quantity, value, "give a larger grid, or a shorter run")
 
 
+def outside_flow(flow: Flow | None, time: float, places: np.ndarray) -> SimulationStopped | None:
+    """The error for the first of `places` (M, 3) [m] where the `flow` is not known at `time` [s]; else None."""
+    found = (place for place in places if flow is not None and flow.outside(time, place))
+    place = next(found, None)
+    return None if place is None else left_grid(flow, (time, *place))
+
+
 def by_part(stopped: SimulationStopped, core: eel_core.March, robot: ModesOnGrid, singular: bool) -> SimulationStopped:
     """The error of a `robot`, with the part that is to blame. singular: whether the inertia is."""
     mode = core.singular_mode() if singular else None

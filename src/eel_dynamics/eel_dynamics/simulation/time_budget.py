@@ -44,7 +44,7 @@ def swim_time(setup: SimulationSetup) -> float:
     duration, best = 2.0, math.inf
     for repeat in range(4):  # the first fills caches
         begin = clock.perf_counter()
-        march = March.from_start(setup, law)
+        march = March(setup, law)
         try:
             for sample in range(1, 41):
                 march.advance(duration * sample / 40, None)

@@ -101,6 +101,11 @@ class ModesOnGrid:
         """The motors behind series springs, in the order of their coordinates."""
         return [motor for motor in self.motors if motor.servo.has_spring]
 
+    def servo_of(self, joint: str) -> tuple[int, float]:
+        """The number of the servo that drives a `joint`, and the joint's sign."""
+        mode = self.table.name.index(joint)
+        return [motor.mode for motor in self.motors].index(mode), float(self.table.sign[mode])
+
     def part_of(self, coordinate: int) -> str:
         """The name of the part that has a `coordinate`."""
         count = len(self.table)
