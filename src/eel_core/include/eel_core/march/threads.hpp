@@ -15,7 +15,6 @@ namespace eel_core {
 
 class Threads {
   public:
-    using Clock = std::chrono::steady_clock;
     using Task = std::function<void(std::size_t)>;
 
     // `count` threads, of which the caller's own is one.
@@ -23,15 +22,7 @@ class Threads {
     {
         for (std::size_t k = 1; k < count; ++k) helpers_.emplace_back([this, k] { help(k); });
     }
-    ~Threads()
-    {
-        {
-            const std::scoped_lock lock(mutex_);
-            ends_ = true;
-        }
-        called_.notify_all();
-        for (std::thread& helper : helpers_) helper.join();
-    }
+    ~Threads() { call(State::ended); }
     Threads(const Threads&) = delete;
     Threads& operator=(const Threads&) = delete;
 
@@ -43,10 +34,6 @@ class Threads {
     void run(std::size_t items, const Task& task)
     {
         const std::size_t count = shares_.size();
-        if (count == 1) {
-            for (std::size_t item = 0; item < items; ++item) task(item);
-            return;
-        }
         for (std::size_t k = 0; k < count; ++k)
             shares_[k].next = k * items / count, shares_[k].end = (k + 1) * items / count;
         task_ = &task;
@@ -62,7 +49,7 @@ class Threads {
     }
 
   private:
-    enum class State { over, expected, under_way };
+    enum class State { over, expected, under_way, ended };
 
     void call(State state)
     {
@@ -77,6 +64,7 @@ class Threads {
     template <class Condition>
     static void look_out(const Condition& come)
     {
+        using Clock = std::chrono::steady_clock;
         constexpr std::chrono::microseconds patience{100};
         for (const auto start = Clock::now(); !come() && Clock::now() < start + patience;) {
         }
@@ -101,14 +89,14 @@ class Threads {
     {
         std::unique_lock lock(mutex_);
         for (std::size_t seen = 0;;) {
-            called_.wait(lock, [&] { return ends_ || calls_ != seen; });
-            if (ends_) return;
+            called_.wait(lock, [&] { return calls_ != seen; });
             if (state_ == State::expected) {
                 lock.unlock();
                 look_out([this] { return state_ != State::expected; });
                 lock.lock();
             }
             seen = calls_;
+            if (state_ == State::ended) return;
             if (state_ != State::under_way) continue;
             ++busy_;
             lock.unlock();
@@ -125,8 +113,7 @@ class Threads {
     std::atomic<State> state_ = State::over;
     std::atomic<std::size_t> busy_ = 0;  // helpers at work
     std::size_t calls_ = 0;
-    bool ends_ = false;
-    std::vector<std::thread> helpers_;
+    std::vector<std::jthread> helpers_;
 };
 
 }  // namespace eel_core
