@@ -31,7 +31,7 @@ inline auto tuple_of(const Counts& counts) { return std::tuple(counts.steps, cou
 class PyMarch {
   public:
     PyMarch(std::shared_ptr<const Swimmer> swimmer, const std::string& method, std::size_t order, bool planar,
-            std::shared_ptr<const Modes> modes)
+            const std::shared_ptr<const Modes>& modes)
         : march_(checked(std::move(swimmer), modes.get()), method_of(method, order, modes.get()), planar, modes)
     {
     }
@@ -43,7 +43,7 @@ class PyMarch {
         return std::unique_ptr<PyMarch>(new PyMarch(march_, has_law_));
     }
     void change(std::shared_ptr<const Swimmer> swimmer, const std::string& method, std::size_t order, bool planar,
-                std::shared_ptr<const Modes> modes)
+                const std::shared_ptr<const Modes>& modes)
     {
         const InUse in_use(in_use_);
         const std::size_t coordinates = modes ? modes->coordinates : 0;
