@@ -37,7 +37,7 @@ from eel_gaits import Law, falling, still, straight
 FOLDER = Path(__file__).resolve().parents[2] / "docs" / "images"
 MOMENT = 8.3  # s: a strong bend
 SIZE, BAR = (1280, 720), 36  # pixels: window, and the empty bar at its top
-COLOURS = 256
+COLOURS, MOST = 256, 176
 COURSE, COURSE_END = [(4.0, 0.0, 0.0), (7.0, 2.0, -0.4), (10.0, 1.5, 0.0)], 23.0  # m; s
 BALLAST_AHEAD = 0.07  # m, by which the ballast of an untrimmed hull lies ahead of its place
 LIMITS = ((1.0, 3.0), (0.3, 6.0), (0.2, 9.0), (0.1, 12.0))  # N m of a weaker and weaker robot, and until when [s]
@@ -148,10 +148,14 @@ def write_film(
 
 
 def keep(png: bytes, name: str) -> None:
-    """Without the empty bar, in few colours."""
+    """Without the empty bar, in few colours: most of them for large areas, the others so that each is near its own."""
     picture = Image.open(io.BytesIO(png)).convert("RGB").crop((0, BAR, *SIZE))
     path = FOLDER / f"{name}.png"
-    picture.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, kmeans=3).save(path, optimize=True)
+    palette, colours = Image.new("P", (1, 1)), []
+    for count, method in ((MOST, Image.Quantize.MEDIANCUT), (COLOURS - MOST, Image.Quantize.MAXCOVERAGE)):
+        colours += (picture.quantize(count, method=method).getpalette() or [])[: 3 * count]
+    palette.putpalette(colours)
+    picture.quantize(palette=palette, dither=Image.Dither.NONE).save(path, optimize=True)
     tell(path)
 
 
