@@ -164,7 +164,7 @@ EEL_CORE_APART void find_head_acceleration(const Swimmer& swimmer, const LawOnGr
 {
     const double on_nose = water_on_nose(swimmer, work);
     auto head = components_of(accelerating_load(swimmer, law, on_nose, work));
-    work.inertia.solve(head);
+    work.factored.solve(head);
     work.head_acceleration = Components<Twist<M, double>>::make([&](std::size_t k) { return head[k]; });
     work.nose_force = on_nose - swimmer.nose_mass * work.head_acceleration.linear.x;
 }

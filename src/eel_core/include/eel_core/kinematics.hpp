@@ -17,14 +17,14 @@ Vector3<T> turning(const Frame3<T>& frame, const Vector2<T>& bending)
     return bending.x * frame.axis2 + bending.y * frame.axis3;
 }
 
-// Rotations over the intervals that end at the nodes, to `quaternion`: apart from their product, in which each block
+// Rotations over the intervals that end at the nodes: apart from their product, in which each block
 // waits for the one before.
 inline void turn_intervals(const Swimmer& swimmer, const LawOnGrid& law, Workspace<Space>& work)
 {
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
         const auto pitch = law.combine(law.tables->moments, LawOnGrid::pitch, work.factor, 0, k);
         const auto yaw = law.combine(law.tables->moments, LawOnGrid::yaw, work.factor, 0, k);
-        work.quaternion.store(k, magnus({pitch[0], yaw[0]}, {pitch[1], yaw[1]}, {pitch[2], yaw[2]}));
+        work.turn.store(k, magnus({pitch[0], yaw[0]}, {pitch[1], yaw[1]}, {pitch[2], yaw[2]}));
     }
 }
 
@@ -34,7 +34,7 @@ inline void orient_sections(const Swimmer& swimmer, const LawOnGrid& law, Worksp
     turn_intervals(swimmer, law, work);
     Quaternion<Lanes> before{0.0, 0.0, 0.0, 1.0};
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-        const Quaternion<Lanes> q = before * successive_products(work.quaternion[k]);
+        const Quaternion<Lanes> q = before * successive_products(work.turn[k]);
         before = {last(q.x), last(q.y), last(q.z), last(q.w)};
         const Frame3<Lanes> frame = q.frame();
         const Vector2<Lanes> rate = law.combine_both(law.tables->node, work.factor, 1, k);

@@ -118,16 +118,17 @@ Momentum<M, double> inertia_and_momentum(const Swimmer& swimmer, Workspace<M>& w
     return whole;
 }
 
-// Sets the head's twist from `work.momentum` in a configured body, and leaves the inertia factored. False where the
+// Sets the head's twist from `work.momentum` in a configured body, and factors the inertia. False where the
 // inertia is not positive definite.
 template <class M>
 EEL_CORE_APART bool find_twist(const Swimmer& swimmer, Workspace<M>& work)
 {
     Momentum<M, double> shape = work.shape_momentum = inertia_and_momentum(swimmer, work);
     if (work.flowing) shape = shape - momentum_of_flow(swimmer, work);
-    const bool definite = work.inertia.factor();
+    work.factored = work.inertia;
+    const bool definite = work.factored.factor();
     auto solution = components_of(work.momentum - shape);
-    work.inertia.solve(solution);
+    work.factored.solve(solution);
     work.twist = Components<Twist<M, double>>::make([&](std::size_t k) { return solution[k]; });
     return definite;
 }

@@ -133,8 +133,9 @@ class BentBody {
             left[i] -= columns.at_rest[i];
             for (std::size_t m = 0; m < modes_->modes; ++m) left[i] -= columns.mass.at(head + m, i) * rate[m];
         }
-        work.inertia.factor();
-        work.inertia.solve(left);
+        work.factored = work.inertia;
+        work.factored.factor();
+        work.factored.solve(left);
         std::copy_n(left.begin(), head, solution_.begin());
         move(x);
     }

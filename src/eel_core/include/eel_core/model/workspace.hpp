@@ -36,7 +36,7 @@ struct Workspace {
     explicit Workspace(const Swimmer& swimmer)
     {
         const std::size_t n = swimmer.grid.blocks;
-        frame = Field<Frame<M, double>>(n), quaternion = Field<Quaternion<double>>(n),
+        frame = Field<Frame<M, double>>(n), turn = quaternion = Field<Quaternion<double>>(n),
         position = Field<Vector<M, double>>(n);
         shape_omega = omega = Field<Angular<M, double>>(n), shape_velocity = velocity = Field<Vector<M, double>>(n),
         curvature_rate = Field<Vector2<double>>(n);
@@ -54,7 +54,8 @@ struct Workspace {
 
     // Along the body, in the axes of the head, about the head:
     Field<Frame<M, double>> frame;            // t1, t2, t3 of the sections
-    Field<Quaternion<double>> quaternion;     // the same, in space alone
+    Field<Quaternion<double>> quaternion;     // the same, in space alone, as the next
+    Field<Quaternion<double>> turn;           // of the section at a node against that at the one before
     Field<Vector<M, double>> position;        // r [m]
     Field<Angular<M, double>> shape_omega;    // [rad/s], due to the change of shape alone
     Field<Vector<M, double>> shape_velocity;  // [m/s], likewise
@@ -93,18 +94,18 @@ struct Workspace {
     std::size_t kink_count = 0;
 
     // Of the whole body:
-    Frame<M, double> head;  // axes of the head in the world
-    Factored<M::freedoms> inertia;
-    Twist<M, double> twist;              // of the head, relative to the water
-    Momentum<M, double> momentum;        // of body, water and nose
-    Momentum<M, double> shape_momentum;  // of the change of shape alone
-    Wrench<M, double> tail, drag;        // on the body
-    Vector3<double> up{};                // of the world; as the next two, where the body weighs
-    double height = 0.0;                 // of the nose [m], over that of no potential energy
-    Wrench<M, double> weight{};          // of weight and buoyancy
-    double drag_power = 0.0;             // [W]
-    double tail_speed = 0.0;             // V1 at the tail [m/s]
-    double tail_energy = 0.0;            // T_f there [J/m]
+    Frame<M, double> head;                    // axes of the head in the world
+    Factored<M::freedoms> inertia, factored;  // about the head; the latter factored in place
+    Twist<M, double> twist;                   // of the head, relative to the water
+    Momentum<M, double> momentum;             // of body, water and nose
+    Momentum<M, double> shape_momentum;       // of the change of shape alone
+    Wrench<M, double> tail, drag;             // on the body
+    Vector3<double> up{};                     // of the world; as the next two, where the body weighs
+    double height = 0.0;                      // of the nose [m], over that of no potential energy
+    Wrench<M, double> weight{};               // of weight and buoyancy
+    double drag_power = 0.0;                  // [W]
+    double tail_speed = 0.0;                  // V1 at the tail [m/s]
+    double tail_energy = 0.0;                 // T_f there [J/m]
     Twist<M, double> head_acceleration;
     Wrench<M, double> balance;  // integral over the body of the density, as the head equation has it
     double nose_force = 0.0;    // [N], along t1(0)
