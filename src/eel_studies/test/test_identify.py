@@ -7,10 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from eel_dynamics.runs.swim import AT_REST
 from eel_studies.identification.command import main
 from eel_studies.identification.statistics import Block, correlation_of, gauss_newton_covariance
 
-from eel_dynamics import Body, Scene, simulate
+from eel_dynamics import Body, Gust, Scene, Swim, simulate
 from eel_gaits import sampled, straight, turning
 from eel_studies import MeasuredPath, MeasuredSpeed, identify
 
@@ -109,6 +110,15 @@ def test_speeds_of_several_gaits_give_a_coefficient():
     assert one.error[0] > found.error[0]  # one speed and one coefficient: the interval is that of the noise given
     with pytest.warns(UserWarning, match="residuals are .* times the noise: the model does not fit"):
         identify({"body.lateral_drag": 2.0}, measured, noise=1e-5, **FAST)
+
+
+def test_a_whole_swim_keeps_its_body_water_and_start():
+    body, gust = Body.boyer2010().changed(lateral_drag=1.5, nose_drag=0.2), Gust()
+    swim = Swim(straight(), body, PLANE, 1e-4, flow=gust, start=AT_REST._replace(twist=0.3 * np.eye(6)[3]))
+    run = swim.run(duration=3.0, sample_period=0.05, stations=2)
+    path = MeasuredPath(run.time[2:], run.position[2:, :2])
+    found = identify({"body.lateral_drag": 1.3}, path, gait=swim, accuracy=1e-4, threads=1)
+    assert found.value == pytest.approx([1.5], rel=2e-3)
 
 
 def test_the_friction_is_blended_where_no_scene_is_given():

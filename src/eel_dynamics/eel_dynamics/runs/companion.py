@@ -148,8 +148,11 @@ def _finished(request, accuracy: Accuracy, nodes: int | None = None):
                 break
             accuracy = accuracy.with_other_points()
             march = request.march(accuracy)
+    except (SimulationStopped, ValueError):  # a law that cannot be begun
+        return None
+    try:
         swim = request.swim(march)
-    except (SimulationStopped, ValueError):
+    except SimulationStopped:
         return None
     return swim if swim.stopped is None else None
 

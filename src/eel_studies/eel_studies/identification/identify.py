@@ -68,7 +68,7 @@ def identify(
     level = positive("level", level)
     if level >= 1.0:
         raise ValueError(f"level must be below 1, got {level:g}")
-    base = base_point(body, scene, fixed_steps(accuracy), friction="blended", robot=robot)
+    base = base_point(body, scene, fixed_steps(accuracy), friction="blended", robot=robot, gait=gait)
     swims = Swims(gait, dict(numbers or {}), base, threads)
     for each in measurements:
         try:
