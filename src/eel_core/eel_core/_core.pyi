@@ -12,7 +12,6 @@ from collections.abc import Iterable, Sequence
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import ArrayLike
 from typing_extensions import Buffer as _Buffer
 
 Buffer = _Buffer | np.ndarray  # numpy's stubs call an array a buffer from Python 3.12 on
@@ -293,42 +292,6 @@ class March:
 
 def tabulate(weights: Buffer, values: Buffer, rows: Buffer) -> None:
     """Tabulates a controller's sample: rows (6, k) of its values (6, n) at n points, by the weights (n, k)."""
-
-class Spline:
-    """Splines of an odd degree through samples at n points x, one for each column of values (n, ...), without a jump of
-    the derivative of that degree next to either end. Fewer points than its degree needs have a polynomial.
-
-    Beyond the ends the polynomials there go on. `ValueError` for points that do not rise, or numbers that are not
-    finite.
-    """
-
-    def __init__(self, x: ArrayLike, values: ArrayLike, degree: int = 3) -> None: ...
-    def at(self, x: ArrayLike) -> np.ndarray:
-        """The values (*x.shape, ...) at x, of any shape."""
-
-    def integral(self, x: ArrayLike) -> np.ndarray:
-        """The integrals (*x.shape, ...) from the first point to x, of any shape."""
-
-def peaks(
-    x: ArrayLike,
-    values: ArrayLike,
-    *,
-    width: int = 1,
-    with_sign: bool = False,
-    weights: ArrayLike = (),
-    start: float = ...,
-    end: float = ...,
-    near: float = 0.0,
-    beside: int = 0,
-) -> np.ndarray:
-    """The greatest sizes of splines through values (n, ...) at x, and their places: (2, groups of `width` columns).
-
-    The size of a group is that of a vector or a number, or the number `with_sign`; or the sum of the positive parts by
-    the weights (width,), where there are any. It is looked for from `start` to `end`, at the points and seven instants
-    between two of them; a parabola through the greatest and its neighbours gives the peak. The splines are of degree 5.
-    Where near > 0, only groups with a sample of that part of the greatest size count, by a spline through such samples
-    and so many points `beside` the first and the last of them; the others have 0. `ValueError` as of `Spline`.
-    """
 
 class SampledMarches:
     """N swimmers of one kind, each under a controller's samples of its own: values (6, n) at n points, pitch, its rate

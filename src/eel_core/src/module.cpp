@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "bind_flow.hpp"
-#include "bind_splines.hpp"
 #include "eel_core/build_info.hpp"
 #include "eel_core/march/instant.hpp"
 #include "eel_core/march/profiles.hpp"
@@ -155,7 +154,6 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
         .def("factors", &factors_at, py::arg("time"));
 
     bind_marches(module);
-    bind_splines(module);
 
     module.def("repeat_rate", &repeat_rate, py::arg("swimmer"), py::arg("planar"), py::arg("law"), py::arg("time"),
                py::arg("state"), py::arg("count"), py::arg("flow") = py::none());

@@ -5,10 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from eel_dynamics.analysis.peaks import peak_along
-from scipy.interpolate import CubicSpline, make_interp_spline
+from eel_dynamics.analysis.peaks import peak_along, peaks
 
-from eel_core import Spline, peaks
 from eel_dynamics import Fin, Robot, Scene, Wave, simulate
 from eel_gaits import gait
 
@@ -26,50 +24,12 @@ def test_the_peak_of_a_wave_lies_between_its_samples(count):
 
 def test_a_window_and_short_records():
     time = np.linspace(0.0, 1.0, 200)  # three sets of intervals
-    (size,), (place,) = peaks(time, time**2, start=0.2, end=0.75)
+    size, place = peaks(time, time**2, start=0.2, end=0.75)
     assert size == pytest.approx(0.75**2) and place == pytest.approx(0.75)
-    assert peaks([2.0], [-3.0]).tolist() == [[3.0], [2.0]]
-    assert peaks([0.0, 1.0], [0.0, -3.0])[0] == 3.0 and peaks([0.0, 1.0], [-1.0, -3.0], with_sign=True)[0] == -1.0
-    (size,), (place,) = peaks(np.arange(3.0), [0.0, 1.0, 0.5])
+    assert peaks(np.array([2.0]), np.array([-3.0])) == (3.0, 2.0)
+    assert peaks(np.array([0.0, 1.0]), np.array([0.0, -3.0]))[0] == 3.0
+    size, place = peaks(np.arange(3.0), np.array([0.0, 1.0, 0.5]))
     assert size == pytest.approx(49.0 / 48.0, rel=1e-3) and place == pytest.approx(7.0 / 6.0, rel=1e-2)
-
-
-def test_groups_and_instants_that_are_not_near_the_greatest_are_left_out():
-    """The peak of the others is as if all counted, to what a spline changes by samples that are far from it."""
-    time = np.arange(0.0, 20.0, 0.1)
-    values = np.exp(-0.1 * (time - 7.03) ** 2)[:, None, None] * [[3.0, 4.0], [0.3, 0.4], [6.0, 0.0]]
-    all_sizes, all_places = peaks(time, values, width=2)
-    sizes, places = peaks(time, values, width=2, near=0.7, beside=6)
-    assert all_sizes == pytest.approx([5.0, 0.5, 6.0], rel=1e-6) and all_places == pytest.approx(7.03, abs=1e-4)
-    assert sizes == pytest.approx([5.0, 0.0, 6.0], rel=1e-6) and places[[0, 2]] == pytest.approx(7.03, abs=1e-4)
-
-
-@pytest.mark.parametrize("count", [2, 3, 4, 5, 6, 7, 8, 40])
-def test_splines_are_those_of_scipy(count):
-    rng = np.random.default_rng(count)
-    x = np.cumsum(rng.uniform(0.5, 1.5, count))
-    values, places = rng.normal(size=(count, 2, 3)), np.linspace(x[0] - 0.1, x[-1] + 0.1, 30).reshape(5, 6)
-    cubic, quintic = Spline(x, values), Spline(x, values, 5)
-    wanted = CubicSpline(x, values)
-    assert np.allclose(cubic.at(places), wanted(places), rtol=1e-11, atol=1e-11)
-    assert np.allclose(cubic.integral(places), wanted.antiderivative()(places), rtol=1e-11, atol=1e-11)
-    assert np.allclose(quintic.at(x), values, rtol=1e-12, atol=1e-12)
-    if count > 5:
-        assert np.allclose(quintic.at(places), make_interp_spline(x, values, k=5)(places), rtol=1e-10, atol=1e-10)
-
-
-@pytest.mark.parametrize(
-    ("x", "values", "degree", "message"),
-    [
-        ([0.0, 1.0, 1.0], np.zeros(3), 3, "points must rise"),
-        ([0.0, 1.0, 2.0], [0.0, np.nan, 1.0], 3, "samples must be finite"),
-        ([0.0, 1.0, 2.0], np.zeros(4), 3, "values must have a row for each of the 3 points"),
-        ([0.0, 1.0, 2.0], np.zeros(3), 2, "degree must be 1, 3 or 5, got 2"),
-    ],
-)
-def test_what_no_spline_goes_through_is_refused(x, values, degree, message):
-    with pytest.raises(ValueError, match=message):
-        Spline(x, values, degree)
 
 
 @pytest.mark.parametrize("name", ["falling", "kern_fast", "rolling"])

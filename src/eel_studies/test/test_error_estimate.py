@@ -175,7 +175,7 @@ def test_a_companion_with_the_same_steps_would_miss_the_error_of_the_steps(monke
 
 @pytest.mark.timeout(3600)  # two thousand take a quarter of an hour on two cores
 @pytest.mark.parametrize(
-    ("count", "seed"), [(50, 2026), pytest.param(2000, 11, marks=pytest.mark.soak, id="two thousand")]
+    ("count", "seed"), [(100, 2026), pytest.param(2000, 11, marks=pytest.mark.soak, id="two thousand")]
 )
 def test_random_swims_keep_their_target_or_say_so(count, seed, monkeypatch):
     """docs/explanation/accuracy.md quotes the counts of another seed and other durations."""

@@ -146,7 +146,7 @@ def check_in_silence(cells, seed, robots=True):
 
 
 def test_no_cell_of_random_maps_is_wrong_in_silence():
-    check_in_silence(32, 1, robots=False)  # the cheap ones
+    check_in_silence(64, 1, robots=False)  # the cheap ones
 
 
 @pytest.mark.soak

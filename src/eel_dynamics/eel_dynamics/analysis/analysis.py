@@ -12,9 +12,9 @@ import numpy as np
 from eel_base.cached import cached_property
 from eel_model.section_data import GRAVITY
 
-import eel_core
 from eel_dynamics.analysis.averaged_path import AveragedPath
 from eel_dynamics.analysis.averaging_window import AveragingWindow
+from eel_dynamics.analysis.peaks import peaks, torque_size
 from eel_dynamics.analysis.powers import area, drag_powers, power_density, torque_of
 from eel_dynamics.analysis.settling import FEWEST, SETTLED, change_of
 
@@ -133,7 +133,7 @@ class Analysis:
     def peak_actuator_power(self) -> float:
         """Greatest power [W] of all actuators together, between samples too (`analysis.peaks`)."""
         _ = self._ledger
-        return float(self._peaks(lambda run: run.energy.actuator_power, with_sign=True)[0])
+        return float(self._peaks(lambda run: run.energy.actuator_power, np.positive))
 
     @property
     def positive_actuator_power(self) -> float:
@@ -141,14 +141,14 @@ class Analysis:
         back. By the trapezoidal rule over the stations and 64 instants in a period; between samples the power per
         length, which is smooth, is a spline, and its positive part, which has kinks, is taken after that."""
         time = self.window.instants
-        density = self.window.spline(power_density(self.run)).at(time)
+        density = self.window.spline(power_density(self.run))(time)
         return float(area(area(np.maximum(density, 0.0), self.run.x), time)) / (time[-1] - time[0])
 
     @property
     def peak_positive_actuator_power(self) -> float:
         """Greatest integral [W] of max(-C . dK/dt, 0) over the body, between samples too (`analysis.peaks`)."""
-        weights = area(np.eye(len(self.run.x)), self.run.x)
-        return float(self._peaks(power_density, width=len(weights), weights=weights)[0])
+        x = self.run.x
+        return float(self._peaks(power_density, lambda density: area(np.maximum(density, 0.0), x)))
 
     @cached_property
     def wake_power(self) -> float:
@@ -199,17 +199,16 @@ class Analysis:
     def peak_torque(self) -> np.ndarray:
         """Greatest magnitude [N m] of the internal torque in the window at each station, (M,), between samples too
         (`analysis.peaks`)."""
-        return self._peaks(torque_of, width=3)
+        return self._peaks(torque_of, torque_size)
 
     @property
     def rms_torque(self) -> np.ndarray:
         """Root of the mean square [N m] of the internal torque in the window at each station, (M,)."""
         return np.sqrt(np.maximum(0.0, self.window.mean(np.sum(torque_of(self.run) ** 2, axis=2))))
 
-    def _peaks(self, values_of, **how) -> np.ndarray:
-        """The greatest sizes in the window of the values (T, ...) of a run, as of `eel_core.peaks`."""
-        run, window = self._fine, self.window
-        return eel_core.peaks(run.time, values_of(run), start=window.start, end=window.end, **how)[0]
+    def _peaks(self, values_of, size) -> np.ndarray:
+        """The greatest `size` in the window of the values (T, ...) of a run."""
+        return peaks(self._fine.time, values_of(self._fine), size, self.window.start, self.window.end)[0]
 
     @cached_property
     def _fine(self):

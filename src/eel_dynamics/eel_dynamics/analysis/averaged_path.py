@@ -36,12 +36,12 @@ class AveragedPath:
         if window.periods == 1:
             if window.start - period < window.run.time[0] - 1e-9 * period:
                 return None
-            first = np.linalg.norm(np.subtract(*window.paths.at((window.start, window.start - period))[:, 0]))
+            first = np.linalg.norm(np.subtract(*window.paths((window.start, window.start - period))[:, 0]))
         return float(abs(ways[-1] - first) / period)
 
     def speeds(self, edges: np.ndarray) -> np.ndarray:
         """(n,) [m/s], of the averaged centre over the periods between the `edges` (n + 1,) [s]."""
-        return np.linalg.norm(np.diff(self._window.paths.at(edges)[:, 0], axis=0), axis=1) / np.diff(edges)
+        return np.linalg.norm(np.diff(self._window.paths(edges)[:, 0], axis=0), axis=1) / np.diff(edges)
 
     def tail_excursion(self, moves: bool) -> float:
         """[m], as `Analysis.tail_excursion`. moves: whether there is a path to measure across.
@@ -57,7 +57,7 @@ class AveragedPath:
         if window.periods == 1:
             apart = tail - tail[0] - np.linspace(0.0, 1.0, len(tail))[:, None] * (tail[-1] - tail[0])
         else:
-            total = window.paths.integral(self._instants)[:, 1]
+            total = window.paths.antiderivative()(self._instants)[:, 1]
             apart = tail[n // 2 : -(n // 2)] - (total[n:] - total[:-n]) / window.period
         if moves:
             along = self._steps / self._step_lengths[:, None]
@@ -68,7 +68,7 @@ class AveragedPath:
     @cached_property
     def _paths(self) -> np.ndarray:
         """(N, 2, 3) [m], as `AveragingWindow.paths`."""
-        return np.asarray(self._window.paths.at(self._instants))
+        return np.asarray(self._window.paths(self._instants))
 
     @cached_property
     def _steps(self) -> np.ndarray:

@@ -15,8 +15,6 @@ from eel_gaits.laws.law import Law
 from eel_gaits.laws.term import Term
 from eel_gaits.sources.sampled_law import SampledLaw
 
-import eel_core
-
 LONGEST_COMMON = 12  # of the strongest wave's periods, after which the whole gait must repeat
 FEWEST_SAMPLES = 8  # in a period
 WHOLE = 1e-4  # part of a period that may be missing: the period of measured rows is not exact
@@ -108,8 +106,7 @@ class AveragingWindow:
 
     def mean(self, values: np.ndarray) -> np.ndarray:
         """Mean over the window of samples (T, ...), the spline through them integrated."""
-        start, end = self.spline(values).integral((self.start, self.end))
-        return np.asarray((end - start) / self.duration)
+        return np.asarray(self.spline(values).integrate(self.start, self.end) / self.duration)
 
     def edges(self, fewest: int) -> np.ndarray:
         """(n + 1,) [s], of the window's periods, or of the run's last `fewest` ones where the window has fewer."""
@@ -132,17 +129,19 @@ class AveragingWindow:
         at_start = work_before + rise + length * s * (1.0 - s) * (rate * (1.0 - s) - later * s)
         return float(work[-1] - at_start) / self.duration
 
-    def spline(self, values: np.ndarray) -> eel_core.Spline:
+    def spline(self, values: np.ndarray):
         """Cubic spline in time through samples (T, ...)."""
-        return eel_core.Spline(self.run.time, values)
+        from scipy.interpolate import CubicSpline
+
+        return CubicSpline(self.run.time, values, axis=0)
 
     def center_of_mass(self, time: Any) -> np.ndarray:
         """The centre of mass over the water (..., 3) [m] at the times (...) [s]."""
         start = self.run.center_of_mass[0] - self.run.time[0] * np.asarray(self.run.scene.current)
-        return np.asarray(start + self.paths.at(time)[..., 0, :])
+        return np.asarray(start + self.paths(time)[..., 0, :])
 
     @cached_property
-    def paths(self) -> eel_core.Spline:
+    def paths(self):
         """Spline of the displacements (2, 3) [m] over the water since the start: of centre of mass and last station."""
         paths = np.stack((self.run.center_of_mass, self.run.backbone[:, -1]), axis=1)
         drift = np.outer(self.run.time - self.run.time[0], self.run.scene.current)

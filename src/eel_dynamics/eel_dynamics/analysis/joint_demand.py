@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from eel_base.wording import shown
 
-import eel_core
+from eel_dynamics.analysis.peaks import peaks
 from eel_dynamics.analysis.powers import area, power_density
 
 
@@ -51,11 +51,13 @@ class Joints:
     """
 
     def __init__(self, x: np.ndarray, length: float, count: int):
+        from scipy.interpolate import CubicSpline
+
         ends = np.linspace(0.0, length, count + 1)
         self.x = 0.5 * (ends[1:] + ends[:-1])
-        spline = eel_core.Spline(x, np.eye(len(x)))
-        self._integral = np.diff(spline.integral(ends), axis=0)  # (count, M)
-        self._value = spline.at(self.x)  # (count, M)
+        spline = CubicSpline(x, np.eye(len(x)))
+        self._integral = np.diff(spline.antiderivative()(ends), axis=0)  # (count, M)
+        self._value = spline(self.x)  # (count, M)
 
     def angle(self, curvature: np.ndarray) -> np.ndarray:
         """Angles (..., count, 3) [rad] of a curvature (..., M, 3) [rad/m], or speeds [rad/s] of its rate."""
@@ -145,7 +147,7 @@ def _motors(run, robot: Joints) -> list[Motors]:
     for axis in (1, 2):
         angle, speed, torque = (values[..., axis] for values in fine)
         sizes = zip(QUANTITIES, (angle, speed, torque, speed * torque), strict=True)
-        peak = {name: eel_core.peaks(finer.time, values)[0] for name, values in sizes}
+        peak = {name: peaks(finer.time, values)[0] for name, values in sizes}
         angle, speed, torque = (values[..., axis] for values in here)
         found.append(Motors(run.time, angle, speed, torque, peak))
     return found

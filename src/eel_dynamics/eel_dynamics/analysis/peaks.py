@@ -12,10 +12,12 @@ recorded elsewhere its own: those of power may then be 2 % off at 20 samples in 
 
 import numpy as np
 
-import eel_core
 from eel_dynamics.simulation.march import March
 
+DEGREE = 5
+BETWEEN = 8  # instants in a sample period, among which the greatest is looked for; a parabola then gives the peak
 FINER, MOST_SAMPLES = 10, 10_000  # samples in a sample period, and in all, of a run that is swum anew for its peaks
+AT_ONCE = 512  # of these instants that are looked at together
 NEAR = 0.7  # of the greatest sample: stations and samples that stay below are not beside the peak between samples
 AROUND = 1  # sample periods, and distances of stations, to either side of the peak that are swum anew
 FINE = 12  # instants and stations in each of these
@@ -27,17 +29,48 @@ def torque_size(torque: np.ndarray) -> np.ndarray:
     return np.sqrt(np.einsum("...k,...k->...", torque, torque))
 
 
+def peaks(
+    x: np.ndarray, values: np.ndarray, size=np.abs, start=-np.inf, end=np.inf, near: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """The greatest `size` of a spline through `values` (T, ...) at `x` (T,), and where: from `start` to `end`.
+
+    size: of values (n, ...); it may take away the last axis. Each other axis has a peak of its own.
+    near: (T,) bool, of the samples beside which they may lie; None: beside any.
+    """
+    from scipy.interpolate import make_interp_spline
+
+    if len(x) < 2:
+        return size(values)[0], np.broadcast_to(x[0], size(values)[0].shape)
+    curve = make_interp_spline(x, values, k=min(DEGREE, len(x) - 1), axis=0)
+    inside = np.unique(np.clip(x, start, end)) if np.isfinite([start, end]).any() else x
+    between = np.arange((len(inside) - 1) * BETWEEN + 1) / BETWEEN
+    fine = np.interp(between, np.arange(len(inside)), inside)
+    if near is not None:
+        fine = fine[np.interp(between, np.arange(len(inside)), near) > 0.0]
+    parts = [fine[max(0, begin - 1) : begin + AT_ONCE + 1] for begin in range(0, max(1, len(fine) - 1), AT_ONCE)]
+    found = [_greatest(part, size(curve(part))) for part in parts]
+    if len(found) == 1:
+        return found[0]
+    sizes, places = map(np.array, zip(*found, strict=True))
+    first = np.argmax(sizes, axis=0)[None]
+    return np.take_along_axis(sizes, first, axis=0)[0], np.take_along_axis(places, first, axis=0)[0]
+
+
 def greatest_torque_of(run) -> tuple[float, float, float]:
     """Greatest magnitude [N m] of the internal torque of `run`, with its X [m] and its time [s].
 
     A run is not swum anew if it was recorded elsewhere, has a single sample, or is a later part of one that
     `depends_on_its_start`.
     """
+    size = torque_size(run.torque)
+    high = size >= NEAR * size.max()
+    near, when = np.flatnonzero(high.any(axis=0)), np.flatnonzero(high.any(axis=1))
+    part = slice(max(0, when[0] - BESIDE), when[-1] + BESIDE + 1)
+    sizes, times = peaks(run.time[part], run.torque[part, near], torque_size, near=high[part].any(axis=1))
+    station, time = near[np.argmax(sizes)], times[np.argmax(sizes)]
     if not run.steps or len(run.time) < 2 or (depends_on_its_start(run) and run.time[0] != 0.0):
         return peak_along(run.time, run.x, run.torque)
-    sizes, times = eel_core.peaks(run.time, run.torque, width=3, near=NEAR, beside=BESIDE)
-    station = int(np.argmax(sizes))
-    times, x, torque = _swum_anew(run, times[station], station)
+    times, x, torque = _swum_anew(run, time, int(station))
     size = torque_size(torque)
     instant, place = np.unravel_index(np.argmax(size), size.shape)
     near_time, near_x = _around(int(instant), len(times)), _around(int(place), len(x))
@@ -56,8 +89,8 @@ def _around(place: int, count: int) -> slice:
 
 def peak_along(time: np.ndarray, x: np.ndarray, torque: np.ndarray) -> tuple[float, float, float]:
     """The greatest magnitude [N m] of splines through `torque` (T, M, 3) [N m], with its X [m] and its time [s]."""
-    sizes, times = eel_core.peaks(time, torque, width=3)
-    (size,), (place,) = eel_core.peaks(x, sizes)
+    sizes, times = peaks(time, torque, torque_size)
+    size, place = peaks(x, sizes)
     return float(size), float(place), float(times[np.argmax(sizes)])
 
 
@@ -75,3 +108,18 @@ def _swum_anew(run, time: float, station: int) -> tuple[np.ndarray, np.ndarray, 
     if stopped is not None:
         raise stopped
     return times, x, out.torque
+
+
+def _greatest(x: np.ndarray, sizes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The greatest of the `sizes` (n, ...) at `x` (n,) and its place, by a parabola through it and its neighbours."""
+    shape, rows = sizes.shape[1:], sizes.reshape(len(sizes), -1)
+    column, at = np.arange(rows.shape[1]), np.argmax(rows, axis=0)
+    inner = np.clip(at, 1, max(1, len(x) - 2))
+    before, size, after = rows[inner - 1, column], rows[inner, column], rows[inner + 1, column]
+    left, right = x[inner] - x[inner - 1], x[inner + 1] - x[inner]
+    up, down = (size - before) / left, (after - size) / right
+    bend, slope = (down - up) / (left + right), (up * right + down * left) / (left + right)
+    inside = (at == inner) & (bend < 0.0)
+    step = np.clip(-0.5 * slope / np.where(inside, bend, -1.0), -left, right)
+    peak = np.where(inside, size + step * (slope + step * bend), rows[at, column])
+    return peak.reshape(shape), np.where(inside, x[inner] + step, x[at]).reshape(shape)

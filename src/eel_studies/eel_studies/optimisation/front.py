@@ -141,7 +141,7 @@ def _draw_gait(axes: Axes, run: Run, speed: float) -> None:
     backbone = window.spline(run.backbone)
     for phase, time in enumerate(np.linspace(window.end - period, window.end, PHASES)):
         middle = start + (time - window.end + period) / period * (end - start)
-        line = along_way((backbone.at(time) - middle)[:, :2], (end - start)[:2])
+        line = along_way((backbone(time) - middle)[:, :2], (end - start)[:2])
         axes.plot(*line.T, color=BLUE, linewidth=0.9, alpha=0.25 + 0.75 * phase / (PHASES - 1))
     axes.set_aspect("equal")
     strouhal = analysis.strouhal
