@@ -50,8 +50,8 @@ class PyMarch {
         if (coordinates != march_.now().x.size())
             throw py::value_error("modes must have " + std::to_string(march_.now().x.size()) +
                                   " coordinates as before, got " + std::to_string(coordinates));
-        has_law_ = false;
         march_.change(checked(std::move(swimmer), modes.get()), method_of(method, order, modes.get()), planar, modes);
+        has_law_ = false;
     }
     void follow(const std::shared_ptr<const LawOnGrid>& law, std::vector<double> breakpoints, const StepBounds& bounds,
                 bool ledger, const py::object& current, std::shared_ptr<Flow> flow, bool smoothly,

@@ -31,3 +31,14 @@ def test_a_number_that_is_not_finite_stops_the_run_by_its_name(whole):
     snapshot.backbone[3, 1] = np.nan
     with pytest.raises(SimulationStopped, match="backbone"):
         check_finite(snapshot)
+
+
+def test_an_energy_residual_that_is_not_finite_stops_the_run_before_it_is_published():
+    simulation = Simulation()
+    simulation.adopt(straight())
+    simulation.advance(0.1)
+    snapshot = simulation.observe()
+    works, _ = snapshot._ledger
+    works[0] = np.inf
+    with pytest.raises(SimulationStopped, match="energy residual"):
+        check_finite(snapshot)

@@ -92,6 +92,13 @@ def test_numbers_of_a_steered_law_change_without_a_jump():
         assert slope == pytest.approx(rows[1][:, order + 1], abs=1e-5 * np.abs(slope).max())
 
 
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_many_steered_swimmers_begin_with_the_numbers_that_one_does(count):
+    law, numbers = SteeredLaw(straight()), {"amplitude": 0.7, "left_bend": 0.2}
+    alone = law.begin(0.3, **numbers)
+    assert np.array_equal(law.begin(np.full(count, 0.3), **numbers), np.broadcast_to(alone, (count, *alone.shape)))
+
+
 def test_guidance_aims_at_the_leg_and_goes_from_point_to_point():
     goal = goals.path([(6.0, 0.0, 0.0), (6.0, 8.0, 1.0)], 0.5, LIMITS)
     pilot = Pilot()

@@ -149,10 +149,14 @@ class SwimmerEnv(Task):
     def begin_episodes(
         self, swimmers: list[int], options: dict[str, Any], draws: Sequence[np.random.Generator]
     ) -> None:
-        """Begin an episode of each of these `swimmers`, drawn from its own of the random numbers `draws` of all."""
+        """Begin an episode of each of these `swimmers`, drawn from its own of the random numbers `draws` of all.
+
+        Where one of them cannot begin, none does.
+        """
         for index in swimmers:
             self._end(index)
-            self.np_random = draws[index]
+            if self.np_random is not draws[index]:  # to set it forgets its seed
+                self.np_random = draws[index]
             self.starts[index] = start = self.begin(options)
             if len(start.goal) != len(self.goal):
                 self.goal = np.zeros((len(start.goal), *self.shape))

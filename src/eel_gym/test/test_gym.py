@@ -52,6 +52,8 @@ def test_seeds_repeat_to_the_bit(task):
     again = swum(one, actions)  # the same environment, used before
     assert np.array_equal(again, swum(other, actions))
     assert not np.array_equal(again, swum(other, actions, seed=6))
+    one.reset(seed=6)
+    assert one.np_random_seed == 6
 
 
 @pytest.mark.parametrize("threads", [1, 3])

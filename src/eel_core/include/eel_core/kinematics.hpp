@@ -17,8 +17,8 @@ Vector3<T> turning(const Frame3<T>& frame, const Vector2<T>& bending)
     return bending.x * frame.axis2 + bending.y * frame.axis3;
 }
 
-// Rotations over the intervals that end at the nodes: apart from their product, in which each block
-// waits for the one before.
+// Rotations over the intervals that end at the nodes: apart from their product, in which each block waits for the one
+// before.
 inline void turn_intervals(const Swimmer& swimmer, const LawOnGrid& law, Workspace<Space>& work)
 {
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {

@@ -118,8 +118,8 @@ Momentum<M, double> inertia_and_momentum(const Swimmer& swimmer, Workspace<M>& w
     return whole;
 }
 
-// Sets the head's twist from `work.momentum` in a configured body, and factors the inertia. False where the
-// inertia is not positive definite.
+// Sets the head's twist from `work.momentum` in a configured body, and factors the inertia. False where that is not
+// positive definite.
 template <class M>
 EEL_CORE_APART bool find_twist(const Swimmer& swimmer, Workspace<M>& work)
 {

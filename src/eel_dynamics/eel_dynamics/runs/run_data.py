@@ -15,7 +15,7 @@ from eel_model.body.body import Body
 from eel_model.equality import same_fields
 from eel_model.fins.fins import Fin
 from eel_model.flow.flow import Flow
-from eel_model.initial_state import InitialState
+from eel_model.initial_state import checked_state
 from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
 
@@ -190,7 +190,7 @@ class RunData(ObservedArrays):
         """
         run = self.in_axes(REP103)
         orientation = run.orientation[sample] / np.linalg.norm(run.orientation[sample])
-        start = InitialState(run.position[sample], orientation, run.twist[sample])
+        start = checked_state(bool(run.scene.planar), run.position[sample], orientation, run.twist[sample])
         how = start, DEFAULT_TRANSITION, most_evaluations
         return SimulationSetup(run.body, run.scene, accuracy, x, *how, run.flow, run.robot, run.fins)
 

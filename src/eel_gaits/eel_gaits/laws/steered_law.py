@@ -74,7 +74,10 @@ class SteeredLaw:
         """Start anew with the law at its `own_time` [s], or (N,) of N swimmers, and all numbers at rest, or at these
         `values`; the curvature as of `advance`."""
         self.own_time, self._swimmers = own_time, np.shape(own_time)
-        self.values = self._rest | {name: (value, 0.0, 0.0) for name, value in values.items()}
+        self.values = dict(self._rest)
+        for name, value in values.items():
+            jet = value, 0.0, 0.0
+            self.values[name] = tuple(np.full(self._swimmers, part) for part in jet) if self._swimmers else jet
         return self._curvature()
 
     def begin_some(self, swimmers: list[int], own_times: np.ndarray) -> np.ndarray:

@@ -20,7 +20,12 @@ class Threads {
     // `count` threads, of which the caller's own is one.
     explicit Threads(std::size_t count) : shares_(count)
     {
-        for (std::size_t k = 1; k < count; ++k) helpers_.emplace_back([this, k] { help(k); });
+        try {
+            for (std::size_t k = 1; k < count; ++k) helpers_.emplace_back([this, k] { help(k); });
+        } catch (...) {  // the system has no more: let those go that are there
+            call(State::ended);
+            throw;
+        }
     }
     ~Threads() { call(State::ended); }
     Threads(const Threads&) = delete;
@@ -55,6 +60,7 @@ class Threads {
     {
         {
             const std::scoped_lock lock(mutex_);
+            if (state == State::expected && state_ == State::under_way) return;
             state_ = state, ++calls_;
         }
         called_.notify_all();

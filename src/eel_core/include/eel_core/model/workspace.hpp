@@ -54,8 +54,8 @@ struct Workspace {
 
     // Along the body, in the axes of the head, about the head:
     Field<Frame<M, double>> frame;            // t1, t2, t3 of the sections
-    Field<Quaternion<double>> quaternion;     // the same, in space alone, as the next
-    Field<Quaternion<double>> turn;           // of the section at a node against that at the one before
+    Field<Quaternion<double>> quaternion;     // the same turn, in space alone
+    Field<Quaternion<double>> turn;           // of the section at a node against the one before, in space alone
     Field<Vector<M, double>> position;        // r [m]
     Field<Angular<M, double>> shape_omega;    // [rad/s], due to the change of shape alone
     Field<Vector<M, double>> shape_velocity;  // [m/s], likewise

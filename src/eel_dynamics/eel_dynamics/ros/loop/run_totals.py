@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Totals and extreme values of a run for /diagnostics: energy ledger, closure of the wrench, torque and force."""
 
-import math
-
 import numpy as np
 
 from eel_dynamics.simulation.observations import Snapshot
@@ -17,12 +15,10 @@ class RunTotals:
         self._greatest = {"torque": 0.0, "force": 0.0}  # N m, N, over all stations and times
 
     def add(self, snapshot: Snapshot) -> None:
-        """Add a snapshot's figures; `SimulationStopped` if the energy residual is not finite."""
+        """Add the figures of a snapshot that `check_finite` has passed."""
         values = self._values
         if snapshot.energy is not None and snapshot.actuator_work is not None:
             residual = float(snapshot.energy.residual)
-            if not math.isfinite(residual):
-                _check(snapshot, "energy residual", residual)
             values["energy_residual"] = residual
             values["energy_residual_worst"] = max(values.get("energy_residual_worst", 0.0), abs(residual))
             values["actuator_work"] = snapshot.actuator_work
@@ -42,10 +38,12 @@ class RunTotals:
 
 
 def check_finite(snapshot: Snapshot) -> None:
-    """`SimulationStopped` if one of the values of a snapshot is not finite, before anybody gets it."""
+    """`SimulationStopped` if a value of a snapshot, or its energy residual, is not finite, before anybody gets it."""
     if not np.isfinite(snapshot.whole).all():
         for name, array in snapshot.arrays().items():
             _check(snapshot, name, array)
+    if snapshot.energy is not None:
+        _check(snapshot, "energy residual", snapshot.energy.residual)
 
 
 def _check(snapshot: Snapshot, name: str, values: np.ndarray | float) -> None:
