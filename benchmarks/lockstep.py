@@ -48,7 +48,7 @@ def lockstep() -> Lines:
     yield "bare messages, there and back", messages, "us a tick"
     yield "the dynamics node", whole, f"us a tick, {TICK / 1e3 / whole:.1f} times real time"
     ratios = [node / (library + messages) for library, messages, node in zip(*times.values(), strict=True)]
-    yield "node over the sum, turn by turn", float(np.median(ratios)), f"times; {min(ratios):.2f} to {max(ratios):.2f}"
+    yield "node over the sum, by turns", float(np.median(ratios)), f"times; {min(ratios):.2f} to {max(ratios):.2f}"
 
 
 def rows(time: int) -> tuple[array.array, array.array, array.array]:

@@ -169,7 +169,7 @@ def integrators() -> str:
 
 def lockstep() -> str:
     """docs/howto/controllers.md: what a tick of a controller in the loop costs."""
-    labels = "the library alone", "bare messages, there and back", "the dynamics node", "node over the sum"
+    labels = "the library alone", "bare messages, there and back", "the dynamics node", "node over the sum, by turns"
     return _labelled("lockstep", ("way", "a tick"), labels)
 
 
