@@ -76,6 +76,7 @@ def step_bounds_of(
     longest = accuracy.longest_step * min(scale, 10.0)
     fixed = accuracy.step or (accuracy.fixed and min(scale, 1.0) / accuracy.fixed)
     part_of_span = PART_OF_RAMP if ledger else PART_OF_SPAN
+    fast = length / min(law_scale, 1.0)
     slowest = max(SLOWEST * length / min(scale, 10.0), PART_OF_SPEED * speed)
     return eel_core.StepBounds(
         tolerance=math.inf if accuracy.method == "classical" else accuracy.tolerance,  # infinite: steps of one length
@@ -86,5 +87,5 @@ def step_bounds_of(
         part_of_span=1.0 if between_samples else min(1.0, part_of_span * accuracy.longest_step / LONGEST_STEP),
         most_steps=most_evaluations / EVALUATIONS[accuracy.method],
         spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / nodes)),
-        torque_floor=TORQUE_FLOOR * mass * (length / min(law_scale, 1.0)) ** 2,
+        torque_floor=TORQUE_FLOOR * mass * (fast * fast),  # infinite where a power would overflow
     )
