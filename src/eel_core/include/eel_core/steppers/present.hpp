@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a march is, what it is told, and how it comes back.
+// State, settings and status of a march.
 #pragma once
 
 #include <cstdint>
