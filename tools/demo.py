@@ -33,6 +33,7 @@ PICTURE = OUT / "falling.png"
 DURATION, RATE = 10.0, 100.0  # s, Hz
 LISTENERS = 2  # the visualiser and the recorder
 RESIDUAL_LIMIT = 1e-3  # of the energy ledger, by the actuators' work
+LONGEST = 300.0  # s of wall time that a node takes to end; seconds, but on a machine that is busy with other work
 PICTURED = 0.7  # of the swim: from here on
 CLOSURE_LIMIT = 1e-10  # of the internal force and torque at the nose, by their greatest values
 
@@ -92,23 +93,21 @@ def swim() -> list[tuple[str, Any]]:
             start_node("gait_generator", gait="falling")
             settings = {"duration": DURATION, "rate": RATE, "wait_for_subscribers": LISTENERS}
             dynamics = start_node("dynamics", real_time_factor=1.0 if display else 0.0, **settings)
-            await_end(dynamics, nodes, limit=60.0)
-            await_end(visualiser, nodes, limit=30.0, finished=(dynamics, recorder))
-            await_end(recorder, nodes, limit=30.0, finished=(dynamics, visualiser))
+            await_end(dynamics, nodes)
+            await_end(visualiser, nodes, finished=(dynamics, recorder))
+            await_end(recorder, nodes, finished=(dynamics, visualiser))
             return list(function_of_eel_viz("messages")(bag, None))
         finally:
             for node in reversed(nodes):
                 node.end(descendants=not display)  # a viewer that was opened stays
 
 
-def await_end(
-    awaited: NodeProcess, nodes: list[NodeProcess], *, limit: float, finished: tuple[NodeProcess, ...] = ()
-) -> None:
-    """Until `awaited` has left with status 0; DemoError if another, not `finished`, ends, or `limit` [s] passes."""
-    deadline = time.monotonic() + limit
+def await_end(awaited: NodeProcess, nodes: list[NodeProcess], *, finished: tuple[NodeProcess, ...] = ()) -> None:
+    """Until `awaited` has left with status 0; DemoError if another, not `finished`, ends, or it takes too long."""
+    deadline = time.monotonic() + LONGEST
     while awaited.status is None:
         if time.monotonic() > deadline:
-            raise DemoError(f"{awaited.name} did not end within {limit:g} s (see {awaited.log})")
+            raise DemoError(f"{awaited.name} did not end within {LONGEST:g} s (see {awaited.log})")
         if any(node.status is not None for node in nodes if node not in finished):
             break
         time.sleep(0.02)

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from draws import few, numbers
+from eel_dynamics.accuracy.error_estimate import least_torque
 from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.simulation.stopping import first_bad_sample
 from hypothesis import given
@@ -108,6 +109,15 @@ def test_bodies_a_thousandth_and_a_thousand_times_as_dense_as_water(density):
     fine = simulate(straight(), 3.0, scene=Scene(density=density), accuracy=1e-6)
     assert run.evaluations < 2000
     assert np.abs(run.position - fine.position).max() < 1e-4 * max(1.0, run.path_length)
+
+
+@pytest.mark.parametrize("settings", ["draft", fixed(0.05)])
+def test_what_is_beyond_numbers_is_told(settings):
+    with pytest.raises(SimulationStopped, match="closure is not finite"):
+        simulate(straight(), 0.1, body=Body.boyer2010().changed(density=1e200), accuracy=settings)
+    with pytest.raises(ValueError, match="body is too large or too dense for numbers"):
+        simulate(still(), 0.1, body=Body.spindle(1e155, 10.0), accuracy=settings)
+    assert least_torque(straight(), mass=1.0, length=1e160, duration=1.0) == np.inf
 
 
 def test_a_tail_of_zero_section_sheds_no_wake():

@@ -324,6 +324,7 @@ def test_a_run_with_fins_is_saved_copied_and_simulated_again(tmp_path):
         (lambda: Fin(0.2, "left", 1e-3, 3.0, angle=([0.0, 0.0], [0.1, 0.2])), "fin angle must have rising times"),
         (lambda: Fin(0.2, "left", 1e-3, 3.0, angle=RollHold()), "fin time_constant must be given for a RollHold"),
         (lambda: Simulation(fins=Fin(0.2, "left", 1e-3, 3.0)), "fins must be a list of Fin"),
+        (lambda: Simulation(fins=np.array("pair")), "fins must be a list of Fin"),
         (lambda: Simulation(fins=[0.2]), "fin must be a Fin, got 0.2"),
         (
             lambda: Simulation(fins=[Fin(1.0, "left", 1e-3, 3.0)]),

@@ -25,9 +25,9 @@ def straight_inertia(
     sections: `SectionData` at the nodes of `grid`. nose_mass: m_o [kg]. length [m]: of the body. offset: its centre of
     mass lies off the axis.
     """
-    x, weight = grid.x / length, grid.weight
+    x, weight, square = grid.x / length, grid.weight, length * length  # infinite where a power would overflow
     roll, pitch, yaw = (
-        float(weight @ each) / length**2 for each in (sections.inertia1, sections.inertia2, sections.inertia3)
+        float(weight @ each) / square for each in (sections.inertia1, sections.inertia2, sections.inertia3)
     )
     along2, along3 = sections.mass + sections.added2, sections.mass + sections.added3
     matrix = np.diag(

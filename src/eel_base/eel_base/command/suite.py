@@ -70,7 +70,7 @@ def _parser(known: dict[str, EntryPoint]) -> Parser:
         prog="eel",
         usage="eel COMMAND ...",
         description="The simulator of elongated swimmers.",
-        epilog="\n".join([*rows, "eel COMMAND --help: its options. The nodes start with ros2 run."]),
+        epilog="\n".join([*rows, "eel COMMAND --help: its options. Nodes start by their names, or by ros2 run."]),
     )
     parser.add_argument("command", nargs="?", choices=known, metavar="COMMAND", help="one of the list")
     return parser

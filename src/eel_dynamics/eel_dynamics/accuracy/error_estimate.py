@@ -103,7 +103,8 @@ def least_torque(law, mass: float, length: float, duration: float) -> float:
     law: the `Law`, or None. mass [kg], length [m]: of the body. duration [s]: of the run.
     """
     periods = [term.period for term in law.waves] if law is not None else []
-    return TORQUE_FLOOR * mass * (length / min(periods, default=max(duration, 1.0))) ** 2
+    fast = length / min(periods, default=max(duration, 1.0))
+    return TORQUE_FLOOR * mass * (fast * fast)  # infinite where a power would overflow
 
 
 def growth_rate_of(time: np.ndarray, distance: np.ndarray, small: float) -> float:

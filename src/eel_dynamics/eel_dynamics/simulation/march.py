@@ -237,7 +237,8 @@ class March:
         if cut is not None:
             self.core.set_slice(cut)
         checked = bool(self.setup.scene.ledger) and self.setup.settings.method == "classical"
-        floor = self._bounds.momentum_floor**2 / self.discretisation.mass if checked else np.inf
+        still = self._bounds.momentum_floor
+        floor = still * still / self.discretisation.mass if checked else np.inf
         ledger = None if self.joints is None else self.joints.ledger
         failure = first_bad_sample(out, works, done, self.energy_at_start, floor, ledger)
         done = failure[0] if failure else done

@@ -8,7 +8,6 @@ drag that goes with it, and beyond the stall a plate's across the stream; and it
 """
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -178,7 +177,7 @@ def checked_fins(fins: Any, body: Body, scene: Scene) -> tuple[Fin, ...]:
     """The fins of a run, pairs among them taken apart. `ValueError` names one that `body` or `scene` does not allow."""
     if fins is None:
         return ()
-    if isinstance(fins, Fin) or not isinstance(fins, Iterable):
+    if isinstance(fins, Fin) or not np.iterable(fins):
         raise ValueError(f"fins must be a list of Fin, got {shown(fins)}")
     flat = [each for item in fins for each in (item if isinstance(item, (tuple, list)) else (item,))]
     found = tuple(checked_instance("fin", each, Fin) for each in flat)
