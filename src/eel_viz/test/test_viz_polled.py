@@ -44,7 +44,7 @@ def test_a_turn_of_slow_messages_ends_and_all_topics_get_their_turns(monkeypatch
     now, shown = [0.0], []
     monkeypatch.setattr(polled_subscriptions.time, "monotonic", lambda: now[0])
 
-    def show(message, new_publisher):
+    def show(message, new_publisher, sent):
         now[0] += 0.6 * TAKE_LIMIT
         shown.append(message.data)
 
@@ -60,7 +60,7 @@ def test_no_topic_runs_ahead_of_one_that_is_slow_to_show(monkeypatch):
     now, shown, apart = [0.0], Counter(backbone=0), []
     monkeypatch.setattr(polled_subscriptions.time, "monotonic", lambda: now[0])
 
-    def show(message, new_publisher):
+    def show(message, new_publisher, sent):
         now[0] += 0.02 if message.data == "backbone" else 1e-4
         shown[message.data] += 1
         apart.append(max(shown.values()) - min(shown.values()))
@@ -71,6 +71,19 @@ def test_no_topic_runs_ahead_of_one_that_is_slow_to_show(monkeypatch):
     while polled.take():
         pass
     assert shown == dict.fromkeys(("pose", "backbone", "twist"), 600) and max(apart) == 1
+
+
+def test_a_topic_whose_message_comes_a_little_later_is_not_left_behind(monkeypatch):
+    """A turn may begin while a sample is being published."""
+    shown = []
+    polled = PolledSubscriptions(Node(waiting=5))
+    for topic in ("pose", "curvature"):
+        polled.show(String, topic, lambda message, *about: shown.append(message.data), QoSProfile(depth=1))
+    late = next(subscription for subscription in polled._receivers if subscription.topic_name == "curvature")
+    take, empty = late.take_message, [None, None]
+    monkeypatch.setattr(late, "take_message", lambda *kind: empty.pop() if empty else take(*kind))
+    assert polled.take() == 10
+    assert shown == ["pose"] * 3 + ["curvature", "pose"] * 2 + ["curvature"] * 3 and polled.take() == 0
 
 
 def test_a_topic_that_is_ahead_by_a_whole_history_loses_nothing():

@@ -344,6 +344,37 @@ def test_a_successor_begins_a_new_recording_whatever_its_stamps(file, console, t
     assert begun == ["another node publishes head_pose from 2 s on: a new recording begins"]
 
 
+def test_first_messages_that_come_after_the_others_reset_are_of_the_run_in_which_they_were_sent(
+    file, console, tmp_path, monkeypatch
+):
+    """The network may repeat a topic's first messages so late that all others have passed a whole run."""
+    now = 1000.0
+    monkeypatch.setattr(recordings.time, "monotonic", lambda: now)
+    made, swimmer = Recordings([file], "eel", console.warned.append), made_up.Swimmer(11)
+
+    def log(run, samples, late):
+        for k in samples:
+            for topic, arguments in sample(swimmer, k * SECOND).items():
+                if (topic == "curvature") is late:
+                    sent = 10**18 + run * SECOND + k * 10**6
+                    made.log_sample(topic, k * SECOND, arguments, sent=sent)
+        made.poll()
+
+    log(0, range(3), late=False)
+    log(1, range(2), late=False)
+    log(0, range(2), late=True)
+    now += 10.0  # now that the topic is known, its run stays open however late it is
+    made.poll()
+    log(0, range(2, 3), late=True)
+    log(1, range(3), late=True)
+    log(1, range(2, 3), late=False)
+    made.close()
+    assert not (tmp_path / "run-3.rrd").exists()
+    for name in ("run.rrd", "run-2.rrd"):
+        for entity in (entities.POSITION, entities.CURVATURE_NUMBERS):
+            np.testing.assert_array_equal(read(tmp_path / name, entity).stamps, [0, SECOND, 2 * SECOND])
+
+
 def test_succession_is_told_by_counts_pauses_and_who_is_there():
     from eel_viz.ros.polled_subscriptions import PublisherChange
 

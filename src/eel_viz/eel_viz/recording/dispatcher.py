@@ -6,6 +6,7 @@ one of its topic comes, and of several only the last is logged and counted.
 A message is any object with the fields of its type. A message that cannot be shown is reported once and left out.
 """
 
+import math
 import time
 from collections import Counter
 from collections.abc import Callable, Hashable
@@ -59,18 +60,21 @@ class Dispatcher:
         self._namespace, self._compared = namespace.rstrip("/"), compared
         self.received: Counter[str] = Counter()
         self._reported: set[Hashable] = set()  # faults
-        self._start: dict[str, tuple[Any, bool]] = {}  # topic: sample 0, and whether from another publisher
+        self._start: dict[str, tuple[Any, bool, float]] = {}  # topic: sample 0, whether from another publisher, sent
         self._stations: dict[str, int] = {}  # number of stations by topic
         self._first_backbone: float | None = None  # s
 
-    def dispatch(self, topic: str, message: Any, *, new_publisher: bool = False) -> None:
-        """Log one message of `topic`, a name in `READERS`; `new_publisher`: the first one from another publisher."""
+    def dispatch(self, topic: str, message: Any, *, new_publisher: bool = False, sent: float = math.inf) -> None:
+        """Log one message of `topic`, a name in `READERS`.
+
+        new_publisher: whether it is the first one from another publisher. sent: when [ns, wall time], if it is known.
+        """
         if topic in SAMPLED and readers.is_at_start(message):
-            _, before = self._start.get(topic, (None, False))
-            self._start[topic] = message, new_publisher or before
+            _, before, _ = self._start.get(topic, (None, False, sent))
+            self._start[topic] = message, new_publisher or before, sent
             return
         self._log_start(topic)
-        self._log(topic, message, new_publisher)
+        self._log(topic, message, new_publisher, sent)
 
     def poll(self) -> None:
         """Poll the recordings, and warn if the body has not come in time."""
@@ -92,7 +96,7 @@ class Dispatcher:
         if topic in self._start:
             self._log(topic, *self._start.pop(topic))
 
-    def _log(self, topic: str, message: Any, new_publisher: bool) -> None:
+    def _log(self, topic: str, message: Any, new_publisher: bool, sent: float) -> None:
         self.received[topic] += 1
         try:
             try:
@@ -104,7 +108,9 @@ class Dispatcher:
             if topic in SAMPLED:
                 if hasattr(message, "x"):
                     self._check_stations(topic, len(message.x))
-                self._recordings.log_sample(topic, stamp, values, compared=self._compared, new_publisher=new_publisher)
+                self._recordings.log_sample(
+                    topic, stamp, values, compared=self._compared, new_publisher=new_publisher, sent=sent
+                )
             else:
                 if topic == "diagnostics":
                     values = ([each for each in value if each.name.rpartition("/")[0] == self._namespace],)

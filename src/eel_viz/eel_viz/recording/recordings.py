@@ -2,9 +2,11 @@
 """The recordings of one visualiser: a stamp that goes back begins the next recording.
 
 A reset reaches the topics one by one, in any order. So each topic has its own current recording, and a recording is
-closed once no topic uses it any more. Each new recording gets the body, the law, the goal and the last diagnostics.
+closed once no topic uses it any more. The first message of a topic may come later than the others' reset; when it was
+sent tells its recording. Each new recording gets the body, the law, the goal and the last diagnostics.
 """
 
+import math
 import threading
 import time
 from collections import deque
@@ -17,14 +19,19 @@ from eel_viz.recording.loggers import Loggers
 RETRY = 2.0  # s of wall time between two attempts to open a destination
 WALL_TIME = 10**17  # ns: later stamps are wall time, not simulation time
 MAXIMUM_RECORDINGS, MINUTE = 10, 60.0  # new recordings within so many seconds; each takes memory, and time to close
+LATE = 2.0  # s after the next recording begins, within which first messages of a topic may come for the one before it
 RESETS, SPAN = 3, 10.0  # so many resets within so many seconds, with several publishers: not a reset
 
 
 class Recording:
-    """One recording: loggers and stream of each destination that is open, by its index."""
+    """One recording: loggers and stream of each destination that is open, by its index.
 
-    def __init__(self, number: int) -> None:
-        self.number = number
+    began: what was sent from then on belongs to it [ns, wall time].
+    """
+
+    def __init__(self, number: int, began: float) -> None:
+        self.number, self.began = number, began
+        self.opened_at = time.monotonic()
         self.opened: dict[int, tuple[Loggers, Delivery]] = {}
         self.latest = 0  # ns: newest stamp
 
@@ -79,7 +86,8 @@ class Recordings:
     ) -> None:
         self._destinations, self._name, self._log_warning = destinations, name, log_warning
         self._has_several_publishers = has_several_publishers
-        self._position: dict[str, tuple[int, int]] = {}  # topic: number of its recording, last stamp [ns]
+        # topic: number of its recording, last stamp [ns], when it was sent [ns of wall time]
+        self._position: dict[str, tuple[int, int, float]] = {}
         self._lasting: dict[tuple[str, bool], tuple[Any, ...]] = {}  # topic, whether of the compared run: last values
         self._resets: deque[float] = deque(maxlen=RESETS)
         self._begun: deque[float] = deque(maxlen=MAXIMUM_RECORDINGS)  # s: when each of the last recordings began
@@ -87,7 +95,7 @@ class Recordings:
         self._last_retry = time.monotonic()
         self.incomplete = False
         self._recordings: dict[int, Recording] = {}
-        self._begin(1)
+        self._begin(1, -math.inf)
 
     def log_sample(
         self,
@@ -97,10 +105,14 @@ class Recordings:
         *,
         compared: str | None = None,
         new_publisher: bool = False,
+        sent: float = math.inf,
     ) -> None:
-        """Log the `values` of `topic` at `stamp` [ns], of this run or of one whose topics begin with `compared`."""
+        """Log the `values` of `topic` at `stamp` [ns], of this run or of one whose topics begin with `compared`.
+
+        sent: when [ns, wall time]; else a topic begins with the newest recording.
+        """
         known_as = topic if compared is None else f"{compared}/{topic}"
-        for loggers in self._loggers_for(known_as, stamp, new_publisher):
+        for loggers in self._loggers_for(known_as, stamp, new_publisher, sent):
             loggers.log(topic, stamp, *values, compared=compared is not None)
 
     def log_lasting(self, topic: str, *values: Any, stamp: int | None = None, compared: bool = False) -> None:
@@ -118,7 +130,8 @@ class Recordings:
             loggers.log(topic, at, *values, compared=compared)
 
     def poll(self) -> None:
-        """Send rows that are due, check their delivery, and retry destinations that were not open."""
+        """Send rows that are due, close what is over, check the delivery, and retry destinations that were not open."""
+        self._close_before(min((number for number, *_ in self._position.values()), default=0), LATE)
         for recording in self._recordings.values():
             recording.poll()
             self.incomplete |= recording.failed
@@ -147,29 +160,29 @@ class Recordings:
             for _, delivery in recording.opened.values():
                 delivery.discard()
 
-    def _loggers_for(self, topic: str, stamp: int, new_publisher: bool) -> list[Loggers]:
+    def _loggers_for(self, topic: str, stamp: int, new_publisher: bool, sent: float) -> list[Loggers]:
         """The loggers for a message of `topic` with `stamp` [ns]; `new_publisher`: its first from another publisher."""
-        number, last = self._position.get(topic, (self._newest.number, stamp))
-        continues = stamp >= last and not new_publisher
-        if not continues:
+        number, last, before = self._position.get(topic, (self._at(sent), stamp, sent))
+        if stamp < last or new_publisher:
             if self._is_disorder(topic):
                 return []
-            if number + 1 in self._recordings or self._may_begin(_reason(topic, last, stamp)):
+            if number + 1 in self._recordings or self._may_begin(_reason(topic, last, stamp), (before + sent) / 2):
                 number += 1
-            else:
-                continues = True
-        self._position[topic] = (number, stamp)
-        if not continues:
-            self._close_before(min(oldest for oldest, _ in self._position.values()))
+        self._position[topic] = (number, stamp, sent)
         recording = self._recordings[number]
         recording.latest = max(recording.latest, stamp)
         return recording.loggers
+
+    def _at(self, sent: float) -> int:
+        """Number of the recording for what was `sent` then [ns, wall time]: the oldest one, if it is older than all."""
+        begun = [number for number, recording in self._recordings.items() if recording.began <= sent]
+        return max(begun, default=min(self._recordings))
 
     @property
     def _newest(self) -> Recording:
         return self._recordings[max(self._recordings)]
 
-    def _may_begin(self, reason: str) -> bool:
+    def _may_begin(self, reason: str, began: float) -> bool:
         """Begin the next recording, unless too many have begun recently; whether it began."""
         now = time.monotonic()
         if len(self._begun) == MAXIMUM_RECORDINGS and now - self._begun[0] < MINUTE:
@@ -182,12 +195,12 @@ class Recordings:
             return False
         self._limit_reported = False
         self._log_warning(f"{reason}: a new recording begins")
-        self._begin(self._newest.number + 1)
+        self._begin(self._newest.number + 1, began)
         return True
 
-    def _begin(self, number: int) -> None:
+    def _begin(self, number: int, began: float) -> None:
         self._begun.append(time.monotonic())
-        recording = Recording(number)
+        recording = Recording(number, began)
         self._open_missing(recording)
         self._recordings[number] = recording
 
@@ -205,8 +218,12 @@ class Recordings:
             for (topic, compared), values in self._lasting.items():
                 loggers.log(topic, recording.latest, *values, compared=compared)
 
-    def _close_before(self, number: int) -> None:
+    def _close_before(self, number: int, late: float = 0.0) -> None:
+        """Close the recordings before `number` whose next one began at least `late` [s] ago."""
         for each in [each for each in self._recordings if each < number]:
+            following = self._recordings.get(each + 1)
+            if following and time.monotonic() - following.opened_at < late:
+                return
             self._recordings[each].close()
             self.incomplete |= self._recordings.pop(each).failed
 

@@ -93,13 +93,13 @@ class Visualiser(ParameterNode):
             kind = message_class(OWN.get(name) or GLOBAL[topic])
             qualities = (EARLIER,) if name == "body" else (EARLIER, LIVE) if name in LATCHED else (LIVE,)
 
-            def show(message: Any, new_publisher: bool, name: str = name, topic: str = topic) -> None:
+            def show(message: Any, new_publisher: bool, sent: int, name: str = name, topic: str = topic) -> None:
                 self._presence.heard(topic)
                 if name == "curvature_law":
                     before, self._laws[topic] = self._laws.get(topic), message
                     if message == before:  # published again
                         return
-                dispatcher.dispatch(name, message, new_publisher=new_publisher)
+                dispatcher.dispatch(name, message, new_publisher=new_publisher, sent=sent)
 
             self._polled.show(kind, topic, show, *qualities)
 

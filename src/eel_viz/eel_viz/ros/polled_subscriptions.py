@@ -6,7 +6,6 @@ logging them. A `PolledGroup` is never executed, so messages stay in the KEEP_AL
 """
 
 import time
-from collections import deque
 from collections.abc import Callable, Hashable, Mapping
 from functools import partial
 from typing import Any
@@ -25,7 +24,7 @@ PAUSE = 0.3  # s between two messages, after which the publishers are looked up:
 GONE = 0.5  # s without publishers and messages, after which a swimmer has gone
 
 Receive = Callable[[bytes, Mapping[str, Any]], None]  # the serialised message, and the message info
-Show = Callable[[Any, bool], None]  # the message, and whether it is the first of another publisher
+Show = Callable[[Any, bool, int], None]  # the message, whether it is another publisher's first, when it was sent [ns]
 
 
 class PolledSubscriptions:
@@ -51,11 +50,12 @@ class PolledSubscriptions:
         deliveries = Deliveries()
 
         def receive(change: PublisherChange, data: bytes, about: Mapping[str, Any]) -> None:
-            new_publisher = change.changes(about["publication_sequence_number"], about["source_timestamp"])
+            sent = about["source_timestamp"]
+            new_publisher = change.changes(about["publication_sequence_number"], sent)
             if new_publisher:
                 self.note_publishers()
             if not deliveries.repeats(about):
-                show(read_message(data, kind), new_publisher)
+                show(read_message(data, kind), new_publisher, sent)
 
         for quality in qualities:
             self._changes.append(PublisherChange(lambda: self._publishers(topic)))
@@ -69,18 +69,20 @@ class PolledSubscriptions:
     def take(self, before: int = 0) -> int:
         """Pass on waiting messages, one of each subscription in turn; the number of those from `before` [ns]; 0: all.
 
-        So a topic that is slow to show is not left behind. After a `TAKE_LIMIT` it returns, and the next call begins
-        with the next subscription. What raises an error is logged and left out.
+        So no topic is left behind: neither one that is slow to show, nor one whose message comes a little after the
+        others'. It returns once nothing waits, or after a `TAKE_LIMIT`; the next call begins with the next
+        subscription. What raises an error is logged and left out.
         """
-        count, end, waiting = 0, time.monotonic() + TAKE_LIMIT, deque(self._receivers)
-        while waiting and time.monotonic() <= end:
-            subscription = waiting.popleft()
+        count, end, empty = 0, time.monotonic() + TAKE_LIMIT, 0
+        while empty < len(self._receivers) and time.monotonic() <= end:
+            subscription = next(iter(self._receivers))
             self._receivers[subscription] = receive = self._receivers.pop(subscription)  # to the end of the row
             with subscription.handle:  # keeps it from being destroyed meanwhile
                 taken = subscription.handle.take_message(subscription.msg_type, True)
+            empty += 1
             if taken is None:
                 continue
-            waiting.append(subscription)
+            empty = 0
             count += not before or is_from_before(taken[1], before)
             try:
                 receive(*taken)
