@@ -89,7 +89,8 @@ def test_way_points_of_the_newest_goal_are_drawn_and_a_bad_goal_is_left_out(tmp_
     for goal in ([], points, [(math.nan, 0.0, 0.0)]):
         poses = [NS(pose=NS(position=NS(x=x, y=y, z=z))) for x, y, z in goal]
         dispatcher.dispatch("goal", NS(poses=poses))
-    dispatcher.close()
+    dispatcher.finish()
+    recordings.close()
     spheres = read(path, entities.WAY_POINTS, static=True)
     np.testing.assert_array_equal(spheres["half_sizes"][-1], np.full((2, 3), 0.25))
     np.testing.assert_array_equal(read(path, entities.COURSE, static=True)["strips"][-1][0], points)

@@ -95,16 +95,20 @@ def message_of_parts(fins=FINS, joints=JOINTS, **changes):
     return NS(**made_up.body(), **as_objects | changes)
 
 
-def record(path, *, parts, motors=MOTORS):
-    """The made-up swimmer with or without parts, through the dispatcher; what was said."""
+def record(path, *, parts, motors=MOTORS, early=0):
+    """The made-up swimmer with or without parts, through the dispatcher; what was said.
+
+    early: how many samples come before the body.
+    """
     said = []
     destination = FileDestination(Settings(recording=str(path)), said.append, said.append)
-    dispatcher = Dispatcher(
-        Recordings([destination], name="eel", log_warning=said.append), namespace="", log_warning=said.append
-    )
-    dispatcher.dispatch("body", message_of_parts() if parts else NS(**made_up.body()))
+    recordings = Recordings([destination], name="eel", log_warning=said.append)
+    dispatcher = Dispatcher(recordings, namespace="", log_warning=said.append)
     swimmer = made_up.Swimmer(51)
-    for stamp in STAMPS:
+    for k, stamp in enumerate(STAMPS):
+        if k == early:
+            dispatcher.poll()
+            dispatcher.dispatch("body", message_of_parts() if parts else NS(**made_up.body()))
         header = NS(stamp=NS(sec=0, nanosec=stamp))
         line = swimmer.backbone(1e-9 * stamp)
         line |= {name: line[name].ravel() for name in ("position", "orientation")}
@@ -116,13 +120,16 @@ def record(path, *, parts, motors=MOTORS):
             dispatcher.dispatch("joint_states", NS(header=header, **states))
             rows = {name: getattr(motors, name) for name in ("torque", "limit", "power")}
             dispatcher.dispatch("motor_states", NS(header=header, **rows))
-    dispatcher.close()
+    dispatcher.finish()
+    recordings.close()
     return said
 
 
-def test_parts_are_recorded_at_every_sample(tmp_path):
+@pytest.mark.parametrize("early", [0, 5])
+def test_parts_are_recorded_at_every_sample(tmp_path, early):
+    """Also of samples that come before the body, as where the network repeats it."""
     path = tmp_path / "parts.rrd"
-    said = record(path, parts=True)
+    said = record(path, parts=True, early=early)
     assert len(said) == 1 and "saving to" in said[0]
     assert read(path, entities.FINS)["vertex_positions"].shape == (10, 2 * (EDGE + 1), 3)
     rings = read(path, entities.JOINTS)

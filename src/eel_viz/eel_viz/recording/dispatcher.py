@@ -2,13 +2,14 @@
 """Dispatches one swimmer's messages to the loggers, whatever their source: the network, a bag, a run of the library.
 
 While a run stands at its start, the dynamics node repeats sample 0. So a sample of stamp 0 is held back until the next
-one of its topic comes, and of several only the last is logged and counted.
+one of its topic comes, and of several only the last is logged and counted. What is drawn takes its size from the body,
+whose message may come after the first samples: these wait for it a while.
 A message is any object with the fields of its type. A message that cannot be shown is reported once and left out.
 """
 
 import math
 import time
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable, Hashable
 from operator import attrgetter
 from typing import Any
@@ -21,7 +22,8 @@ from eel_viz.recording.destination import LogFunction
 from eel_viz.recording.recordings import Recordings
 
 COARSE = 4  # stations, below which a backbone says little about the shape
-BODY_LIMIT = 2.0  # s after the first backbone within which the body is expected
+BODY_LIMIT = 2.0  # s after the first sample within which the body is expected
+MAXIMUM_EARLY = 10_000  # samples that wait for the body
 
 READERS: dict[str, Callable[[Any], Any]] = {  # what is shown: what methods of the topic's name are given of a message
     "body": readers.read_body,
@@ -62,13 +64,26 @@ class Dispatcher:
         self._reported: set[Hashable] = set()  # faults
         self._start: dict[str, tuple[Any, bool, float]] = {}  # topic: sample 0, whether from another publisher, sent
         self._stations: dict[str, int] = {}  # number of stations by topic
-        self._first_backbone: float | None = None  # s
+        self._first_sample: float | None = None  # s
+        self._early: deque[tuple[str, Any, bool, float]] = deque()  # what waits for the body, as `_dispatch` takes it
 
     def dispatch(self, topic: str, message: Any, *, new_publisher: bool = False, sent: float = math.inf) -> None:
         """Log one message of `topic`, a name in `READERS`.
 
         new_publisher: whether it is the first one from another publisher. sent: when [ns, wall time], if it is known.
         """
+        if topic in SAMPLED:
+            self._first_sample = self._first_sample or time.monotonic()
+            if self._awaits_body():
+                self._early.append((topic, message, new_publisher, sent))
+                self._dispatch_early(but=MAXIMUM_EARLY)
+                return
+            self._dispatch_early()
+        self._dispatch(topic, message, new_publisher, sent)
+        if topic == "body":
+            self._dispatch_early()
+
+    def _dispatch(self, topic: str, message: Any, new_publisher: bool, sent: float) -> None:
         if topic in SAMPLED and readers.is_at_start(message):
             _, before, _ = self._start.get(topic, (None, False, sent))
             self._start[topic] = message, new_publisher or before, sent
@@ -77,19 +92,29 @@ class Dispatcher:
         self._log(topic, message, new_publisher, sent)
 
     def poll(self) -> None:
-        """Poll the recordings, and warn if the body has not come in time."""
-        self._recordings.poll()
-        if self._first_backbone is not None and time.monotonic() - self._first_backbone > BODY_LIMIT:
+        """If the body has not come in time, log what waits for it, and warn."""
+        if not self._awaits_body():
+            self._dispatch_early()
             self._check_body()
 
-    def close(self) -> str:
-        """Close the recordings; returns the received topics with their numbers of messages as text."""
+    def finish(self) -> str:
+        """Log what is held back; returns the received topics with their numbers of messages as text."""
+        self._dispatch_early()
         for topic in list(self._start):
             self._log_start(topic)
-        if self._first_backbone is not None:
-            self._check_body()
-        self._recordings.close()
+        self._check_body()
         return ", ".join(f"{topic} {count}" for topic, count in self.received.items()) or "nothing"
+
+    def _awaits_body(self) -> bool:
+        """Whether samples wait for the body."""
+        if self.received["body"] or self._first_sample is None:
+            return False
+        return time.monotonic() - self._first_sample < BODY_LIMIT
+
+    def _dispatch_early(self, but: int = 0) -> None:
+        """Dispatch what waits for the body, but for the newest so many."""
+        while len(self._early) > but:
+            self._dispatch(*self._early.popleft())
 
     def _log_start(self, topic: str) -> None:
         """Log the sample 0 of `topic` that is held back."""
@@ -125,13 +150,11 @@ class Dispatcher:
             text = f"{topic} has {count} stations and had {before}: it is drawn, its envelope begins anew"
             self._warn_once((topic, "stations"), text)
             self._stations[topic] = count
-        if topic == "backbone":
-            self._first_backbone = self._first_backbone or time.monotonic()
-            if count < COARSE:
-                self._warn_once("coarse", f"backbone has {count} stations: the shape between them is a guess")
+        if topic == "backbone" and count < COARSE:
+            self._warn_once("coarse", f"backbone has {count} stations: the shape between them is a guess")
 
     def _check_body(self) -> None:
-        if not self.received["body"]:
+        if self.received["backbone"] and not self.received["body"]:
             self._warn_once("no body", "no body has come: the backbone is drawn as a line, without skin")
 
     def _warn_once(self, fault: Hashable, text: str) -> None:

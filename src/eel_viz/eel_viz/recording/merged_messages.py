@@ -53,8 +53,9 @@ def record_messages(
         recordings.discard()
         raise
     finally:
-        received = dispatchers[0].close()
-    return received
+        received = [dispatcher.finish() for dispatcher in dispatchers]
+        recordings.close()
+    return received[0]
 
 
 def merged_by_time(sources: Sequence[Messages]) -> Iterator[tuple[int, str, Any]]:

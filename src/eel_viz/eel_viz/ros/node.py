@@ -51,22 +51,26 @@ class Visualiser(ParameterNode):
             has_several_publishers=lambda topic: self.count_publishers(topic) > 1,
         )
         self._polled, self._presence = PolledSubscriptions(self), SwimmerPresence(self)
-        self._dispatcher = Dispatcher(recordings, namespace=own, log_warning=self._log_warning)
+        self._dispatchers = [Dispatcher(recordings, namespace=own, log_warning=self._log_warning)]
         self._looked = time.monotonic()
         self._laws: dict[str, Any] = {}  # topic: the last law
-        self._subscribe(own, self._dispatcher)
         if self.settings.compare:
-            dispatcher = Dispatcher(
-                recordings,
-                namespace=other,
-                log_warning=lambda text: self._log_warning(f"{other or '/'}: {text}"),
-                compared=other,
+            self._dispatchers.append(
+                Dispatcher(
+                    recordings,
+                    namespace=other,
+                    log_warning=lambda text: self._log_warning(f"{other or '/'}: {text}"),
+                    compared=other,
+                )
             )
-            self._subscribe(other, dispatcher)
+        for space, dispatcher in zip((own, other), self._dispatchers, strict=False):
+            self._subscribe(space, dispatcher)
 
     def poll(self) -> bool:
         """Poll the recordings; False once the swimmer has gone, with `stop_with_publisher`."""
-        self._dispatcher.poll()
+        for dispatcher in self._dispatchers:
+            dispatcher.poll()
+        self._recordings.poll()
         now = time.monotonic()
         if now - self._looked > LOOK_PERIOD:
             self._looked = now
@@ -75,7 +79,9 @@ class Visualiser(ParameterNode):
 
     def close(self) -> None:
         """Close the recordings, and log what was received."""
-        self._log_info(f"received: {self._dispatcher.close()}")
+        received = [dispatcher.finish() for dispatcher in self._dispatchers]
+        self._recordings.close()
+        self._log_info(f"received: {received[0]}")
 
     @property
     def failure(self) -> str:
