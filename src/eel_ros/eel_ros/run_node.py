@@ -46,8 +46,9 @@ def run_node(
 
     take_messages(node, before): takes some of the waiting messages itself and returns how many of them are from before
     this time [ns, as `is_from_before`]; 0: all. The executor then only serves rare callbacks, such as parameter
-    services. period: between two calls of `poll` [s]. complete: a node that keeps files. At the end, it takes all that
-    was sent before. At the end the node's `close()` is called, if it has one.
+    services. period: between two calls of `poll` [s]. complete: a node that keeps files. It subscribes in its
+    `listen()`; from then on no signal makes it leave before they are complete. At the end, it takes all that was sent
+    before. At the end the node's `close()` is called, if it has one.
     Returns the exit status: 0; 1 if the node has a `failure` (a text), which is printed; 2 if it
     cannot start.
     """
@@ -55,13 +56,20 @@ def run_node(
         return status
     end = ProcessEnd()
     end.leave_when_stuck(STUCK)
-    node = start(name, [*(USE_SIM_TIME if sim_time else ()), *words], make)
+
+    def made() -> Served:
+        node = make()
+        if complete:
+            keeper: Any = node
+            end.stay_when_stuck()
+            keeper.listen()
+        return node
+
+    node = start(name, [*(USE_SIM_TIME if sim_time else ()), *words], made)
     if node is None:
         return 2
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    if complete:
-        end.stay_when_stuck()
     try:
         _serve(executor, node, poll, take_messages, period, end)
         end.over = True
@@ -71,8 +79,8 @@ def run_node(
         executor.shutdown()
         if hasattr(node, "close"):
             node.close()
-        made: Node = node
-        made.destroy_node()
+        ended: Node = node
+        ended.destroy_node()
         rclpy.try_shutdown()
         end.ignore_signals()
     failure = getattr(node, "failure", "")

@@ -9,7 +9,7 @@ import pytest
 LIMIT = 90.0  # s
 PROCESS = """
 import sys, time
-from eel_ros.run_node import run_node
+from eel_ros.run_node import STUCK, run_node
 from rclpy.node import Node
 
 class Tank(Node):
@@ -18,6 +18,10 @@ class Tank(Node):
             raise ValueError("depth must be > 0 m, got -1")
         super().__init__("tank")
         self.failure, self.what, self.begun = "", what, False
+    def listen(self):
+        if self.what == "begin":
+            print("listening", flush=True)
+            time.sleep(3.0 * STUCK)  # stands for a busy machine
     def poll(self):
         if not self.begun:
             self.begun = True
@@ -60,6 +64,13 @@ def test_a_signal_ends_it_well(start, number, words):
     node.wait_for_output("attended")
     assert node.interrupt(number, LIMIT) == 0
     assert node.output() == "attended\nclosed\n"
+
+
+def test_a_node_that_keeps_files_completes_them_from_when_it_listens_on(start):
+    node = start(sys.executable, "-c", PROCESS, "begin", "work")
+    node.wait_for_output("listening")
+    assert node.interrupt(signal.SIGINT, LIMIT) == 0
+    assert node.output() == "listening\nclosed\n"
 
 
 def test_a_poll_that_raises_is_logged_and_the_node_goes_on(start):

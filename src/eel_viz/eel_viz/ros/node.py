@@ -51,24 +51,25 @@ class Visualiser(ParameterNode):
             has_several_publishers=lambda topic: self.count_publishers(topic) > 1,
         )
         self._polled, self._presence = PolledSubscriptions(self), SwimmerPresence(self)
-        self._dispatchers = [Dispatcher(recordings, namespace=own, log_warning=self._log_warning)]
+        self._dispatchers = {own: Dispatcher(recordings, namespace=own, log_warning=self._log_warning)}  # by namespace
         self._looked = time.monotonic()
         self._laws: dict[str, Any] = {}  # topic: the last law
         if self.settings.compare:
-            self._dispatchers.append(
-                Dispatcher(
-                    recordings,
-                    namespace=other,
-                    log_warning=lambda text: self._log_warning(f"{other or '/'}: {text}"),
-                    compared=other,
-                )
+            self._dispatchers[other] = Dispatcher(
+                recordings,
+                namespace=other,
+                log_warning=lambda text: self._log_warning(f"{other or '/'}: {text}"),
+                compared=other,
             )
-        for space, dispatcher in zip((own, other), self._dispatchers, strict=False):
+
+    def listen(self) -> None:
+        """Subscribe to the topics of each swimmer."""
+        for space, dispatcher in self._dispatchers.items():
             self._subscribe(space, dispatcher)
 
     def poll(self) -> bool:
         """Poll the recordings; False once the swimmer has gone, with `stop_with_publisher`."""
-        for dispatcher in self._dispatchers:
+        for dispatcher in self._dispatchers.values():
             dispatcher.poll()
         self._recordings.poll()
         now = time.monotonic()
@@ -79,7 +80,7 @@ class Visualiser(ParameterNode):
 
     def close(self) -> None:
         """Close the recordings, and log what was received."""
-        received = [dispatcher.finish() for dispatcher in self._dispatchers]
+        received = [dispatcher.finish() for dispatcher in self._dispatchers.values()]
         self._recordings.close()
         self._log_info(f"received: {received[0]}")
 

@@ -64,10 +64,13 @@ class Recorder(Node):
         self._began = self._looked = time.monotonic()
         self._presence = SwimmerPresence(self)
         self._sampled = {self.resolve_topic_name(name) for name in SAMPLED}
+
+    def listen(self) -> None:
+        """Subscribe to the swimmer's topics."""
         for topic, kind in {**{self.resolve_topic_name(name): kind for name, kind in OWN.items()}, **GLOBAL}.items():
             if self._wanted(topic):
                 self._subscribe(topic, kind, keep_all(latched=topic.rsplit("/", 1)[-1] in LATCHED))
-        self.get_logger().info(f"recording to {options.out}, end with Ctrl-C")
+        self.get_logger().info(f"recording to {self._options.out}, end with Ctrl-C")
 
     def poll(self) -> bool:
         """Look for new topics and save the bag; False when the recording is to end."""
