@@ -347,7 +347,8 @@ def test_a_successor_begins_a_new_recording_whatever_its_stamps(file, console, t
 def test_first_messages_that_come_after_the_others_reset_are_of_the_run_in_which_they_were_sent(
     file, console, tmp_path, monkeypatch
 ):
-    """The network may repeat a topic's first messages so late that all others have passed a whole run."""
+    """The network may repeat a topic's first messages so late that all others have passed a whole run; meanwhile the
+    process may stand still for ten seconds."""
     now = 1000.0
     monkeypatch.setattr(recordings.time, "monotonic", lambda: now)
     made, swimmer = Recordings([file], "eel", console.warned.append), made_up.Swimmer(11)
@@ -362,9 +363,11 @@ def test_first_messages_that_come_after_the_others_reset_are_of_the_run_in_which
 
     log(0, range(3), late=False)
     log(1, range(2), late=False)
-    log(0, range(2), late=True)
-    now += 10.0  # now that the topic is known, its run stays open however late it is
+    now += 10.0
     made.poll()
+    log(0, range(2), late=True)
+    for _ in range(2 * recordings.LATE):  # now that the topic is known, its run stays open however late it is
+        made.poll()
     log(0, range(2, 3), late=True)
     log(1, range(3), late=True)
     log(1, range(2, 3), late=False)

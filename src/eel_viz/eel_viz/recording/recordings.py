@@ -19,19 +19,20 @@ from eel_viz.recording.loggers import Loggers
 RETRY = 2.0  # s of wall time between two attempts to open a destination
 WALL_TIME = 10**17  # ns: later stamps are wall time, not simulation time
 MAXIMUM_RECORDINGS, MINUTE = 10, 60.0  # new recordings within so many seconds; each takes memory, and time to close
-LATE = 2.0  # s after the next recording begins, within which first messages of a topic may come for the one before it
+LATE = 20  # polls after the next recording begins, within which first messages of a topic may come for the one before
+# it: 2 s of a node, but for those in which its process stands still
 RESETS, SPAN = 3, 10.0  # so many resets within so many seconds, with several publishers: not a reset
 
 
 class Recording:
     """One recording: loggers and stream of each destination that is open, by its index.
 
-    began: what was sent from then on belongs to it [ns, wall time].
+    began: what was sent from then on belongs to it [ns, wall time]. polls: how often it has been polled.
     """
 
     def __init__(self, number: int, began: float) -> None:
         self.number, self.began = number, began
-        self.opened_at = time.monotonic()
+        self.polls = 0
         self.opened: dict[int, tuple[Loggers, Delivery]] = {}
         self.latest = 0  # ns: newest stamp
 
@@ -53,6 +54,7 @@ class Recording:
 
     def poll(self) -> None:
         """Send rows that are due, check their delivery, and drop viewers that have gone."""
+        self.polls += 1
         for index, (loggers, delivery) in list(self.opened.items()):
             if delivery.accepts_data:
                 loggers.send_due()
@@ -218,11 +220,11 @@ class Recordings:
             for (topic, compared), values in self._lasting.items():
                 loggers.log(topic, recording.latest, *values, compared=compared)
 
-    def _close_before(self, number: int, late: float = 0.0) -> None:
-        """Close the recordings before `number` whose next one began at least `late` [s] ago."""
+    def _close_before(self, number: int, late: int = 0) -> None:
+        """Close the recordings before `number` whose next one has been polled at least `late` times."""
         for each in [each for each in self._recordings if each < number]:
             following = self._recordings.get(each + 1)
-            if following and time.monotonic() - following.opened_at < late:
+            if following and following.polls < late:
                 return
             self._recordings[each].close()
             self.incomplete |= self._recordings.pop(each).failed
