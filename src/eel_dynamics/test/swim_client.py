@@ -148,8 +148,13 @@ class SwimClient:
         self.until(answer, f"answer from {name}")
         return answer()
 
+    def acquaint(self, service, request):
+        """Calls a service until it has answered: from then on the node knows its client, and drops no reply."""
+        self.until(answer_of(service, request), f"answer from {service.srv_name}")
+
     def _call_often(self, count, kind, name, **request):
         """The answer to the last of `count` calls that are on their way together; a service's history holds ten."""
+        self.acquaint(self._service(kind, name), kind.Request(**request))
         answers = [self._service(kind, name).call_async(kind.Request(**request)) for _ in range(count)]
         self.until(lambda: all(answer.done() for answer in answers), f"answer from {name}")
         return answers[-1].result()

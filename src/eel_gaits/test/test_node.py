@@ -80,18 +80,24 @@ def test_a_params_file_in_a_namespace(generator, client, tmp_path):
     assert values["use_sim_time"] is False and "rate" not in values and "pitch_bend" not in values
 
 
+def begin_turning(client):
+    """Changes to the gait turning anew; when it began [s]. A law may come after the answer to the call."""
+    for name in ("falling", "turning"):
+        before = len(client.messages)
+        client.set(gait=name)
+        client.until(
+            lambda before=before, name=name: client.messages[before:] and client.latest()[0].name == name,
+            f"law of {name}",
+        )
+    return client.latest()[1]
+
+
 def test_a_parameter_of_the_same_gait_keeps_the_time_another_gait_starts_at_now(generator, client):
     generator("-p", "wavelength:=0.8")
     client.listen()
     client.law(0)
 
-    def turns_at_the_ticked_time():
-        client.set(gait="falling")
-        client.set(gait="turning")
-        client.until(lambda: client.latest()[0].name == "turning", "turning law")
-        return client.latest()[1] == 12.5
-
-    client.tick_until(12.5, turns_at_the_ticked_time, "law with the ticked time")
+    client.tick_until(12.5, lambda: begin_turning(client) == 12.5, "law with the ticked time")
     assert client.latest() == (turning(wavelength=0.8), 12.5)
     values = client.values()
     assert values["gait"] == "turning" and values["left_bend"] == -0.5 and "pitch_bend" not in values
@@ -112,13 +118,7 @@ def test_after_time_went_back_the_law_has_its_start_at_zero(generator, client):
     client.listen()
     client.law(0)
 
-    def turned():
-        client.set(gait="falling")
-        client.set(gait="turning")
-        client.until(lambda: client.latest()[0].name == "turning", "turning law")
-        return client.latest()[1] > 0.0
-
-    client.tick_until(30.0, turned, "law at 30 s")
+    client.tick_until(30.0, lambda: begin_turning(client) > 0.0, "law at 30 s")
     client.tick_until(3.0, lambda: client.latest() == (turning(), 0.0), "law whose start is at zero")
     count = len(client.messages)
     client.set(period=2.0)
