@@ -214,6 +214,9 @@ def test_samples_are_refused_where_there_are_too_many():
     simulation, law = Simulation(law=falling()), law_of(7)
     with pytest.raises(ValueError, match="x must have at most 1601 points, got 20000"):
         simulation.add_samples(1.0, *[np.zeros(20_000)] * 7)
+    for bad in (None, 0.5, np.array(0.5), [[0.0, 1.0]]):
+        with pytest.raises(ValueError, match=r"curvature samples x must be (a row of|real) numbers, got"):
+            simulation.add_samples(1.0, bad, *[np.zeros(2)] * 6)
     few, many = samples_of(law, 0.0, np.linspace(0, 1, 5))[1:], samples_of(law, 0.0, np.linspace(0, 1, 1001))[1:]
     for k in range(10_000):
         simulation.add_samples(10.0 + 0.001 * k, *few)

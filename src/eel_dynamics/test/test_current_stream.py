@@ -94,6 +94,7 @@ def test_a_current_before_the_first_law_is_kept():
     ("sample", "message"),
     [
         ((np.nan, (0, 0, 0)), "current time must be finite"),
+        ((1e300, (0, 0, 0)), r"current time must be <= 1e\+12 s, got 1e\+300"),
         ((0.0, (0, 0)), "current velocity must be 3 numbers"),
         ((0.0, (0, np.inf, 0)), "current velocity must be finite"),
         ((0.0, (0, 0, 0.1)), "current velocity must have no part along z in a planar scene, got 0.1 m/s"),

@@ -158,6 +158,7 @@ def test_series_springs_that_ring_after_each_command_keep_their_target():
     ("joint", "given", "told"),
     [
         ("neck", {"position": 0.1}, "joint must be one of joint_1, joint_2, joint_3, got 'neck'"),
+        (["neck"], {"position": 0.1}, "joint must be one of joint_1, joint_2, joint_3, got ['neck']"),
         ("joint_3", {"position": 0.1}, "joint 'joint_3' cannot be commanded: it has no servo"),
         ("joint_1", {"position": 0.1, "effort": 1.0}, "must be commanded in one mode, got position and effort"),
         ("joint_1", {"velocity": np.nan}, "velocity of joint 'joint_1' must be finite, got nan"),

@@ -257,6 +257,8 @@ def test_advance_without_a_law_and_backwards():
     simulation = Simulation()
     with pytest.raises(RuntimeError, match="law"):
         simulation.advance(0.1)
+    with refused("law must be a Law or a SampledLaw, got None"):
+        simulation.adopt(None)
     simulation.adopt(Law())
     simulation.advance(0.5)
     for time in (0.2, "1", None, np.nan, [1.0]):

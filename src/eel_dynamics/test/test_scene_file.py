@@ -164,6 +164,7 @@ def test_duration_and_accuracy_of_the_command_come_first(tmp_path, capsys):
     [
         ({"law": straight(period=0.7)}, "law 'straight' cannot be written"),
         ({"gait": None}, "law 'straight' cannot be written"),
+        ({"law": None}, "law None cannot be written"),
         ({"body": Body.boyer2010().changed(lateral_drag=1.0)}, "body 'boyer2010' cannot be written"),
         ({"accuracy": Accuracy(name="fine", resolution=30.0)}, "accuracy 'fine' cannot be written"),
     ],
@@ -173,6 +174,8 @@ def test_what_no_file_can_hold_is_refused(changes, named, tmp_path):
     assert isinstance(swim, Swim)
     with pytest.raises(ValueError, match=named):
         save_scene(swim._replace(**changes), tmp_path / "scene.yaml")
+    with pytest.raises(ValueError, match="swim must be a Swim, got None"):
+        save_scene(None, tmp_path / "scene.yaml")
     assert not (tmp_path / "scene.yaml").exists()
 
 

@@ -317,6 +317,8 @@ ARRAYS = {"x": FEW, "half_width": 0.03 * np.sqrt(FEW), "half_height": 0.04 * np.
             lambda: Simulation(scene=Scene(planar=True, weight=True, density=900.0)),
             "scene planar must be off where weight and buoyancy differ, got 1.9",
         ),
+        (lambda: trim_of(scene=True), "scene must be a Scene, got True"),
+        (lambda: ballast_for(scene=0.0), "scene must be a Scene, got 0.0"),
         (lambda: ballast_for(ROBOT), "body must be lighter than its water"),
         (lambda: ballast_for(ROBOT.changed(mass_per_length=lambda x: 9.0 * (x < 0.2))), "ballast must fit between"),
         (lambda: ballast_for(scene=Scene(density=900.0), length=-1.0), "ballast length must be > 0 m"),

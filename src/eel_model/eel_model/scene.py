@@ -27,7 +27,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar, Self
 
-from eel_base.quantity import Quantities, documented, quantity
+from eel_base.quantity import Quantities, checked_instance, documented, quantity
 from eel_base.wording import did_you_mean, shown
 
 import eel_core
@@ -118,3 +118,12 @@ class Scene(Quantities):
             )
         if self.planar and self.current[2] != 0.0:
             raise ValueError(f"scene current must lie in the plane z = 0 of a planar scene, got {shown(self.current)}")
+
+
+OF_PAPER = Scene()  # where none is given
+
+
+def checked_scene(scene: Any) -> Scene:
+    """`scene`, if it is a `Scene`; for None that of the paper. `ValueError` for anything else."""
+    found: Scene = OF_PAPER if scene is None else checked_instance("scene", scene, Scene)
+    return found

@@ -86,7 +86,7 @@ def _client_of(scheduler: Any, workers: int) -> Iterator[Any]:
         return
     try:
         client = Client(scheduler, timeout=10)
-    except (OSError, TimeoutError, ValueError) as error:
+    except (OSError, TimeoutError, TypeError, ValueError) as error:
         raise ValueError(f"scheduler cannot be reached at {shown(scheduler)}: {error}") from None
     with client:
         yield client

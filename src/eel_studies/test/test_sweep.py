@@ -319,6 +319,21 @@ def test_counts_that_cannot_be_are_refused_by_name(given):
         sweep({"period": [0.5]}, **given, **SHORT)
 
 
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"grid": {3: [0.5]}}, "grid name must be a str, got 3"),
+        ({"out": True}, "out must be a str or a PathLike, got True"),
+        ({"recordings": 1}, "recordings must be a str or a PathLike, got 1"),
+        ({"measure": 1}, "measure must be one of .*, got 1"),
+        ({"gait": Swim(None, Body.boyer2010(), Scene(), "draft")}, "law None has no numbers: no gait gave it"),
+    ],
+)
+def test_what_is_no_argument_of_a_sweep_is_refused_by_name(given, message):
+    with pytest.raises(ValueError, match=message):
+        sweep(**{"grid": {"period": [0.5]}} | given, **SHORT)
+
+
 def test_a_point_that_stops_is_told_and_the_others_stay(client):
     def law(size):
         return straight(amplitude_0=size)

@@ -85,7 +85,7 @@ def checked_measures(argument: str, names, estimate: bool = True) -> tuple[str, 
     """
     if names is None:
         return tuple(name for name in MEASURES if estimate or name not in OF_ESTIMATE)
-    names = (names,) if isinstance(names, str) else tuple(names)
+    names = tuple(names) if np.iterable(names) and not isinstance(names, str) else (names,)
     for name in names:
         if not isinstance(name, str) or name not in MEASURES:
             raise ValueError(not_one_of(argument, name, MEASURES))

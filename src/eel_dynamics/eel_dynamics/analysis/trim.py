@@ -12,7 +12,7 @@ import numpy as np
 from eel_base.quantity import number, positive
 from eel_base.wording import shown
 from eel_model.body.body import Body, checked_body
-from eel_model.scene import Scene
+from eel_model.scene import Scene, checked_scene
 from eel_model.section_data import GRAVITY, NEUTRAL
 
 LEVEL = 1e-9  # of the length: centres of mass and buoyancy that are this close along the body
@@ -104,7 +104,7 @@ class Ballast:
 
 def trim_of(body: Body | None = None, scene: Scene | None = None) -> Trim:
     """Weight, buoyancy and trim of `body`, straight, in the water of `scene`. `ValueError` names what does not fit."""
-    body, scene = checked_body(body), scene or Scene()
+    body, scene = checked_body(body), checked_scene(scene)
 
     def fields(x: np.ndarray) -> np.ndarray:
         mass, area = body.mass_per_length(x, scene.density), np.pi * body.half_width(x) * body.half_height(x)
@@ -122,7 +122,7 @@ def ballast_for(
     length: [m] that the ballast takes along the body, by default a tenth of the body's. offset: [m], how far it lies
     below the axis. `ValueError` for a body that is too heavy already, and where the ballast would not fit into it.
     """
-    body, scene = checked_body(body), scene or Scene()
+    body, scene = checked_body(body), checked_scene(scene)
     length = positive("ballast length", PART * body.length if length is None else length, "m")
     offset, trim = number("ballast offset", offset, "m"), trim_of(body, scene)
     mass = trim.displaced - trim.mass

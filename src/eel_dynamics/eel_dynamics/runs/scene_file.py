@@ -61,7 +61,8 @@ def load_scene(path: str | os.PathLike[str]) -> Swim:
 
 def save_scene(swim: Swim, path: str | os.PathLike[str]) -> None:
     """Write `swim` to a file. `ValueError` for what none can hold; `NotWritten`: it cannot be completed."""
-    text = yaml.safe_dump({FOR_ALL: {PARAMETERS: words_of(swim)}}, sort_keys=False, default_flow_style=None)
+    words = words_of(checked_instance("swim", swim, Swim))
+    text = yaml.safe_dump({FOR_ALL: {PARAMETERS: words}}, sort_keys=False, default_flow_style=None)
     with replacing(Path(path)) as draft:
         draft.write_text(ABOUT + text, encoding="utf-8")
 
@@ -87,8 +88,9 @@ def swim_of(words: Any, base: Swim | None = None) -> Swim:
 
 def words_of(swim: Swim) -> dict[str, Any]:
     """The words of a file of this `swim`; what has its default is left out. `ValueError` for what no file can hold."""
-    if swim.gait is None or swim.gait.law() != swim.law:
-        raise ValueError(f"law {shown(swim.law.name)} cannot be written: no gait by name gave it")
+    if not isinstance(swim.gait, Settings) or swim.gait.law() != swim.law:
+        name = getattr(swim.law, "name", swim.law)
+        raise ValueError(f"law {shown(name)} cannot be written: no gait by name gave it")
     own: dict[str, Any] = {"gait": swim.gait.gait, "file": swim.gait.file, **swim.gait.chosen}
     own |= {word: about.plain(swim) for word, about in WORDS.items()}
     return {word: value for word, value in own.items() if value not in (None, "", {})}

@@ -51,7 +51,7 @@ class Swim(NamedTuple):
     def with_gait(self, **numbers: Any) -> Self:
         """The same with other `numbers` of the gait. `ValueError` for a law that no gait gave."""
         if self.gait is None:
-            raise ValueError(f"law {shown(self.law.name)} has no numbers: no gait gave it")
+            raise ValueError(f"law {shown(getattr(self.law, 'name', None))} has no numbers: no gait gave it")
         gait = self.gait.changed(numbers)
         return self._replace(law=gait.law(), gait=gait)
 

@@ -7,14 +7,14 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import checked_row, is_finite, number
+from eel_base.quantity import checked_instance, checked_row, is_finite, number
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.body.body import Body
 from eel_model.fins.fins import checked_commands
 from eel_model.flow.flow import Flow
-from eel_model.flow.stream import CurrentStream
+from eel_model.flow.stream import LATEST, CurrentStream
 from eel_model.initial_state import checked_state
 from eel_model.robot.actuators import Servo
 from eel_model.robot.robot import Robot, checked_robot
@@ -104,7 +104,7 @@ class Simulation(Present):
         own transition, or during the default one. After the last row of a `SampledLaw` the shape comes to rest.
         `ValueError` for a law that the scene does not allow.
         """
-        needs = self._setup.shape_needs(law)
+        needs = self._setup.shape_needs(checked_instance("law", law, (Law, SampledLaw)))
         if not is_finite(origin):
             raise ValueError(f"law origin must be finite, got {shown(origin)} s")
         origin, blend = float(origin), self._setup.transition_to(law, transition)
@@ -138,6 +138,8 @@ class Simulation(Present):
         waves: on the body, which the grid must resolve; None: as many as the points can carry, one for eight of them.
         `ValueError` names what does not fit.
         """
+        if type(x) is not np.ndarray or x.ndim != 1:
+            x = checked_row("curvature samples x", x, None)
         check_points(len(x))
         self._march.follower.samples.check_space(len(x))
         rows = pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel
@@ -162,6 +164,8 @@ class Simulation(Present):
         """
         if not is_finite(time):
             raise ValueError(f"current time must be finite, got {shown(time)} s")
+        if time > LATEST:
+            raise ValueError(f"current time must be <= {LATEST:g} s, got {shown(time)} s")
         row = checked_row("current velocity", velocity, 3)
         if self.scene.planar and row[2] != 0.0:
             raise ValueError(f"current velocity must have no part along z in a planar scene, got {row[2]:g} m/s")

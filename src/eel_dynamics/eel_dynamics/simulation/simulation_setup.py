@@ -16,7 +16,7 @@ from eel_model.flow.flow import Flow, check_covers, checked_flow, core_flow
 from eel_model.initial_state import InitialState, checked_state, time_scale
 from eel_model.robot.compiled import ModeTable, mode_table
 from eel_model.robot.robot import Robot, checked_robot
-from eel_model.scene import Scene
+from eel_model.scene import Scene, checked_scene
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
@@ -27,7 +27,6 @@ from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS, check_cost
 from eel_dynamics.curvature.curvature_samples import check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 
-OF_PAPER = Scene()  # where none is given
 FITTING = 1e-6  # part of the body's length by which the rows of a law may be shorter or longer
 
 
@@ -65,8 +64,7 @@ class SimulationSetup(EqualByFields):
         """The set-up from the arguments of `Simulation`. `ValueError` names the one that does not fit."""
         robot = checked_robot(robot)
         body = checked_body(robot.body if body is None and robot is not None else body)
-        scene = OF_PAPER if scene is None else checked_instance("scene", scene, Scene)
-        accuracy, x = Accuracy.of(accuracy), checked_stations(stations, body.length)
+        scene, accuracy, x = checked_scene(scene), Accuracy.of(accuracy), checked_stations(stations, body.length)
         start = _checked_start(scene, position, orientation, twist, flow)
         fins = checked_fins(fins, body, scene)
         if robot is not None:

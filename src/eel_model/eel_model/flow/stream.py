@@ -16,6 +16,7 @@ from eel_model.flow.flow import Flow, FlowTraits
 
 SHORTEST = 1e-3  # s, of an interval
 LONGEST = 10.0  # s, of one: a sample after a longer silence begins anew
+LATEST = 1e12  # s, of a stamp: numbers do not carry an interval beyond it
 PERIODS = 4.0  # intervals in the shortest period that samples can show
 
 

@@ -76,7 +76,7 @@ class Robot:
     def joint(self, name: str) -> Joint:
         """The joint called `name`. `ValueError` for another."""
         found = {joint.name: joint for joint in self.joints}
-        if name not in found:
+        if not isinstance(name, str) or name not in found:
             raise ValueError(not_one_of("joint", name, found))
         return found[name]
 

@@ -18,6 +18,7 @@ from eel_base.quantity import checked_instance, checked_row, number, positive
 from eel_base.wording import not_one_of, shown
 from eel_gaits.laws.steered_law import BENDS
 from eel_model.body.body import Body, checked_body
+from eel_model.scene import checked_scene
 
 from eel_dynamics import Fin, Scene
 from eel_gaits import Law, Ramp, Term
@@ -190,7 +191,7 @@ def periodic_linearisation(
     """
     checked_instance("law", law, Law)
     body = checked_body(body)
-    scene = Scene() if scene is None else checked_instance("scene", scene, Scene)
+    scene = checked_scene(scene)
     if isinstance(steps, bool) or not isinstance(steps, (int, np.integer)) or steps < 20:
         raise ValueError(f"steps must be a whole number of 20 or more, got {shown(steps)}")
     rise = number("rise", rise)

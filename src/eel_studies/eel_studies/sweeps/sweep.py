@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 from eel_base.command.progress import progress_of
-from eel_base.quantity import positive
+from eel_base.quantity import checked_instance, positive
 from eel_base.wording import WorkStopped, one_line, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
@@ -216,6 +216,7 @@ def _checked_grid(grid: Any) -> tuple[list[str], list[list[Any]]]:
         raise ValueError(f"grid must be a dict of parameters and their values, got {shown(grid)}")
     axes = []
     for name, values in grid.items():
+        checked_instance("grid name", name, str)
         if isinstance(values, (str, bytes)) or not np.iterable(values):
             raise ValueError(f"grid {shown(name)} must have a sequence of values, got {shown(values)}")
         if isinstance(values, Sized):

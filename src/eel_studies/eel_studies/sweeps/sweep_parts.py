@@ -13,6 +13,7 @@ from typing import Any
 
 from eel_base.files.input_file import InputFile, from_json, reading
 from eel_base.files.output_file import check_output, replacing
+from eel_base.quantity import checked_instance
 from eel_base.wording import one_line, shown
 from eel_dynamics.analysis.measures import checked_point
 from eel_dynamics.runs.storage.digest import ATTRIBUTE, add_digest_to, check_digest_of, digest_of_text
@@ -29,7 +30,7 @@ class Parts:
 
     def __init__(self, out: str | Path | None, key: str, count: int, overwrite: bool):
         self._key, self._count = key, count
-        path = self.out = None if out is None else Path(out)
+        path = self.out = None if out is None else Path(checked_instance("out", out, (str, os.PathLike)))
         self._overwrite, self._began = overwrite, time.time_ns()
         self.folder: Any = None if path is None else path.with_name(path.name + ".parts")
         self._number = itertools.count()

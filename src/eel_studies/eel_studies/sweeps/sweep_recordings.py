@@ -2,9 +2,11 @@
 """Rerun recordings of the points of a sweep, one file each, that can be asked like a table."""
 
 import itertools
+import os
 from pathlib import Path
 from typing import Any
 
+from eel_base.quantity import checked_instance
 from eel_base.wording import shown
 from eel_dynamics.runs.exchange.eel_viz_functions import function_of_eel_viz
 from eel_dynamics.runs.run import Run
@@ -22,7 +24,7 @@ class SweepRecordings:
 
     def __init__(self, folder: str | Path, grid: dict[str, list[Any]]) -> None:
         function_of_eel_viz("rerun")
-        self.folder, self._grid = Path(folder), grid
+        self.folder, self._grid = Path(checked_instance("recordings", folder, (str, os.PathLike))), grid
         try:
             self.folder.mkdir(exist_ok=True)
         except OSError as error:
