@@ -14,8 +14,9 @@ One rule leads from a target to settings, and `simulate` measures the error that
 - Fixed steps of the classical method, of order 4, grow in number with the fourth root of the target.
 """
 
+import dataclasses
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from functools import lru_cache
 from typing import Any
 
@@ -82,6 +83,12 @@ ADAMS_ERROR = 3.0  # some times that of the embedded pair at the same tolerance
 TIGHTER, DENSER, SHORTER = 1.2, 0.2, 0.2
 LEAST_TIGHTER, LEAST_DENSER = 1.0 / 8.0, 1.4  # the run before becomes the companion of the tightened one
 LEAST_TIGHTENED = 0.02  # least ratio in one go: a saturated error says little of the settings
+
+
+@lru_cache(maxsize=256)
+def replace(settings: "Accuracy", **changes: Any) -> "Accuracy":
+    """The `settings` with these `changes`, which the points of a sweep share."""
+    return dataclasses.replace(settings, **changes)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

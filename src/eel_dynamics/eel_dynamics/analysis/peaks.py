@@ -10,6 +10,8 @@ better, as exact as the run. A run of more than a thousand samples has fewer tha
 recorded elsewhere its own: those of power may then be 2 % off at 20 samples in a period.
 """
 
+from functools import lru_cache
+
 import numpy as np
 
 from eel_dynamics.simulation.march import March
@@ -18,6 +20,7 @@ DEGREE = 5
 BETWEEN = 8  # instants in a sample period, among which the greatest is looked for; a parabola then gives the peak
 FINER, MOST_SAMPLES = 10, 10_000  # samples in a sample period, and in all, of a run that is swum anew for its peaks
 AT_ONCE = 512  # of these instants that are looked at together
+FEW, EQUIDISTANT = 40, 1e-9  # values whose splines share a table; and relative to their distance, how far they may lie
 NEAR = 0.7  # of the greatest sample: stations and samples that stay below are not beside the peak between samples
 AROUND = 1  # sample periods, and distances of stations, to either side of the peak that are swum anew
 FINE = 12  # instants and stations in each of these
@@ -37,16 +40,16 @@ def peaks(
     size: of values (n, ...); it may take away the last axis. Each other axis has a peak of its own.
     near: (T,) bool, of the samples beside which they may lie; None: beside any.
     """
-    from scipy.interpolate import make_interp_spline
-
     if len(x) < 2:
         return size(values)[0], np.broadcast_to(x[0], size(values)[0].shape)
-    curve = make_interp_spline(x, values, k=min(DEGREE, len(x) - 1), axis=0)
     inside = np.unique(np.clip(x, start, end)) if np.isfinite([start, end]).any() else x
     between = np.arange((len(inside) - 1) * BETWEEN + 1) / BETWEEN
     fine = np.interp(between, np.arange(len(inside)), inside)
-    if near is not None:
-        fine = fine[np.interp(between, np.arange(len(inside)), near) > 0.0]
+    wanted = slice(None) if near is None else np.interp(between, np.arange(len(inside)), near) > 0.0
+    if inside is x and len(x) <= FEW and np.ptp(np.diff(x)) <= EQUIDISTANT * (x[1] - x[0]):
+        rows = _table(len(x))[wanted] @ values.reshape(len(x), -1)
+        return _greatest(fine[wanted], size(rows.reshape(-1, *values.shape[1:])))
+    curve, fine = _spline(x, values), fine[wanted]
     parts = [fine[max(0, begin - 1) : begin + AT_ONCE + 1] for begin in range(0, max(1, len(fine) - 1), AT_ONCE)]
     found = [_greatest(part, size(curve(part))) for part in parts]
     if len(found) == 1:
@@ -54,6 +57,18 @@ def peaks(
     sizes, places = map(np.array, zip(*found, strict=True))
     first = np.argmax(sizes, axis=0)[None]
     return np.take_along_axis(sizes, first, axis=0)[0], np.take_along_axis(places, first, axis=0)[0]
+
+
+def _spline(x: np.ndarray, values: np.ndarray):
+    from scipy.interpolate import make_interp_spline
+
+    return make_interp_spline(x, values, k=min(DEGREE, len(x) - 1))
+
+
+@lru_cache(maxsize=FEW)
+def _table(count: int) -> np.ndarray:
+    """(n, count), of the splines through 1 at one of `count` equidistant places, with `BETWEEN` rows from each on."""
+    return np.asarray(_spline(np.arange(count), np.eye(count))(np.arange((count - 1) * BETWEEN + 1) / BETWEEN))
 
 
 def greatest_torque_of(run) -> tuple[float, float, float]:
