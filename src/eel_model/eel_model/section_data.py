@@ -70,9 +70,7 @@ class SectionData(NamedTuple):
     drag3: np.ndarray  # kg/m^2, 1/2 rho_f k3
     drag_roll: np.ndarray  # kg, 1/2 rho_f k4
     laminar: np.ndarray  # friction force per length = -laminar |V1|^(1/2) V1
-    turbulent: (
-        np.ndarray
-    )  # friction force per length = -turbulent (Re/8e4)^(4/5) V1; by Taylor -turbulent |Vn|^(1/2) V1
+    turbulent: np.ndarray  # likewise -turbulent (Re/8e4)^(4/5) V1; by Taylor -turbulent |Vn|^(1/2) V1
     by_critical_speed: np.ndarray  # s/m, Re/8e4 per |V1|
 
     def of_water(self) -> "SectionData":
@@ -80,10 +78,15 @@ class SectionData(NamedTuple):
         none = np.zeros_like(self.mass)
         return self._replace(mass=none, lever=none, net=none, inertia1=self.added_roll, inertia2=none, inertia3=none)
 
+    def rows(self, names: tuple[str, ...]) -> np.ndarray:
+        """Those with these `names`, one behind the other."""
+        return np.array([getattr(self, name) for name in names])
+
 
 # In which a section's inertial wrench, its weight, a flow's pressure and its drag are linear; the order is that of the
 # core's `SectionPart`.
 PARTS = tuple(name for name in SectionData._fields if name not in ("added_roll", "by_critical_speed"))
+DRAG_PARTS = "drag2", "drag3", "drag_roll"
 
 
 class StationData(NamedTuple):
@@ -95,9 +98,7 @@ class StationData(NamedTuple):
     added2_slope: np.ndarray  # (M,) kg/m^2, derivative of `added2` by X
     added3_slope: np.ndarray  # (M,) kg/m^2
     added_roll_slope: np.ndarray  # (M,) kg
-    missed: (
-        np.ndarray | tuple[()]
-    )  # (14, M, p_max) for each of `PARTS`: what the rows of `points` miss, times m; or none
+    missed: np.ndarray | tuple[()]  # (14, M, p_max), of `PARTS`: what the rows of `points` miss, times m; or none
 
 
 def nose_of(body: Body, scene: Scene) -> tuple[float, float]:
@@ -146,11 +147,8 @@ def missed_drag_of(body: Body, scene: Scene, grid: Grid, sections: SectionData) 
         return ()
     angle = np.linspace(0.0, np.pi, 1 + PLACES * grid.matrix.shape[1])
     places = 0.5 - 0.5 * np.cos(angle)
-    return missed_within(lambda x: _drags(sections_of(body, scene, x)), _drags(sections), grid, body.breaks, places)
-
-
-def _drags(sections: SectionData) -> np.ndarray:
-    return np.array([sections.drag2, sections.drag3, sections.drag_roll])
+    given = sections.rows(DRAG_PARTS)
+    return missed_within(lambda x: sections_of(body, scene, x).rows(DRAG_PARTS), given, grid, body.breaks, places)
 
 
 def weight_time(scene: Scene, sections: SectionData, weight: np.ndarray, length: float) -> float:
@@ -185,7 +183,8 @@ def stations_of(body: Body, scene: Scene, grid: Grid, nodes: SectionData, x: np.
     """Tabulate `body` in `scene` at the stations `x` (M,) [m]; `nodes`: the sections at the nodes of `grid`."""
     missed: np.ndarray | tuple[()] = ()
     if len(body.breaks):
-        missed = missed_before(lambda at: _parts(sections_of(body, scene, at)), _parts(nodes), grid, body.breaks, x)
+        given = nodes.rows(PARTS)
+        missed = missed_before(lambda at: sections_of(body, scene, at).rows(PARTS), given, grid, body.breaks, x)
     a_squared, b_squared, a_slope, b_slope = _squares_at(body, x.tobytes())
     slope2, slope3, _ = added_masses(body, scene, a_slope, b_slope)
     rho = scene.fluid_density if scene.reactive else 0.0
@@ -201,10 +200,6 @@ def stations_of(body: Body, scene: Scene, grid: Grid, nodes: SectionData, x: np.
     )
 
 
-def _parts(sections: SectionData) -> np.ndarray:
-    return np.array([getattr(sections, name) for name in PARTS])
-
-
 @lru_cache(maxsize=64)
 def _squares_at(body: Body, x: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """`Body.squares` at the stations, which all runs and companions of a body share."""
@@ -217,14 +212,11 @@ def sections_on(body: Body, scene: Scene, grid: Grid) -> SectionData:
     if not len(body.breaks):
         return sections
     table = SectionData(*with_moments(lambda x: np.array(sections_of(body, scene, x)), grid, body.breaks))
-    drags = {name: _off_zero(getattr(table, name)) for name in ("drag2", "drag3", "drag_roll")}
-    return table._replace(by_critical_speed=sections.by_critical_speed, **drags)
-
-
-def _off_zero(values: np.ndarray) -> np.ndarray:
-    """The same with no zero, such as that at a pointed tail: a weight of it can then stand for any load there."""
-    least = LEAST * np.max(np.abs(values))
-    return np.where(np.abs(values) < least, least, values)
+    # without a zero, such as at a pointed tail: a weight of a drag can then stand for any load there
+    drags = table.rows(DRAG_PARTS)
+    least = LEAST * np.max(np.abs(drags), axis=1, keepdims=True)
+    drags = np.where(np.abs(drags) < least, least, drags)
+    return table._replace(by_critical_speed=sections.by_critical_speed, **dict(zip(DRAG_PARTS, drags, strict=True)))
 
 
 def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionData:

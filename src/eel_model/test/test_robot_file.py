@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from eel_model.robot.ready import READY, XM430_W210
-from eel_model.robot.robot_file import RobotReader, plain_of_robot
+from eel_model.robot.robot_file import plain_of_robot, robot_arguments
 
 from eel_gaits import Law, Term
 from eel_model import Body, Joint, Muscle, PassiveTail, Robot, Servo, Torque
@@ -114,9 +114,9 @@ def test_a_robot_survives_plain_values():
     )
     for robot in robots:
         plain = json.loads(json.dumps(plain_of_robot(robot, 1.0)))
-        assert Robot(**RobotReader().arguments(plain)) == robot
+        assert Robot(**robot_arguments(plain)) == robot
     sloped = Robot([PassiveTail(0.6, lambda x: 1.0 - 0.5 * x)])
-    (tail,) = Robot(**RobotReader().arguments(plain_of_robot(sloped, 1.0))).parts
+    (tail,) = Robot(**robot_arguments(plain_of_robot(sloped, 1.0))).parts
     assert tail.bending_stiffness(0.77) == pytest.approx(1.0 - 0.5 * 0.77, abs=1e-6)
     with pytest.raises(ValueError, match="joint 'joint_1' torque is a function, which no file holds"):
         plain_of_robot(Robot([Joint(0.2, actuator=Torque(np.sin))]), 1.0)

@@ -12,13 +12,11 @@ from typing import Any
 import numpy as np
 from eel_base.quantity import checked_row, is_finite, number
 from eel_base.wording import shown
-from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
-from eel_model.body.shapes import piecewise, values_along
+from eel_model.body.shapes import piecewise, series_through, values_along
 
 ROUND_OFF = 1e-12  # of the greatest value, by which one may be below a minimum
-DEGREE = 48  # of the polynomial through the square of a half-axis on each panel, for its derivative
 Bounds = Sequence[float]  # m: 0, kinks, length; between two of them a field is smooth
 
 
@@ -71,20 +69,16 @@ class HalfAxis:
     """
 
     def __init__(self, name: str, given: Any, x: np.ndarray | None, bounds: Bounds) -> None:
-        self._bounds = bounds
-        if x is None:
-            if not callable(given):
-                raise ValueError(f"body {name} must be a function of X, or an array with x=, got {shown(given)}")
-            self.given, self.breaks, self._cubics = given, np.empty(0), None
-            at = _points(bounds)
-            values = values_along(given, at)
-            if not np.isfinite(values).all():
-                worst = np.flatnonzero(~np.isfinite(values))[0]
-                raise ValueError(f"body {name} must be finite, got {values[worst]} at X = {at[worst]:.6g} m")
-        else:
+        self.given, self.breaks, self._cubics, self._bounds = given, np.empty(0), None, bounds
+        if x is not None:
             at, values = x, _checked_values(f"body {name}", given, x)
             self.given, self.breaks = np.stack((x, values)), x[1:-1]
             self._cubics = _cubics(x, values**2, bounds)
+        elif callable(given):
+            at = _points(bounds)
+            values = values_along(given, at)
+        else:
+            raise ValueError(f"body {name} must be a function of X, or an array with x=, got {shown(given)}")
         _check_shape(name, at, values, bounds[-1])
 
     def square(self, x: np.ndarray) -> np.ndarray:
@@ -102,11 +96,7 @@ class HalfAxis:
     def _slopes(self) -> tuple[list[Any], Any]:
         if self._cubics is not None:
             return [piece.derivative() for piece in self._cubics[0]], self._cubics[1]
-        # Gauss points lie inside the panel: a jump at its ends is not seen.
-        series = (
-            chebyshev.Chebyshev.interpolate(lambda x: values_along(self.given, x) ** 2, DEGREE, domain=ends)
-            for ends in pairwise(self._bounds)
-        )
+        series = series_through(lambda x: values_along(self.given, x) ** 2, self._bounds)
         return [each.deriv() for each in series], self._bounds
 
 
@@ -132,7 +122,10 @@ def _cubics(x: np.ndarray, values: np.ndarray, bounds: Bounds) -> tuple[list[Any
 
 
 def _check_shape(name: str, x: np.ndarray, values: np.ndarray, length: float) -> None:
-    """`ValueError` unless the half-axis is 0 at the nose and positive inside."""
+    """`ValueError` unless the half-axis is finite, 0 at the nose and positive inside."""
+    if not np.isfinite(values).all():
+        worst = np.flatnonzero(~np.isfinite(values))[0]
+        raise ValueError(f"body {name} must be finite, got {values[worst]} at X = {x[worst]:.6g} m")
     if np.any(values < 0.0):
         worst = np.argmin(values)
         raise ValueError(f"body {name} must be >= 0 m, got {values[worst]:.6g} at X = {x[worst]:.6g} m")

@@ -9,7 +9,7 @@ X runs from 0 at the nose to the length at the tail. The nose is pointed, a(0) =
 import os
 import warnings
 from collections.abc import Callable
-from functools import cache, cached_property, lru_cache
+from functools import cache, cached_property, lru_cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -189,8 +189,7 @@ class Body:
         """Integrals of `fields`, from X (n,) [m] to (m, n), over the body; smooth between its kinks and data points."""
         grid = Grid.of(panels_of(self, resolution=40))
         values = with_moments(fields, grid, self.breaks) if len(self.breaks) else fields(grid.x)
-        integrals: list[float] = (values @ grid.weight).tolist()
-        return integrals
+        return list(map(float, values @ grid.weight))
 
     @property
     def mass(self) -> float:
@@ -230,7 +229,7 @@ class Body:
         return Body(**own | changes)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _body_of, (self.arguments,)
+        return partial(Body, **self.arguments), ()
 
     def __eq__(self, other: object) -> bool:
         return self is other or (isinstance(other, Body) and same(self.arguments, other.arguments))
@@ -351,10 +350,6 @@ def body_of(text: str) -> Body:
 def _named_shape(name: str, length: float) -> dict[str, Any]:
     half_axes = {axis: NamedHalfAxis(name, axis, length) for axis in ("half_width", "half_height")}
     return {"name": name, "length": length, "kinks": tuple(kink * length for kink in KINKS[name]), **half_axes}
-
-
-def _body_of(arguments: dict[str, Any]) -> Body:
-    return Body(**arguments)
 
 
 NAMED = tuple(KINKS)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
+DEGREE = 48  # of the polynomials through a function on each panel
 KERN_HEAD, KERN_TAIL, KERN_WIDTH_OF_TAIL = 0.04, 0.95, 0.01  # of the length
 KERN_MIDDLE, KERN_HEIGHT = 0.51, 0.08
 KINKS = {"boyer2010": (0.05, 0.2, 0.75), "kern2006": (KERN_HEAD, KERN_TAIL)}  # of the length
@@ -99,19 +100,24 @@ FUNCTIONS = {
 }
 
 
-def polynomials_through(
-    half_axis: Callable[[np.ndarray], np.ndarray], bounds: tuple[float, ...], degree: int = 48
-) -> PolynomialHalfAxis:
+def polynomials_through(half_axis: Callable[[np.ndarray], np.ndarray], bounds: tuple[float, ...]) -> PolynomialHalfAxis:
     """Polynomials through the square of a `half_axis` (function of X [m] that returns m) between the `bounds` [m]."""
-    return PolynomialHalfAxis(tuple(bounds), coefficients_of(lambda x: half_axis(x) ** 2, bounds, degree))
+    return PolynomialHalfAxis(tuple(bounds), coefficients_of(lambda x: half_axis(x) ** 2, bounds))
 
 
 def coefficients_of(
-    function: Callable[[np.ndarray], np.ndarray], bounds: tuple[float, ...], degree: int = 48
+    function: Callable[[np.ndarray], np.ndarray], bounds: tuple[float, ...]
 ) -> tuple[tuple[float, ...], ...]:
     """Rows of coefficients of the polynomials through a `function` of X [m] between the `bounds` [m]."""
-    series = [chebyshev.Chebyshev.interpolate(function, degree, domain=ends) for ends in pairwise(bounds)]
-    return tuple(tuple(each.coef.tolist()) for each in series)
+    return tuple(tuple(each.coef.tolist()) for each in series_through(function, bounds))
+
+
+def series_through(function: Callable[[np.ndarray], np.ndarray], bounds: Sequence[float]) -> list[Any]:
+    """Chebyshev series through a `function` of X [m], one between two of the `bounds` [m].
+
+    The points lie inside the panels: a jump at their ends is not seen.
+    """
+    return [chebyshev.Chebyshev.interpolate(function, DEGREE, domain=ends) for ends in pairwise(bounds)]
 
 
 def piecewise(

@@ -65,7 +65,7 @@ class FlowField(Flow):
         def fill(time: float, view: memoryview) -> None:
             rows = np.asarray(view)
             x = rows[:, :3].copy()
-            rows[:, 3:6] = velocity = self._called("function", self.function, x, time, (3,))
+            rows[:, 3:6] = velocity = self._called("function", x, time)
             rows[:, 6:9] = self._rate(x, time)
             rows[:, 9:ROWS] = self._jacobian(x, time).reshape(-1, 9)
             if planar and velocity[:, 2].any():
@@ -83,30 +83,27 @@ class FlowField(Flow):
 
     def _rate(self, x: np.ndarray, time: float) -> np.ndarray:
         if self.rate is not None:
-            return self._called("rate", self.rate, x, time, (3,))
-        step = self.time_step
-        after = self._called("function", self.function, x, time + step, (3,))
-        rate: np.ndarray = (after - self._called("function", self.function, x, time - step, (3,))) / (2.0 * step)
-        return rate
+            return self._called("rate", x, time)
+        before, after = (self._called("function", x, time + sign * self.time_step) for sign in (-1.0, 1.0))
+        return np.asarray((after - before) / (2.0 * self.time_step))
 
     def _jacobian(self, x: np.ndarray, time: float) -> np.ndarray:
         if self.jacobian is not None:
-            return self._called("jacobian", self.jacobian, x, time, (3, 3))
+            return self._called("jacobian", x, time, (3, 3))
         shifts = self.step * np.concatenate([np.eye(3), -np.eye(3)])
         moved = (x + shifts[:, None]).reshape(-1, 3)
-        after, before = self._called("function", self.function, moved, time, (3,)).reshape(2, 3, len(x), 3)
-        jacobian: np.ndarray = np.moveaxis(after - before, 0, -1) / (2.0 * self.step)
-        return jacobian
+        after, before = self._called("function", moved, time).reshape(2, 3, len(x), 3)
+        return np.asarray(np.moveaxis(after - before, 0, -1) / (2.0 * self.step))
 
-    def _called(self, what: str, function: Field, x: np.ndarray, time: float, shape: tuple[int, ...]) -> np.ndarray:
+    def _called(self, what: str, x: np.ndarray, time: float, shape: tuple[int, ...] = (3,)) -> np.ndarray:
+        function, wanted = getattr(self, what), (len(x), *shape)
         try:
             values = np.asarray(function(x, time), dtype=float)
         except (TypeError, ValueError) as error:
             if isinstance(function, LostFunction):
                 raise
             raise ValueError(f"flow {shown(self.name)}: {what} failed {_where(x[0], time)}: {error}") from error
-        if values.shape != (len(x), *shape):
-            wanted = (len(x), *shape)
+        if values.shape != wanted:
             raise ValueError(
                 f"flow {shown(self.name)}: {what} must give shape {wanted}, got {values.shape} {_where(x[0], time)}"
             )

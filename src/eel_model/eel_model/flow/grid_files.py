@@ -27,8 +27,7 @@ def read_grid(source: Any, velocity: tuple[str, str, str | None]) -> tuple[np.nd
         source = {name: _Variable.of(each) for name, each in source.variables.items()}
     else:
         raise ValueError(f"flow source must be an xarray.Dataset or a path, got {shown(source)}")
-    missing = [name for name in velocity[:2] if name not in source]
-    if missing:
+    if missing := [name for name in velocity[:2] if name not in source]:
         raise ValueError(f"flow file must have a variable {shown(missing[0])}, got {sorted(source)}")
     parts = [source[name] for name in velocity if name in source]
     dims = {dim for part in parts for dim in part.dims}
@@ -60,13 +59,11 @@ class _Variable:
     def seconds(self) -> np.ndarray:
         values = self.values
         if values.dtype.kind in "mM":
-            counted: np.ndarray = (values - values[0]) / np.timedelta64(1, "s")
-            return counted
+            return np.asarray((values - values[0]) / np.timedelta64(1, "s"))
         unit, *since = self._units.split(" since ")
         if (scale := SECONDS.get(unit.strip().removesuffix("s") or "s")) is None:
             raise ValueError(f"flow time must be in seconds, minutes, hours or days, got units {shown(self._units)}")
-        time: np.ndarray = scale * (values - values[0] if since else values).astype(float)
-        return time
+        return np.asarray(scale * (values - values[0] if since else values).astype(float))
 
     def metres(self, name: str) -> np.ndarray:
         if self._units not in ("", "m", "meter", "metre", "meters", "metres"):
@@ -81,9 +78,7 @@ class _Variable:
             raise ValueError(f"flow velocity must be in m/s, got units {shown(self._units)}")
         order = [self.dims.index(name) for name in axes if name in self.dims]
         values = self.values.transpose(order).astype(float)
-        shape = iter(values.shape)
-        shaped: np.ndarray = values.reshape([next(shape) if name in self.dims else 1 for name in axes])
-        return shaped
+        return np.expand_dims(values, [axis for axis, name in enumerate(axes) if name not in self.dims])
 
     @property
     def _units(self) -> str:

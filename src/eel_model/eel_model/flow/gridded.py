@@ -59,8 +59,7 @@ class GriddedFlow(Flow):
         velocity = velocity.reshape(*sizes, 3)
         if not np.isfinite(velocity).all():
             index = np.argwhere(~np.isfinite(velocity))[0]
-            t, *place = (float(getattr(self, name)[i]) for name, i in zip(AXES, index, strict=False))
-            x, y, z = place
+            t, x, y, z = (float(getattr(self, name)[i]) for name, i in zip(AXES, index, strict=False))
             raise ValueError(
                 f"flow velocity must be finite, got {velocity[tuple(index)]} at ({x:g}, {y:g}, {z:g}) m and {t:g} s"
             )

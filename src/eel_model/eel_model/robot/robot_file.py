@@ -46,7 +46,7 @@ POINTS = 201  # of a table that stands for a function
 def robot_in_yaml(path: str | os.PathLike[str]) -> dict[str, Any]:
     """The arguments of the `Robot` in a YAML file. `ValueError` names line and key."""
     path = Path(path)
-    return {"name": path.stem} | RobotReader(path.parent).arguments(read_yaml(path))
+    return {"name": path.stem} | robot_arguments(read_yaml(path), path.parent)
 
 
 def plain_of_robot(robot: Any, length: float) -> dict[str, Any]:
@@ -90,114 +90,114 @@ def _table(function: Callable[..., Any], part: Any, length: float) -> ProfileTab
     return ProfileTable(tuple(x.tolist()), tuple(float(function(each)) for each in x))
 
 
-class RobotReader:
-    """Makes the arguments of a `Robot` of plain values. folder: where files lie that the document names."""
+def robot_arguments(root: Any, folder: Path = Path()) -> dict[str, Any]:
+    """The arguments of a `Robot` of plain values: parts, and name and body where the document has them.
 
-    def __init__(self, folder: Path | None = None) -> None:
-        self._folder = folder
+    folder: where files lie that the document names.
+    """
+    if not isinstance(root, Mapping):
+        raise Misplaced("line 1", f"a robot must have keys such as joints, got {shown(root)}")
+    check_keys(root, FILE)
+    found: dict[str, Any] = {"parts": []}
+    for key, kind in LISTS.items():
+        for entries in _list(root, key):
+            found["parts"] += _parts(kind, entries, root, key)
+    if not found["parts"]:
+        fail(root, "joints", "must hold joints, or tails or muscles in their place, got none")
+    if "name" in root:
+        found["name"] = root["name"]
+    if "body" in root:
+        found["body"] = tried(root, "body", _body, root["body"], folder)
+    return found
 
-    def arguments(self, root: Any) -> dict[str, Any]:
-        """parts, and name and body where the document has them."""
-        if not isinstance(root, Mapping):
-            raise Misplaced("line 1", f"a robot must have keys such as joints, got {shown(root)}")
-        check_keys(root, FILE)
-        found: dict[str, Any] = {"parts": []}
-        for key, kind in LISTS.items():
-            for entries in self._list(root, key):
-                found["parts"] += self._parts(kind, entries, root, key)
-        if not found["parts"]:
-            fail(root, "joints", "must hold joints, or tails or muscles in their place, got none")
-        if "name" in root:
-            found["name"] = root["name"]
-        if "body" in root:
-            found["body"] = tried(root, "body", self._body, root["body"])
-        return found
 
-    def _parts(self, kind: type[Any], entries: Any, root: Mapping[str, Any], key: str) -> list[Any]:
-        """The parts of one entry: several joints, where it has several positions."""
-        if not isinstance(entries, Mapping):
-            fail(root, key, f"must hold mappings of fields, got {shown(entries)}")
-        given = self._given(kind, entries, f"each of the {key}", ("servo", "torque") if kind is Joint else ())
-        for name in ("bending_stiffness", "damping"):
-            if kind is not Joint and isinstance(given.get(name), Mapping):
-                given[name] = self._made(ProfileTable, entries, name)
-        if kind is Joint:
-            given["actuator"] = self._actuator(entries)
-        if kind is Muscle:
-            given["moment"] = self._moment(entries)
-        if kind is not Joint or not isinstance(given["position"], list):
-            return [self._built(kind, entries, given)]
-        if "name" in given:
-            fail(entries, "name", "goes with one position")
-        return [self._built(kind, entries, given | {"position": place}) for place in given["position"]]
+def _parts(kind: type[Any], entries: Any, root: Mapping[str, Any], key: str) -> list[Any]:
+    """The parts of one entry: several joints, where it has several positions."""
+    if not isinstance(entries, Mapping):
+        fail(root, key, f"must hold mappings of fields, got {shown(entries)}")
+    given = _given(kind, entries, f"each of the {key}", ("servo", "torque") if kind is Joint else ())
+    for name in ("bending_stiffness", "damping"):
+        if kind is not Joint and isinstance(given.get(name), Mapping):
+            given[name] = _made(ProfileTable, entries, name)
+    if kind is Joint:
+        given["actuator"] = _actuator(entries)
+    if kind is Muscle:
+        given["moment"] = _moment(entries)
+    if kind is not Joint or not isinstance(given["position"], list):
+        return [_built(kind, entries, given)]
+    if "name" in given:
+        fail(entries, "name", "goes with one position")
+    return [_built(kind, entries, given | {"position": place}) for place in given["position"]]
 
-    def _given(
-        self, kind: type[Any], entries: Mapping[str, Any], whose: str, further: tuple[str, ...] = ()
-    ) -> dict[str, Any]:
-        """The fields of a `kind` in a mapping, which may have `further` keys."""
-        known = [item.name for item in fields(kind) if item.name != "actuator"]
-        check_keys(entries, (*known, *further))
-        for item in fields(kind):
-            if item.default is MISSING and item.name not in entries:
-                fail(entries, item.name, f"must be given for {whose}")
-        return {name: entries[name] for name in known if name in entries}
 
-    def _built(self, kind: type[Any], entries: Mapping[str, Any], given: dict[str, Any]) -> Any:
-        """`kind` of the `given` fields; an error names the key that its text names."""
-        try:
-            return kind(**given)
-        except (ValueError, TypeError) as error:
-            words = str(error).split()
-            guilty = next((word for word in words if word in entries), "")
-            fail(entries, guilty, str(error))
+def _given(kind: type[Any], entries: Mapping[str, Any], whose: str, further: tuple[str, ...] = ()) -> dict[str, Any]:
+    """The fields of a `kind` in a mapping, which may have `further` keys."""
+    known = [item.name for item in fields(kind) if item.name != "actuator"]
+    check_keys(entries, (*known, *further))
+    for item in fields(kind):
+        if item.default is MISSING and item.name not in entries:
+            fail(entries, item.name, f"must be given for {whose}")
+    return {name: entries[name] for name in known if name in entries}
 
-    def _made(self, kind: type[Any], above: Mapping[str, Any], key: str) -> Any:
-        """`kind` of the fields in the mapping at `key`."""
-        given = above[key]
-        if not isinstance(given, Mapping):
-            fail(above, key, f"must be a mapping of fields, got {shown(given)}")
-        return self._built(kind, given, self._given(kind, given, key))
 
-    def _actuator(self, entries: Mapping[str, Any]) -> Servo | Torque | None:
-        if "servo" in entries and "torque" in entries:
-            fail(entries, "torque", "does not go with servo")
-        if isinstance(entries.get("servo"), str):
-            name = entries["servo"]
-            if name not in SERVOS:
-                fail(entries, "servo", f"must be one of {', '.join(SERVOS)}, or a mapping, got {shown(name)}")
-            return SERVOS[name]
-        for key, kind in (("servo", Servo), ("torque", Torque)):
-            if key in entries:
-                made: Servo | Torque = self._made(kind, entries, key)
-                return made
-        return None
+def _built(kind: type[Any], entries: Mapping[str, Any], given: dict[str, Any]) -> Any:
+    """`kind` of the `given` fields; an error names the key that its text names."""
+    try:
+        return kind(**given)
+    except (ValueError, TypeError) as error:
+        guilty = next((word for word in str(error).split() if word in entries), "")
+        fail(entries, guilty, str(error))
 
-    def _moment(self, entries: Mapping[str, Any]) -> Law:
-        axis, terms = entries.get("axis", "yaw"), []
-        for each in self._list(entries, "moment"):
-            if not isinstance(each, Mapping):
-                fail(entries, "moment", f"must hold terms, such as {{amplitude: [0.5], period: 1}}, got {shown(each)}")
-            check_keys(each, [item.name for item in fields(Term)])
-            given = {"axis": axis} | dict(each)
-            for name in ("amplitude", "knots"):
-                if isinstance(given.get(name), list):
-                    given[name] = tuple(given[name])
-            ramps = self._list(each, "envelope")
-            given["envelope"] = tried(each, "envelope", lambda ramps: tuple(Ramp(**ramp) for ramp in ramps), ramps)
-            terms.append(self._built(Term, each, given))
-        return Law(*terms)
 
-    def _body(self, given: Any) -> Body:
-        if not isinstance(given, str):
-            raise ValueError(f"must be a name or a file, got {shown(given)}")
-        if Path(given).suffix not in (".csv", ".npz"):
-            return Body.named(given)
-        return Body.from_file(given if self._folder is None else self._folder / given)
+def _made(kind: type[Any], above: Mapping[str, Any], key: str) -> Any:
+    """`kind` of the fields in the mapping at `key`."""
+    given = above[key]
+    if not isinstance(given, Mapping):
+        fail(above, key, f"must be a mapping of fields, got {shown(given)}")
+    return _built(kind, given, _given(kind, given, key))
 
-    # -- places and errors
 
-    def _list(self, entries: Mapping[str, Any], key: str) -> list[Any]:
-        found = entries.get(key, [])
-        if not isinstance(found, (list, tuple)):
-            fail(entries, key, f"must be a list, got {shown(found)}")
-        return list(found)
+def _actuator(entries: Mapping[str, Any]) -> Servo | Torque | None:
+    if "servo" in entries and "torque" in entries:
+        fail(entries, "torque", "does not go with servo")
+    if isinstance(entries.get("servo"), str):
+        name = entries["servo"]
+        if name not in SERVOS:
+            fail(entries, "servo", f"must be one of {', '.join(SERVOS)}, or a mapping, got {shown(name)}")
+        return SERVOS[name]
+    for key, kind in (("servo", Servo), ("torque", Torque)):
+        if key in entries:
+            made: Servo | Torque = _made(kind, entries, key)
+            return made
+    return None
+
+
+def _moment(entries: Mapping[str, Any]) -> Law:
+    axis, terms = entries.get("axis", "yaw"), []
+    for each in _list(entries, "moment"):
+        if not isinstance(each, Mapping):
+            fail(entries, "moment", f"must hold terms, such as {{amplitude: [0.5], period: 1}}, got {shown(each)}")
+        check_keys(each, [item.name for item in fields(Term)])
+        given = {"axis": axis} | dict(each)
+        for name in ("amplitude", "knots"):
+            if isinstance(given.get(name), list):
+                given[name] = tuple(given[name])
+        ramps = _list(each, "envelope")
+        given["envelope"] = tried(each, "envelope", lambda ramps: tuple(Ramp(**ramp) for ramp in ramps), ramps)
+        terms.append(_built(Term, each, given))
+    return Law(*terms)
+
+
+def _body(given: Any, folder: Path) -> Body:
+    if not isinstance(given, str):
+        raise ValueError(f"must be a name or a file, got {shown(given)}")
+    if Path(given).suffix not in (".csv", ".npz"):
+        return Body.named(given)
+    return Body.from_file(folder / given)
+
+
+def _list(entries: Mapping[str, Any], key: str) -> list[Any]:
+    found = entries.get(key, [])
+    if not isinstance(found, (list, tuple)):
+        fail(entries, key, f"must be a list, got {shown(found)}")
+    return list(found)

@@ -24,7 +24,7 @@ from eel_base.wording import shown
 from eel_model.body.body import Body
 from eel_model.robot.actuators import Servo
 from eel_model.robot.joint import LONGEST_NAME, Joint
-from eel_model.robot.urdf_chain import ChainJoint, Link, UrdfChain
+from eel_model.robot.urdf_chain import ChainJoint, UrdfChain
 from eel_model.robot.urdf_elements import fail, float_of, name_of, number_of
 
 STRAIGHT = 0.02  # of the length: how far a joint may lie off the line
@@ -96,16 +96,11 @@ class UrdfReader:
         rounded = np.array([0.0, 1.0 / 9.0, 4.0 / 9.0, 1.0]) * cap
         behind = middles > cap * 1.01
         x = np.concatenate((rounded, middles[behind], [end]))
-        columns = [
+        width, height = (
             np.concatenate((column[0] * np.sqrt(rounded / cap), column[behind], column[-1:])) for column in half.T
-        ]
-        body = Body(
-            x=x,
-            half_width=columns[0],
-            half_height=columns[1],
-            kinks=(cap,),
-            name=self._root.attributes.get("name", "urdf"),
         )
+        name = self._root.attributes.get("name", "urdf")
+        body = Body(x=x, half_width=width, half_height=height, kinks=(cap,), name=name)
         mass = sum(link.mass for link in self._links)
         if not mass > 0.0:
             self._notes.append(f"no link has a mass: the density is that of water, {body.density:g} kg/m^3")
@@ -120,15 +115,12 @@ class UrdfReader:
                     f"link {shown(link.name)}: mass {link.mass:.4g} kg becomes {kept:.4g} kg (one density)"
                 )
             if link.mass > 0.0:
-                self._note_centre(link)
+                _, right, up = self._axes @ (link.centre - self._joints[0].origin)
+                if (off := math.hypot(right, up)) > 1e-3:
+                    self._notes.append(
+                        f"link {shown(link.name)}: centre of mass {off:.3g} m off the line is put onto it"
+                    )
         return body
-
-    def _note_centre(self, link: Link) -> None:
-        """Say where a centre of mass is off the line, which stays on it."""
-        centre = self._axes @ (link.centre - self._joints[0].origin)
-        off = math.hypot(centre[1], centre[2])
-        if off > 1e-3:
-            self._notes.append(f"link {shown(link.name)}: centre of mass {off:.3g} m off the line is put onto it")
 
     # -- joints
 
@@ -140,9 +132,8 @@ class UrdfReader:
         if component == 0 or 1.0 - abs(parts[component]) > 0.5 * ALIGNED**2:
             rule = "must point along the base link's z (yaw) or across the line of joints (pitch)"
             fail(element, "axis", f"{rule}, got {shown([round(each, 4) for each in axis.tolist()])}")
-        to_left = (
-            parts[component] < 0.0
-        ) != self._from_tail  # a turn of the part behind about E2 or E3 bends along them
+        # a turn of the part behind about E2 or E3 bends along them
+        to_left = (parts[component] < 0.0) != self._from_tail
         servo, limits = self._motor(element, name)
         dynamics = element.first("dynamics")
         damping = number_of(element, "dynamics", "damping", 0.0) if dynamics is not None else 0.0
@@ -178,9 +169,8 @@ class UrdfReader:
                 fail(limit, "limit", f"{attribute} must be >= 0, got {value:g}")
         for transmission in self._root.all("transmission"):
             joint = transmission.first("joint")
-            ratio = next(
-                (found for each in transmission.all("actuator") if (found := each.first("mechanicalReduction"))), None
-            )
+            ratios = filter(None, (each.first("mechanicalReduction") for each in transmission.all("actuator")))
+            ratio = next(ratios, None)
             if joint is not None and joint.attributes.get("name") == name and ratio is not None:
                 changes["gear"] = abs(float_of(ratio, "mechanicalReduction", ratio.text))
         try:

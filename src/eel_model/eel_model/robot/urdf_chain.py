@@ -3,6 +3,7 @@
 
 import math
 from dataclasses import dataclass, field
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -45,11 +46,11 @@ class Link:
     def extent(self, axes: np.ndarray) -> np.ndarray:
         """Least and greatest places (2, 3) of its shapes along the axes [m]; of a mesh, of the equal cylinder."""
         if self.corners:
-            turned = np.array([axes @ corner for box in self.corners for corner in _corners(box)])
+            turned = np.array([axes @ corner for box in self.corners for corner in product(*box.T)])
             return np.array([turned.min(axis=0), turned.max(axis=0)])
         if not self.mass > 0.0:
             fail(self.element, "link", "must have a box, cylinder, sphere or a mass, got none")
-        centre = axes @ (self.centre)
+        centre = axes @ self.centre
         moments = self._moments(axes)
         length = math.sqrt(max(6.0 * (moments[1] + moments[2] - moments[0]) / self.mass, 0.0))
         return np.array([centre - 0.5 * length, centre + 0.5 * length])
@@ -86,34 +87,31 @@ class UrdfChain:
     """
 
     def __init__(self, root: Element) -> None:
-        self._root = root
         self.elements = {name_of(each): each for each in root.all("link")}
         self.links: list[Link] = []
         self.joints: list[ChainJoint] = []
         self.notes: list[str] = []
-        self._walk()
+        self._walk(root)
         if not self.joints:
             fail(root, "robot", f"must be {NEEDED}, got none")
 
-    def _walk(self) -> None:
+    def _walk(self, root: Element) -> None:
         """Links and joints from the base on. What is fixed to a link is part of it."""
-        joints = self._root.all("joint")
         children: dict[str, list[Element]] = {}
-        parents: dict[str, Element] = {}
-        for joint in joints:
+        below_another: set[str] = set()
+        for joint in root.all("joint"):
             kind = joint.attributes.get("type", "")
             if kind not in (*MOVABLE, "fixed"):
                 fail(joint, "joint", f"type must be revolute, continuous or fixed, got {shown(kind)}")
             parent, child = (self._end(joint, tag) for tag in ("parent", "child"))
-            if child in parents:
+            if child in below_another:
                 fail(joint, "joint", f"child {shown(child)} has two parents")
-            parents[child] = joint
+            below_another.add(child)
             children.setdefault(parent, []).append(joint)
-        bases = [name for name in self.elements if name not in parents]
+        bases = [name for name in self.elements if name not in below_another]
         if len(bases) != 1:
-            fail(self._root, "robot", f"must have one link without a parent, got {shown(bases)}")
-        name, pose = bases[0], np.eye(4)
-        seen = 0
+            fail(root, "robot", f"must have one link without a parent, got {shown(bases)}")
+        name, pose, seen = bases[0], np.eye(4), 0
         while True:
             link = Link(self.elements[name])
             following: list[tuple[Element, np.ndarray]] = []
@@ -138,7 +136,7 @@ class UrdfChain:
             self.joints.append(ChainJoint(joint, pose[:3, 3], axis))
             name = self._end(joint, "child")
         if seen != len(self.elements):
-            fail(self._root, "robot", f"must be {NEEDED}: {len(self.elements) - seen} links are not part of it")
+            fail(root, "robot", f"must be {NEEDED}: {len(self.elements) - seen} links are not part of it")
 
     def _axis(self, joint: Element) -> np.ndarray:
         found = joint.first("axis")
@@ -163,17 +161,14 @@ class UrdfChain:
             mass = number_of(inertial, "mass", "value", 0.0)
             if mass < 0.0:
                 fail(inertial, "mass", f"must be >= 0 kg, got {mass:g}")
-            entries = {
-                name: number_of(inertial, "inertia", name, 0.0) for name in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
-            }
-            xx, yy, zz, xy, xz, yz = entries.values()
+            names = "ixx", "iyy", "izz", "ixy", "ixz", "iyz"
+            xx, yy, zz, xy, xz, yz = (number_of(inertial, "inertia", name, 0.0) for name in names)
             inner = at[:3, :3] @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ at[:3, :3].T
             c = at[:3, 3]
             link.mass += mass
             link.moment = link.moment + mass * c
             link.inertia = link.inertia + inner + mass * ((c @ c) * np.eye(3) - np.outer(c, c))
-        shapes = element.all("collision") or element.all("visual")
-        for shape in shapes:
+        for shape in element.all("collision") or element.all("visual"):
             half = self._half_size(shape)
             if half is None:
                 continue
@@ -202,8 +197,3 @@ class UrdfChain:
         if np.any(half <= 0.0):
             fail(form, form.tag, f"must have a size > 0 m, got {shown((2.0 * half).tolist())}")
         return np.asarray(half)
-
-
-def _corners(box: np.ndarray) -> np.ndarray:
-    """The eight corners (8, 3) of a box from its least and greatest places (2, 3)."""
-    return np.array([[box[i, 0], box[j, 1], box[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])

@@ -21,15 +21,12 @@ def name_of(element: Element) -> str:
 
 def origin_of(element: Element) -> np.ndarray:
     """The pose (4, 4) in the element's origin."""
+    from scipy.spatial.transform import Rotation
+
     origin, pose = element.first("origin"), np.eye(4)
     if origin is not None:
         pose[:3, 3] = vector_of(origin, "xyz", (0.0, 0.0, 0.0))
-        roll, pitch, yaw = vector_of(origin, "rpy", (0.0, 0.0, 0.0)).tolist()
-        (cr, sr), (cp, sp), (cy, sy) = ((math.cos(each), math.sin(each)) for each in (roll, pitch, yaw))
-        about_x = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
-        about_y = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
-        about_z = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])
-        pose[:3, :3] = about_z @ about_y @ about_x
+        pose[:3, :3] = Rotation.from_euler("xyz", vector_of(origin, "rpy", (0.0, 0.0, 0.0))).as_matrix()
     return pose
 
 

@@ -28,7 +28,7 @@ from eel_model.fins.fins import Fin, RollHold
 from eel_model.flow.flow import Flow
 from eel_model.flow.plain import flow_of, plain_of_flow
 from eel_model.robot.robot import Robot
-from eel_model.robot.robot_file import RobotReader, plain_of_robot
+from eel_model.robot.robot_file import plain_of_robot, robot_arguments
 from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
@@ -125,7 +125,7 @@ def robot_of(plain: dict[str, Any] | None, body: Body) -> Robot | None:
     """The robot that has become plain values."""
     if plain is None:
         return None
-    return Robot(**RobotReader().arguments(plain["parts"]) | {"body": body if plain["own_body"] else None})
+    return Robot(**robot_arguments(plain["parts"]) | {"body": body if plain["own_body"] else None})
 
 
 def accuracy_of(plain: dict[str, Any]) -> Accuracy | Budget:
