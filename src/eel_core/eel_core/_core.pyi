@@ -133,42 +133,28 @@ class LawOnGrid(_Shared):
 class StepBounds(_Shared):
     """What bounds the time steps of a march."""
 
-    def __init__(self, **bounds: float) -> None:
-        """All of the following, by their names."""
+    tolerance: float  # relative error of a step
+    longest: float  # [s], of a time step; a fixed method takes all as long, or a little shorter
+    smallest: float  # [s]
+    length: float  # [m], the scale of positions
+    momentum_floor: float  # [kg m/s], below which momentum counts as none
+    part_of_span: float  # of the time between two breakpoints, that a step may take
+    most_steps: float  # per simulated second
+    spare_steps: float  # beyond these, to be spent at any time
+    torque_floor: float  # [N m], of a robot: smaller torques count as none
 
-    @property
-    def tolerance(self) -> float:
-        """Relative error of a step."""
-    @property
-    def longest(self) -> float:
-        """[s], of a time step; a fixed method takes all as long, or a little shorter."""
-    @property
-    def smallest(self) -> float:
-        """[s]."""
-    @property
-    def length(self) -> float:
-        """[m], the scale of positions."""
-    @property
-    def momentum_floor(self) -> float:
-        """[kg m/s], below which momentum counts as none."""
-    @property
-    def part_of_span(self) -> float:
-        """Part of the time between two breakpoints that a step may take."""
-    @property
-    def most_steps(self) -> float:
-        """Steps per simulated second."""
-    @property
-    def spare_steps(self) -> float:
-        """Steps beyond these, to be spent at any time."""
-    @property
-    def torque_floor(self) -> float:
-        """[N m], of a robot: smaller torques count as none."""
+    def __init__(self, **bounds: float) -> None:
+        """All of these, by their names."""
 
 class Modes(_Shared):
     """The modes of a robot on a grid. It is copied from Python and never changes."""
 
-    def __init__(self, modes: Any) -> None:
-        """modes: with the attributes of `ModesOnGrid` (eel_dynamics/simulation/bending). `ValueError` for arrays that
+    def __init__(
+        self, table: Any, x: Buffer, torques: list[tuple[Any, ...]], drive: LawOnGrid | None, push: Buffer
+    ) -> None:
+        """table: with the attributes of `ModeTable` (eel_model/robot/compiled.py), of M modes and C coordinates. x: of
+        the nodes [m]. torques: (coordinate, function of the time [s]), or (coordinate, knots [s], cubics). drive, push:
+        the law of the muscles' moments, and (C, its rows) what it does to the coordinates. `ValueError` for arrays that
         do not fit together."""
 
 class March:
@@ -269,12 +255,6 @@ class March:
     @property
     def works(self) -> list[float]:
         """(6,) [J] of actuators, wake, nose, drag, flow and fins since the start."""
-    @property
-    def coordinates(self) -> list[float]:
-        """(C,)."""
-    @property
-    def rates(self) -> list[float]:
-        """(C,)."""
     @property
     def outside(self) -> tuple[float, float, float, float] | None:
         """Time [s] and place [m], world, outside the grid of the flow, where the last evaluation was there."""
@@ -378,11 +358,12 @@ class Instant:
         current: Buffer,
         flow: Flow | None,
         poses: Buffer,
+        modes: Buffer,
     ) -> None:
         """Writes powers (T, 4) [W] on the body: of the axial friction, the lateral, the vertical and the roll drag.
 
         times (T,) [s]; twists (T, 6) of the head; current and flow as in `March.follow`; poses (T, 7) of the head:
-        position [m] and orientation.
+        position [m] and orientation. modes (T, 2, M): factors of the law's last M rows, a robot's, and their rates.
         """
 
     def momentum_rate(self, law: LawOnGrid, time: float, twist: Buffer, acceleration: Buffer) -> list[float]:

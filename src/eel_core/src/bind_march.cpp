@@ -8,42 +8,51 @@
 namespace eel_core {
 namespace {
 
-// Its attributes are those of `ModesOnGrid` (eel_dynamics/simulation/bending/modes_on_grid.py).
-std::shared_ptr<Modes> modes_from(const py::object& m)
+// The modes of a `ModeTable` (eel_model/robot/compiled.py) on a grid with nodes at `x` [m].
+std::shared_ptr<Modes> modes_from(const py::object& table, const py::object& x, const py::list& torques,
+                                  const std::shared_ptr<LawOnGrid>& drive, const py::object& push)
 {
     auto modes = std::make_shared<Modes>();
     const auto numbers = [&](const char* name, std::size_t size) {
-        return Numbers::sized(m.attr(name), name, size).vector();
+        return Numbers::sized(table.attr(name), name, size);
     };
-    const auto axis = array_of<std::uint64_t>(m, "axis"), first = array_of<std::uint64_t>(m, "first"),
-               last = array_of<std::uint64_t>(m, "last"), continuous = array_of<std::uint64_t>(m, "continuous");
-    modes->modes = axis.size();
-    if (first.size() != modes->modes || last.size() != modes->modes || continuous.size() != modes->modes)
-        throw py::value_error("modes must have an axis, a first and a last node each");
-    for (const std::uint64_t each : axis.span()) modes->axis.push_back(each == 0 ? LawOnGrid::pitch : LawOnGrid::yaw);
-    modes->first = first.vector<std::size_t>(), modes->last = last.vector<std::size_t>();
-    modes->continuous = continuous.vector<bool>();
-    modes->span = numbers("span", modes->modes), modes->moment = numbers("moment", modes->modes);
-    const std::size_t c = modes->coordinates = array_of<double>(m, "inertia").size();
-    if (c < modes->modes) throw py::value_error("modes must have an inertia each");
-    modes->inertia = numbers("inertia", c), modes->rest = numbers("rest", c);
-    modes->stiffness = numbers("stiffness", c * c), modes->damping = numbers("damping", c * c);
-    for (const py::handle each : m.attr("servos")) {
-        const auto [at, kp, kd, torque, speed] = each.cast<std::tuple<std::size_t, double, double, double, double>>();
-        if (at >= c) throw py::value_error("a servo must drive a coordinate");
-        modes->servos.push_back({at, kp, kd, torque, speed});
+    const auto axis = array_of<std::int64_t>(table, "axis"), degree = array_of<std::int64_t>(table, "degree");
+    const std::size_t n = modes->modes = axis.size(),
+                      c = modes->coordinates = array_of<double>(table, "inertia").size();
+    if (degree.size() != n || c < n) throw py::value_error("modes must have a degree and an inertia each");
+    const auto start = numbers("start", n), end = numbers("end", n), limits = numbers("limits", 2 * n),
+               stiffness = numbers("stop_stiffness", n), damping = numbers("stop_damping", n);
+    const Numbers nodes(x, "x");
+    const auto nodes_until = [places = nodes.span()](double place) {
+        return static_cast<std::size_t>(std::ranges::upper_bound(places, place) - places.begin());
+    };
+    for (std::size_t m = 0; m < n; ++m) {
+        const bool joint = degree.data()[m] < 0;
+        const double first = start.data()[m], last = end.data()[m], span = joint ? 1.0 : last - first;
+        const double low = limits.data()[2 * m], high = limits.data()[2 * m + 1];
+        modes->axis.push_back(axis.data()[m] == 1 ? LawOnGrid::pitch : LawOnGrid::yaw);
+        modes->first.push_back(nodes_until(first)), modes->last.push_back(nodes_until(last));
+        modes->continuous.push_back(!joint), modes->span.push_back(span);
+        // P_n has the norm span / (2 n + 1)
+        modes->moment.push_back(joint ? 1.0 : static_cast<double>(2 * degree.data()[m] + 1) / span);
+        if (std::isfinite(low) || std::isfinite(high))
+            modes->stops.push_back({m, low, high, stiffness.data()[m], damping.data()[m]});
     }
-    for (const py::handle each : m.attr("stops")) {
-        const auto [at, low, high, k, d] = each.cast<std::tuple<std::size_t, double, double, double, double>>();
-        if (at >= modes->modes) throw py::value_error("a stop must limit a mode");
-        modes->stops.push_back({at, low, high, k, d});
+    modes->inertia = numbers("inertia", c).vector(), modes->rest = numbers("rest", c).vector();
+    modes->stiffness = numbers("stiffness", c * c).vector(), modes->damping = numbers("damping", c * c).vector();
+    for (const py::handle motor : table.attr("motors")) {
+        const py::object servo = motor.attr("servo");
+        const auto number = [&](const char* name) { return servo.attr(name).cast<std::optional<double>>(); };
+        constexpr double none = std::numeric_limits<double>::infinity();
+        const auto coordinate = motor.attr("coordinate").cast<std::size_t>();
+        modes->servos.push_back({coordinate, *number("kp"), *number("kd"), number("torque_limit").value_or(none),
+                                 number("speed_limit").value_or(none)});
     }
-    modes->drive = m.attr("drive").cast<std::shared_ptr<LawOnGrid>>();
-    modes->push = numbers("push", modes->drive ? c * modes->drive->tables->rows() : 0);
-    for (const py::handle each : m.attr("torques")) {
+    modes->drive = drive;
+    modes->push = Numbers::sized(push, "push", drive ? c * drive->tables->rows() : 0).vector();
+    for (const py::handle each : torques) {
         const auto torque = each.cast<py::tuple>();
         const auto coordinate = torque[0].cast<std::size_t>();
-        if (coordinate >= c) throw py::value_error("a torque must drive a coordinate");
         if (torque.size() == 2)
             modes->torques.push_back({coordinate, [function = py::object(torque[1])](double time) {
                                           const py::gil_scoped_acquire locked;
@@ -86,7 +95,8 @@ void bind_marches(py::module_& module)
 
     auto modes = py::class_<Modes, std::shared_ptr<Modes>>(module, "Modes");
     share_in_copies(modes);
-    modes.def(py::init(&modes_from), py::arg("modes"));
+    modes.def(py::init(&modes_from), py::arg("table"), py::arg("x"), py::arg("torques"), py::arg("drive"),
+              py::arg("push"));
 
     const auto of_present = [](auto member) {
         return [member](PyMarch& march) { return march.march().now().*member; };
@@ -118,8 +128,6 @@ void bind_marches(py::module_& module)
         .def_property_readonly("time", of_present(&Present::time))
         .def_property_readonly("state", [](PyMarch& march) { return shown(march.march().now().state); })
         .def_property_readonly("works", of_present(&Present::works))
-        .def_property_readonly("coordinates", of_present(&Present::x))
-        .def_property_readonly("rates", of_present(&Present::rate))
         .def_property_readonly("outside", &PyMarch::outside)
         .def_property_readonly("row", &PyMarch::row)
         .def_property_readonly("hardest", [](PyMarch& march) { return march.march().hardest(); })

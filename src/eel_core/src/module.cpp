@@ -170,24 +170,27 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
         .def(
             "drag_powers",
             [](Instant& instant, const LawOnGrid& law, const py::object& times, const py::object& twists,
-               const py::object& powers, const py::object& current, std::shared_ptr<Flow> flow,
-               const py::object& poses) {
+               const py::object& powers, const py::object& current, std::shared_ptr<Flow> flow, const py::object& poses,
+               const py::object& modes) {
                 const Numbers at(times, "times");
                 const Numbers motion = Numbers::sized(twists, "twists", 6 * at.size()),
                               into = Numbers::sized(powers, "powers", 4 * at.size(), true),
-                              heads = Numbers::sized(poses, "poses", 7 * at.size());
+                              heads = Numbers::sized(poses, "poses", 7 * at.size()), motion_of_modes(modes, "modes");
+                const std::size_t numbers = at.size() == 0 ? 0 : motion_of_modes.size() / at.size();
+                if (numbers / 2 > law.tables->rows()) throw py::value_error("modes must have rows of the law");
                 const Water water = water_from(current, std::move(flow));
                 const py::gil_scoped_release unlocked;
                 for (std::size_t k = 0; k < at.size(); ++k) {
                     State y{};
                     std::copy_n(heads.data() + 7 * k, 7, y.begin());
                     const auto twist = twist_of(motion.data() + 6 * k);
-                    std::ranges::copy(instant.drag_powers(law, at.data()[k], twist, water, half_turn(y)),
+                    std::ranges::copy(instant.drag_powers(law, at.data()[k], twist, water, half_turn(y),
+                                                          {motion_of_modes.data() + numbers * k, numbers}),
                                       into.data() + 4 * k);
                 }
             },
             py::arg("law"), py::arg("times"), py::arg("twists"), py::arg("powers"), py::arg("current"), py::arg("flow"),
-            py::arg("poses"))
+            py::arg("poses"), py::arg("modes"))
         .def(
             "momentum_rate",
             [](Instant& instant, const LawOnGrid& law, double time, const py::object& twist,

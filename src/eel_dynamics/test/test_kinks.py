@@ -25,7 +25,7 @@ def drag_powers(friction: str, kinks: str) -> np.ndarray:
     poses = np.array([[*each.position, *each.orientation] for each in seen])
     powers, instant = np.empty((len(times), 4)), eel_core.Instant(other.discretisation.swimmer)
     water = other.setup.current, other.setup.core_flow
-    instant.drag_powers(other.law_on_grid, times, twists, powers, *water, poses)
+    instant.drag_powers(other.law_on_grid, times, twists, powers, *water, poses, np.empty((len(times), 2, 0)))
     return powers
 
 

@@ -9,7 +9,7 @@ from eel_model.axes import REP103
 
 import eel_core
 from eel_dynamics.curvature.law_follower import LawFollower
-from eel_dynamics.simulation.bending.modes_on_grid import shapes_of_run
+from eel_dynamics.simulation.bending.modes_on_grid import ModesOnGrid, motion_of_run
 from eel_dynamics.simulation.discretisation import discretise
 
 
@@ -47,17 +47,16 @@ def drag_powers(run) -> np.ndarray:
         relative[:, 3:] -= setup.current @ world_from_body(run.orientation)
     water = setup.current, setup.core_flow
     poses = np.concatenate([run.position, run.orientation], axis=1)
+    robot, motion = None, np.zeros((len(time), 2, 0))
     if setup.modes is not None:
-        for k, law in enumerate(shapes_of_run(run, setup.modes, here)):
-            one = slice(k, k + 1)
-            instant.drag_powers(law, time[one], relative[one], powers[one], *water, poses[one])
-        return powers
+        robot, motion = ModesOnGrid(setup.modes, here.grid, here.tabulation), motion_of_run(run, setup.modes)
     follower, now, begin = LawFollower(here.tabulation, law=run.law), 0.0, 0
     while begin < len(time):  # once for a law in closed form, and for each row of a `SampledLaw`
         follower.pass_events(now, now := float(time[begin]))
         end = max(begin + 1, int(np.searchsorted(time, follower.next_event(now), side="right")))
         part = slice(begin, end)
-        instant.drag_powers(follower.law_on_grid, time[part], relative[part], powers[part], *water, poses[part])
+        law = follower.law_on_grid if robot is None else robot.law(follower, here.tabulation)[0]
+        instant.drag_powers(law, time[part], relative[part], powers[part], *water, poses[part], motion[part])
         begin = end
     return powers
 

@@ -126,8 +126,8 @@ class March:
 
     def command(self, joint: str, kind: str, value: float) -> None:
         """As `Simulation.command`. kind: angle [rad], rate [rad/s], torque [N m], or law."""
-        assert self.robot is not None
-        servo, sign = self.robot.servo_of(joint)
+        assert self.setup.modes is not None
+        servo, sign = self.setup.modes.servo_of(joint)
         self.core.command(servo, kind, sign * value)
 
     def _fit(self, needs: ShapeNeeds):
@@ -253,7 +253,7 @@ class March:
         """The error for the `status` of a march."""
         by_status = stopped_by(status, self.time, self._bounds, self.setup.settings)
         stopped = stopped_in_flow(self.setup.flow, self.core, self.time) or by_status
-        return stopped if self.robot is None else by_part(stopped, self.core, self.robot, status == SINGULAR)
+        return stopped if self.robot is None else by_part(stopped, self.core, self.robot.table, status == SINGULAR)
 
     # -- the present
 
@@ -263,7 +263,7 @@ class March:
         return self._joints(self._rows) if len(self._rows) else None
 
     def _joints(self, rows: np.ndarray) -> JointMotion | None:
-        return None if self.robot is None else JointMotion(self.robot, self._places, rows)
+        return None if self.robot is None else JointMotion(self.robot.table, self._places, rows)
 
     def _empty_rows(self, samples: int) -> np.ndarray:
         return np.zeros((samples, self._places["damping_work"][1]))

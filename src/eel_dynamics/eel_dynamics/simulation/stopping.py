@@ -16,10 +16,10 @@ from eel_base.wording import WorkStopped, shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.flow.flow import Flow
+from eel_model.robot.compiled import ModeTable
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.simulation.bending.modes_on_grid import ModesOnGrid
 
 OPEN = 0.2  # share of the energy; at twice the longest useful step of the robot's gaits it is 0.03, then grows at once
 
@@ -82,10 +82,10 @@ def outside_flow(flow: Flow | None, time: float, places: np.ndarray) -> Simulati
     return None if place is None else left_grid(flow, (time, *place))
 
 
-def by_part(stopped: SimulationStopped, core: eel_core.March, robot: ModesOnGrid, singular: bool) -> SimulationStopped:
-    """The error of a `robot`, with the part that is to blame. singular: whether the inertia is."""
+def by_part(stopped: SimulationStopped, core: eel_core.March, table: ModeTable, singular: bool) -> SimulationStopped:
+    """The error of a robot with the modes of `table`, with the part that is to blame. singular: the inertia is."""
     mode = core.singular_mode() if singular else None
-    part = shown(robot.part_of(core.hardest if mode is None else mode))
+    part = shown(table.name[core.hardest if mode is None else mode])
     if singular:
         hint = f"{part} has no inertia of its own: give it an armature, or a support apart from the others"
     else:

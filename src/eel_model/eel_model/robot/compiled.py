@@ -18,7 +18,7 @@ from numpy.polynomial import legendre
 
 from eel_model.body.body import Body
 from eel_model.body.shapes import values_along
-from eel_model.robot.actuators import Actuator, Servo
+from eel_model.robot.actuators import Servo, Torque
 from eel_model.robot.continuous import Muscle, PassiveTail
 from eel_model.robot.joint import Joint
 from eel_model.robot.part import AXES
@@ -28,13 +28,16 @@ HINGE = -1  # degree of a joint's mode
 GAUSS = legendre.leggauss(16)  # of each interval of a reference, and of a continuous part
 PARTS_OF_SUPPORT = 4  # equal intervals of a continuous part, for bending_stiffness(X) that is not smooth
 LONE_WIDTH = 0.05  # of the length: of a joint that is alone in its axis
+BETWEEN = np.array(((1.0, -1.0), (-1.0, 1.0)))  # what a spring between two coordinates does to each, by the other
 SAME = 1e-9  # of the length: places that are nearer are the same
-SOFT: dict[str, Any] = dict.fromkeys(("rest", "stop_stiffness", "stop_damping", "armature"), 0.0) | {
-    "sign": 1.0,
-    "initial": np.nan,
-    "limits": (-np.inf, np.inf),
-}  # columns of the modes of a continuous part
-Rows = list[dict[str, Any]]
+
+
+class Motor(NamedTuple):
+    """A servo, the mode of its joint, and the coordinate that it drives: behind a spring its own, else the mode's."""
+
+    servo: Servo
+    mode: int
+    coordinate: int
 
 
 class MuscleTable(NamedTuple):
@@ -48,23 +51,27 @@ class MuscleTable(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class ModeTable:
-    """The M modes of a robot. Those of one part are neighbours; the parts are ordered along the body."""
+    """The M modes of a robot, and its C coordinates: those of the modes, then of the motors behind series springs.
+
+    Modes of one part are neighbours; the parts are ordered along the body.
+    """
 
     axis: np.ndarray  # (M,) int, 1: E2 (pitch), 2: E3 (yaw)
     start: np.ndarray  # (M,) m, of the support
     end: np.ndarray  # (M,) m
     degree: np.ndarray  # (M,) int, of the Legendre polynomial; `HINGE`: a joint, B = 1/(end - start)
     sign: np.ndarray  # (M,) the library's angle over q
-    name: tuple[str, ...]  # (M,), of the part
-    stiffness: np.ndarray  # (M, M) N m/rad, or N m^4 over a continuous part
-    damping: np.ndarray  # (M, M) N m s/rad, or N m^4 s; with the friction of a stiff gear
-    rest: np.ndarray  # (M,) rad, or rad/m
+    name: tuple[str, ...]  # (C,), of the part
+    stiffness: np.ndarray  # (C, C) N m/rad, or N m^4 over a continuous part
+    damping: np.ndarray  # (C, C) N m s/rad, or N m^4 s; with the friction of the gears
+    rest: np.ndarray  # (C,) rad, or rad/m; of a motor as of its joint, whose own spring it is
+    inertia: np.ndarray  # (C,) kg m^2, armature with the rotor of a stiff gear; behind a spring the rotor
     initial: np.ndarray  # (M,) rad, of q at the start; NaN where it is not given
     limits: np.ndarray  # (M, 2) rad, of q, infinite where there are none
     stop_stiffness: np.ndarray  # (M,) N m/rad
     stop_damping: np.ndarray  # (M,) N m s/rad
-    armature: np.ndarray  # (M,) kg m^2, with the rotor of a stiff gear
-    motors: tuple[tuple[int, Actuator], ...]  # of joints with an actuator: the mode, and that
+    motors: tuple[Motor, ...]  # the servos
+    torques: tuple[tuple[int, Torque], ...]  # of joints whose torque is given over time: the mode, and that
     muscles: tuple[MuscleTable, ...]
     points: np.ndarray  # (P,) m, at which the law is read for the servos' references
     projection: np.ndarray  # (M, P) m: reference q_m = projection @ K_axis(t, points), K in section axes
@@ -73,6 +80,21 @@ class ModeTable:
 
     def __len__(self) -> int:
         return len(self.axis)
+
+    @property
+    def joints(self) -> np.ndarray:
+        """(M,) whether a mode is that of a joint."""
+        return np.asarray(self.degree == HINGE)
+
+    @property
+    def sprung(self) -> list[Motor]:
+        """The motors behind series springs, in the order of their coordinates."""
+        return [motor for motor in self.motors if motor.servo.has_spring]
+
+    def servo_of(self, joint: str) -> tuple[int, float]:
+        """The number of the servo that drives a `joint`, and the joint's sign."""
+        mode = self.name.index(joint)
+        return [motor.mode for motor in self.motors].index(mode), float(self.sign[mode])
 
     def shape(self, x: np.ndarray) -> np.ndarray:
         """B_m (M, n) at `x` (n,) [m]: 1/m of joints, 1 of continuous parts. The end belongs to a support."""
@@ -100,23 +122,51 @@ def mode_table(robot: Robot, body: Body, planar: bool = False) -> ModeTable:
     parts = [_located(part, robot, body) for part in robot.parts]
     _check(parts, body, planar)
     supports = _supports(parts, body)
-    sizes = [1 if isinstance(part, Joint) else part.modes for part in parts]
+    degrees = [[HINGE] if isinstance(part, Joint) else range(part.modes) for part in parts]
+    sizes = [*map(len, degrees)]
     *firsts, total = np.concatenate(([0], np.cumsum(sizes))).astype(int).tolist()
-    stiffness, damping = np.zeros((total, total)), np.zeros((total, total))
-    rows: Rows = []
-    for part, support, first, size in zip(parts, supports, firsts, sizes, strict=True):
-        block = slice(first, first + size)
-        own, stiffness[block, block], damping[block, block] = _modes(part, *support)
-        rows += own
-    columns = {name: np.array([row[name] for row in rows]) for name in ("axis", "start", "end", "degree", *SOFT)}
     placed = list(zip(parts, firsts, strict=True))
+    motors, size = _motors(placed, total)
+
+    def column(name: str, of_others: Any) -> np.ndarray:
+        """A field of the parts, for each mode; `of_others` where it is None, or a part has none."""
+        given = [getattr(part, name, None) for part in parts]
+        return np.repeat([of_others if value is None else value for value in given], sizes, axis=0)
+
+    sign = np.repeat([float(AXES[part.axis][1]) if isinstance(part, Joint) else 1.0 for part in parts], sizes)
+    rest, inertia = np.zeros((2, size))
+    rest[:total], inertia[:total] = sign * column("rest_angle", 0.0), column("armature", 0.0)
+    stiffness, damping = np.zeros((2, size, size))
+    for part, support, first, count in zip(parts, supports, firsts, sizes, strict=True):
+        block = slice(first, first + count)
+        stiffness[block, block], damping[block, block] = _springs(part, *support)
+    for servo, *pair in motors:
+        mode, coordinate = pair
+        if servo.has_spring:  # it has no rest angle of its own
+            rest[coordinate] = rest[mode]
+            stiffness[np.ix_(pair, pair)] += servo.series_stiffness * BETWEEN
+            damping[np.ix_(pair, pair)] += servo.series_damping * BETWEEN
+        inertia[coordinate] += servo.inertia
+        damping[coordinate, coordinate] += servo.friction
+    names = np.repeat([part.name for part in parts], sizes).tolist()
     points, projection = _references(placed, total, body)
     return ModeTable(
-        **columns,
-        name=tuple(part.name for part, size in zip(parts, sizes, strict=True) for _ in range(size)),
+        axis=column("component", 0),
+        start=np.repeat([start for start, _ in supports], sizes),
+        end=np.repeat([end for _, end in supports], sizes),
+        degree=np.concatenate(degrees),
+        sign=sign,
+        name=(*names, *(names[mode] for _, mode, coordinate in motors if coordinate != mode)),
         stiffness=stiffness,
         damping=damping,
-        motors=tuple((first, part.actuator) for part, first in placed if _is_motor(part)),
+        rest=rest,
+        inertia=inertia,
+        initial=sign * column("initial_angle", np.nan),
+        limits=np.sort(sign[:, None] * column("limits", (-np.inf, np.inf)), axis=1),
+        stop_stiffness=column("stop_stiffness", 0.0),
+        stop_damping=column("stop_damping", 0.0),
+        motors=motors,
+        torques=tuple((mode, part.actuator) for part, mode in placed if isinstance(_actuator(part), Torque)),
         muscles=tuple(_muscle(part, first) for part, first in placed if isinstance(part, Muscle)),
         points=points,
         projection=projection,
@@ -185,28 +235,15 @@ def _check(parts: list[Any], body: Body, planar: bool) -> None:
 # -- modes
 
 
-def _modes(part: Any, start: float, end: float) -> tuple[Rows, Any, Any]:
-    """Of the modes of one part the columns, and stiffness and damping (n, n)."""
-    place = {"axis": part.component, "start": start, "end": end}
+def _springs(part: Any, start: float, end: float) -> tuple[Any, Any]:
+    """Stiffness and damping (n, n) of the modes of one part, without its motor."""
     if isinstance(part, Joint):
-        sign, (low, high) = float(AXES[part.axis][1]), part.limits or (-np.inf, np.inf)
-        servo = part.actuator if isinstance(part.actuator, Servo) and not part.actuator.has_spring else None
-        own = {
-            "degree": HINGE,
-            "sign": sign,
-            "rest": sign * part.rest_angle,
-            "initial": np.nan if part.initial_angle is None else sign * part.initial_angle,
-            "limits": sorted((sign * low, sign * high)),
-            "stop_stiffness": part.stop_stiffness,
-            "stop_damping": part.stop_damping,
-            "armature": part.armature + (servo.inertia if servo else 0.0),
-        }
-        return [place | own], part.stiffness, part.damping + (servo.friction if servo else 0.0)
+        return part.stiffness, part.damping
     x, weight = _quadrature(start, end, PARTS_OF_SUPPORT)
     basis = np.array([_legendre(degree, start, end, x) for degree in range(part.modes)])
     matrices = [(basis * (weight * _profile(part, name, x))) @ basis.T for name in ("bending_stiffness", "damping")]
     stiffness, damping = (0.5 * (matrix + matrix.T) for matrix in matrices)
-    return [place | SOFT | {"degree": degree} for degree in range(part.modes)], stiffness, damping
+    return stiffness, damping
 
 
 def _profile(part: Any, name: str, x: np.ndarray) -> np.ndarray:
@@ -239,11 +276,21 @@ def _quadrature(start: float, end: float, parts: int = 1) -> tuple[np.ndarray, n
     return (ends[:-1, None] + half * (1.0 + GAUSS[0])).ravel(), (half * GAUSS[1]).ravel()
 
 
+def _motors(placed: list[Any], size: int) -> tuple[tuple[Motor, ...], int]:
+    """The servos of `placed` parts with their first mode, and how many coordinates there are with `size` modes."""
+    motors = []
+    for part, mode in placed:
+        if isinstance(servo := _actuator(part), Servo):
+            motors.append(Motor(servo, mode, size if servo.has_spring else mode))
+            size += servo.has_spring
+    return tuple(motors), size
+
+
+def _actuator(part: Any) -> Any:
+    return part.actuator if isinstance(part, Joint) else None
+
+
 # -- the law
-
-
-def _is_motor(part: Any) -> bool:
-    return isinstance(part, Joint) and part.actuator is not None
 
 
 def _references(placed: list[Any], total: int, body: Body) -> tuple[np.ndarray, np.ndarray]:
@@ -254,7 +301,7 @@ def _references(placed: list[Any], total: int, body: Body) -> tuple[np.ndarray, 
     modes, rules = [], []
     for axis in (1, 2):
         soft = [part.support for part, _ in placed if not isinstance(part, Joint) and part.component == axis]
-        joints = [each for each in placed if _is_motor(each[0]) and each[0].component == axis]
+        joints = [each for each in placed if _actuator(each[0]) and each[0].component == axis]
         middles = [0.5 * (one.position + other.position) for (one, _), (other, _) in pairwise(joints)]
         for (joint, mode), start, end in zip(joints, [0.0, *middles], [*middles, body.length], strict=False):
             start = max([start, *(last for _, last in soft if last <= joint.position)])
@@ -274,6 +321,6 @@ def _free(parts: list[Any], supports: list[Any], body: Body) -> tuple[tuple[int,
     found: list[tuple[int, float, float]] = []
     for axis in (1, 2):
         own = [(part, place) for part, place in zip(parts, supports, strict=True) if part.component == axis]
-        driven = any(_is_motor(part) for part, _ in own)
+        driven = any(_actuator(part) for part, _ in own)
         found += [(axis, 0.0, body.length)] if driven else [(axis, *place) for _, place in own]
     return tuple(found)

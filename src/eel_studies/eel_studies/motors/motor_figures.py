@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from eel_base.wording import shown
 from eel_model.robot.actuators import at_limit
-from eel_model.robot.compiled import HINGE, mode_table
+from eel_model.robot.compiled import mode_table
 
 from eel_dynamics import Robot, Run, Swim
 from eel_gaits import Law
@@ -128,7 +128,7 @@ def references(run: Run, time: np.ndarray) -> np.ndarray:
     """The references (T, J) [rad] of the joints of a run's robot at `time` (T,) [s], in the joints' signs."""
     assert run.robot is not None
     table = mode_table(run.robot, run.body, bool(run.scene.planar))
-    hinges = np.flatnonzero(table.degree == HINGE)
+    hinges = np.flatnonzero(table.joints)
     bends = np.array([run.law.curvature(float(each), table.points)[0] for each in time])  # (T, P, 3)
     asked = np.einsum("mp,tpm->tm", table.projection[hinges], bends[:, :, table.axis[hinges]])
     return np.asarray(asked * table.sign[hinges])

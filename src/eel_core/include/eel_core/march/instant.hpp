@@ -28,10 +28,13 @@ class Instant {
     }
 
     // Powers of the axial friction, the lateral and vertical drag, and the roll drag, for a given twist of the head in
-    // the state y, whose momentum is not read.
+    // the state y, whose momentum is not read. `modes`: of the last rows of the law, their factors, then the rates.
     std::array<double, 4> drag_powers(const LawOnGrid& law, double time, const Twist<Space, double>& twist,
-                                      const Water& water, const State& y)
+                                      const Water& water, const State& y, std::span<const double> modes)
     {
+        const std::size_t rows = law.tables->rows(), count = modes.size() / 2;
+        work_.factor.resize(rows);
+        for (std::size_t m = 0; m < count; ++m) work_.factor[rows - count + m] = {modes[m], modes[count + m], 0.0};
         move(law, time, twist, water, y);
         std::array<Lanes, 4> sum;
         sum.fill(Lanes(0.0));

@@ -6,9 +6,8 @@
 """
 
 import numpy as np
-from eel_model.robot.compiled import HINGE
+from eel_model.robot.compiled import ModeTable
 
-from eel_dynamics.simulation.bending.modes_on_grid import ModesOnGrid
 from eel_dynamics.simulation.observations import Variable
 
 JOINT = ("time", "joint")
@@ -31,8 +30,8 @@ class JointMotion:
     rows: (T, R), as the core writes them at the `places` of their names.
     """
 
-    def __init__(self, robot: ModesOnGrid, places: dict[str, tuple[int, int]], rows: np.ndarray):
-        self._robot, self._places, self._rows = robot, places, rows
+    def __init__(self, table: ModeTable, places: dict[str, tuple[int, int]], rows: np.ndarray):
+        self._table, self._places, self._rows = table, places, rows
 
     def _of(self, name: str) -> np.ndarray:
         return self._rows[:, slice(*self._places[name])]
@@ -45,26 +44,25 @@ class JointMotion:
     @property
     def arrays(self) -> dict[str, np.ndarray]:
         """The arrays of `JOINT_ARRAYS`."""
-        table, x, rate = self._robot.table, self._of("x"), self._of("rate")
-        joints, soft = np.flatnonzero(table.degree == HINGE), np.flatnonzero(table.degree != HINGE)
-        coordinate = joints.copy()  # of each joint's motor
-        torque = self._of("pushing")[:, joints].copy()
-        place = {mode: index for index, mode in enumerate(joints.tolist())}
-        for column, motor in enumerate(self._robot.motors):
-            coordinate[place[motor.mode]] = motor.coordinate
-            torque[:, place[motor.mode]] += self._of("torque")[:, column]
+        table, x, rate = self._table, self._of("x"), self._of("rate")
+        coordinate = np.arange(len(table))  # of each mode's motor
+        torque = self._of("pushing")[:, coordinate].copy()
+        for column, (_, mode, own) in enumerate(table.motors):
+            coordinate[mode] = own
+            torque[:, mode] += self._of("torque")[:, column]
         on_joint = torque.copy()
-        for servo, mode, own in self._robot.sprung:
+        for servo, mode, own in table.sprung:
             between, slip = x[:, own] - x[:, mode], rate[:, own] - rate[:, mode]
-            on_joint[:, place[mode]] = servo.series_stiffness * between + servo.series_damping * slip
-        sign = table.sign[joints]
+            on_joint[:, mode] = servo.series_stiffness * between + servo.series_damping * slip
+        joints, soft = np.flatnonzero(table.joints), np.flatnonzero(~table.joints)
+        sign, motors, torque = table.sign[joints], coordinate[joints], torque[:, joints]
         return {
             "joint_angle": x[:, joints] * sign + 0.0,
             "joint_rate": rate[:, joints] * sign + 0.0,
-            "joint_torque": on_joint * sign + 0.0,
-            "motor_angle": x[:, coordinate] * sign + 0.0,
+            "joint_torque": on_joint[:, joints] * sign + 0.0,
+            "motor_angle": x[:, motors] * sign + 0.0,
             "motor_torque": torque * sign + 0.0,
-            "motor_power": torque * rate[:, coordinate],
+            "motor_power": torque * rate[:, motors],
             "mode_amplitude": x[:, soft],
             "mode_rate": rate[:, soft],
         }
