@@ -52,7 +52,7 @@ BUDGET_TARGETS = tuple(10.0 ** (-0.5 * k) for k in range(2, 19))  # 0.1 to 1e-9,
 FIXED = "fixed steps"
 ROBOTS = "rosenbrock"  # the method of robots, whatever was asked for
 KINKS = tuple(WATCHED)
-ORDERS = {"adams": (1, 2, 3, 4, 5, 6), "dormand_prince": (5,), "classical": (4,)}
+ORDERS = {"adams": (1, 2, 3, 4, 5, 6), "dormand_prince": (5,), "classical": (4,), ROBOTS: (3,)}
 FINEST_TOLERANCE = 1e-13  # below, round-off
 LONGEST_STEP = 0.1  # of the shortest time over which the shape changes. The works are integrals over it
 ANY = 30.0  # resolution until the scene is known
@@ -76,7 +76,6 @@ FINE, LOOSER_THAN_FINE = 1e-6, 20.0
 # still: where motors and stops reach their limits, it may be as exact as the run by chance.
 ROBOT_LOOSER, ROBOT_SAFETY = 10.0, 4.5
 LEAST_ROBOT_TIGHTER = 1.0 / 4.0
-ORDERS[ROBOTS] = (3,)
 ADAMS_ERROR = 3.0  # some times that of the embedded pair at the same tolerance
 # What a tightened run changes with the ratio r < 1 of the wanted error to the measured one: the tolerance with r^1.2,
 # the points with r^-0.2, the longest steps with r^0.2. Orders 5 to 6 lose r or more in each of them.
@@ -256,12 +255,6 @@ class Accuracy:
             fixed=self.fixed and self.fixed / longer,
             target=None,
         )
-
-    @staticmethod
-    def to_refine(value: "str | float | Accuracy | Budget") -> "Accuracy":
-        """As `of`, for a run that is made finer where it misses its target."""
-        accuracy = Accuracy.of(value)
-        return replace(accuracy, refinable=True) if getattr(accuracy, "target", None) else accuracy
 
     @staticmethod
     def of(value: "str | float | Accuracy | Budget") -> "Accuracy":

@@ -2,7 +2,6 @@
 """A budget of time in place of an accuracy: "fastest within 5 ms per second", on this machine."""
 
 import re
-from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from eel_base.wording import shown
@@ -32,22 +31,3 @@ class Budget:
                 f"got {shown(text)}"
             )
         return Budget(text.strip(), seconds)
-
-    def finest(self, targets: Iterable[float], seconds_per_second: Callable[[float], float]) -> float:
-        """The finest of the `targets` whose swim keeps within the budget. `ValueError` where none does.
-
-        targets: relative errors, the coarsest first. seconds_per_second(target): wall time [s] per simulated second.
-        """
-        best, fastest = None, float("inf")
-        for target in targets:
-            seconds = seconds_per_second(target)
-            fastest = min(fastest, seconds)
-            if seconds > self.seconds_per_second:
-                break
-            best = target
-        if best is None:
-            raise ValueError(
-                f"accuracy {shown(self.name)} cannot be met on this machine in this scene: the coarsest run takes "
-                f"{1e3 * fastest:.3g} ms per second"
-            )
-        return best

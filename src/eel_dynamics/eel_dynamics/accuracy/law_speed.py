@@ -6,7 +6,6 @@ Strokes are root mean squares over the sections about the body's mean place, as 
 
 import math
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 from eel_gaits.laws.law import Law
@@ -18,33 +17,17 @@ from eel_dynamics.accuracy.law_waves import groups_of
 POINTS = 64  # along the body
 
 
-class GroupMotion(NamedTuple):
-    """Root mean square stroke [body lengths] of the terms of one group.
-
-    time [s]: the period or, where the group moves `once`, the duration of a ramp.
-    """
-
-    stroke_rms: float
-    time: float
-    once: bool
-
-
+@lru_cache(maxsize=4096)
 def speed_of(law: Law, length: float) -> float:
     """Order of magnitude of the speed [m/s] that `law` gives to a body of `length` [m]."""
-    return length * math.hypot(*(each.stroke_rms / each.time for each in motions_of(law, length)))
-
-
-@lru_cache(maxsize=4096)
-def motions_of(law: Law, length: float) -> tuple[GroupMotion, ...]:
-    """Motions of the terms of `law` on a body of `length` [m], grouped by axis, period and envelope."""
-    found = []
+    speeds = []  # body lengths per second, of the terms of one axis, period and envelope together
     for (_, period, envelope), terms in groups_of(law).items():
-        stroke_rms = math.sqrt(0.5 * _moved(tuple(terms), period > 0.0, length)) / length * height_of(envelope)
+        stroke = math.sqrt(0.5 * _moved(tuple(terms), period > 0.0, length)) / length * height_of(envelope)
         if period > 0.0:
-            found.append(GroupMotion(2.0 * math.pi * stroke_rms, period, False))
-        elif envelope:
-            found.append(GroupMotion(2.0 * stroke_rms, min(ramp.end - ramp.start for ramp in envelope), True))
-    return tuple(found)
+            speeds.append(2.0 * math.pi * stroke / period)
+        elif envelope:  # once, while a ramp lasts
+            speeds.append(2.0 * stroke / min(ramp.end - ramp.start for ramp in envelope))
+    return length * math.hypot(*speeds)
 
 
 @lru_cache(maxsize=4096)

@@ -33,18 +33,14 @@ def waveform(term: Term) -> tuple:
     return term.amplitude, term.knots, term.wave_number, term.phase
 
 
-def waves_of_law(law: Law, length: float) -> float:
-    """The largest number of waves into which a law bends a body of `length` [m].
+@lru_cache(maxsize=4096)
+def _waves(waveforms: tuple, length: float) -> float:
+    """The largest number of waves into which terms (axis, waveform) bend a body of `length` [m].
 
     A spline counts as an eighth of its intervals. An amplitude counts as the waves that it has itself, where they are
     shortest. A turn of the backbone is a wave too, because its direction goes once around. The turns are those of the
     term that turns it most, or three quarters of those of all terms together where the body is bent most.
     """
-    return _waves(tuple((term.axis, waveform(term)) for term in law.terms), length)
-
-
-@lru_cache(maxsize=4096)
-def _waves(waveforms: tuple, length: float) -> float:
     waves = [length * abs(wave_number) / (2.0 * np.pi) for _, (_, _, wave_number, _) in waveforms]
     waves += [(len(knots) - 1) / 8.0 for _, (_, knots, _, _) in waveforms]
     waves += [_wiggles(amplitude, knots, length) for _, (amplitude, knots, _, _) in waveforms]
@@ -78,7 +74,7 @@ def check_law(law: Law, length: float) -> float:
     `ValueError` for a law with more waves than any grid carries, or with a ramp so short that it is a jump.
     """
     with np.errstate(over="ignore", invalid="ignore"):
-        waves = waves_of_law(law, length)
+        waves = _waves(tuple((term.axis, waveform(term)) for term in law.terms), length)
     if not waves <= MOST_WAVES:
         raise ValueError(
             f"law {shown(law.name)} bends the body into {waves:.3g} waves or turns: at most {MOST_WAVES:g} can be "

@@ -33,11 +33,8 @@ PART_OF_SPAN = 0.25
 # This part holds instead where there is a ledger. Most of the energy that a sudden ramp puts in comes back, and little
 # may be left over.
 PART_OF_RAMP = 0.125
-
-
-EVALUATIONS = {"adams": 1, "dormand_prince": 6, "classical": 4}  # in a step: its last is the first of the next
-
-EVALUATIONS["rosenbrock"] = 4  # of robots
+# In a step: its last is the first of the next.
+EVALUATIONS = {"adams": 1, "dormand_prince": 6, "classical": 4, "rosenbrock": 4}
 
 
 def check_cost(law: Law, most_evaluations: float):
@@ -65,7 +62,7 @@ def step_bounds_of(
     speed: float,
     scale: float,
     most_evaluations: float,
-    law_scale: float = math.inf,
+    law_scale: float,
 ) -> eel_core.StepBounds:
     """The bounds of the steps for a body of `length` [m] and `mass` [kg] on a grid of `nodes`.
 

@@ -24,6 +24,7 @@ from eel_base.attitude import world_from_body
 from eel_model.axes import REP103
 
 from eel_dynamics.analysis.analysis import STILL, Analysis
+from eel_dynamics.simulation.energy import WORKS
 
 LEAST_SLENDERNESS = 5.0
 LEAST_REYNOLDS = 1e3
@@ -165,15 +166,7 @@ class ModelLimits:
         The energy is the greatest sum of energies and works at the samples; it misses what comes and goes
         between two samples, as in a sudden ramp.
         """
-        works = (
-            energy.actuator_work,
-            energy.wake_work,
-            energy.nose_work,
-            energy.drag_work,
-            energy.flow_work,
-            energy.fins_work,
-        )
-        signed = energy.potential, *works
+        signed = energy.potential, *(getattr(energy, f"{part}_work") for part in WORKS)
         passed = np.max(energy.kinetic_body + energy.kinetic_fluid + sum(np.abs(each) for each in signed), initial=0.0)
         residual = np.max(np.abs(energy.residual), initial=0.0)
         if passed <= floor or residual <= most * passed:

@@ -81,10 +81,6 @@ class CurvatureSample(NamedTuple):
         """Whether the other sample holds the same numbers."""
         return self.time == other.time and np.array_equal(self.x, other.x) and np.array_equal(self.values, other.values)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> "CurvatureSample":
-        """The same object, because it never changes."""
-        return self
-
 
 @lru_cache(maxsize=64)
 def _checked_x(content: bytes, length: float) -> np.ndarray:
@@ -128,6 +124,9 @@ class SampleQueue:
         """The rows of a `law`, whose own t = 0 lies at `origin` [s]."""
         rows = zip((origin + law.time).tolist(), repeat(law.x), law.values, repeat(waves_of_rows(law)), strict=False)
         return SampleQueue([CurvatureSample(*row) for row in rows], law.name)
+
+    def __copy__(self) -> "SampleQueue":
+        return SampleQueue(self._samples.copy(), self._law_name)
 
     def __len__(self) -> int:
         return len(self._samples)

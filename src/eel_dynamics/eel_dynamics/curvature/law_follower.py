@@ -16,7 +16,7 @@ from eel_gaits.sources.sampled_law import SampledLaw
 import eel_core
 from eel_dynamics.accuracy.law_speed import speed_of
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, SampleQueue
-from eel_dynamics.curvature.tabulated_law import TabulatedLaw, Tabulation
+from eel_dynamics.curvature.tabulated_law import SEGMENT_AXES, TabulatedLaw, Tabulation
 
 DEFAULT_TRANSITION = 1.0  # s
 
@@ -203,7 +203,7 @@ class LawFollower:
         start = self._last[1] if self._last is not None and self._last[0] is first else self._tabulated(first)
         self._last = second, self._tabulated(second)
         rows = np.concatenate((start, self._last[1]), axis=1)  # axis; value and its derivatives at both
-        return TabulatedLaw.between(rows.reshape(12, -1), first.time, second.time)
+        return TabulatedLaw(rows.reshape(12, -1), SEGMENT_AXES, segment=(first.time, second.time))
 
     def _tabulated(self, sample: CurvatureSample) -> np.ndarray:
         """Rows (2, 3, width) of a sample."""

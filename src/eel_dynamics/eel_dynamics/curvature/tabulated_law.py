@@ -75,10 +75,6 @@ class Tabulation:
         """Tabulated rows (n, width) of the natural cubic splines that are 1 at one of the `points` (n,) [m] each."""
         return np.ascontiguousarray(self.columns(natural_spline(points, np.eye(len(points)), self.x)))
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> "Tabulation":
-        """The same object, because it never changes."""
-        return self
-
     def law_tables(self, rows: np.ndarray, axis: Any) -> eel_core.LawTables:
         """Tabulated `rows` (m, width) of the axes `axis` (m,) (0 pitch, 1 yaw), for the compiled mechanics."""
         rows = np.ascontiguousarray(rows[:, : self.width - self.further])
@@ -97,9 +93,6 @@ class TabulatedLaw(NamedTuple):
     law: Law | None = None  # that was tabulated
     ramp_ends: tuple[float, ...] = ()  # s of the law's own time, where ramps begin and end
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> "TabulatedLaw":
-        return self
-
     @staticmethod
     def of_law(law: Law | None, origin: float, tabulation: Tabulation) -> "TabulatedLaw":
         """Tabulate `law`, whose own t = 0 lies at `origin` [s]."""
@@ -109,12 +102,6 @@ class TabulatedLaw(NamedTuple):
     def constant(value: np.ndarray) -> "TabulatedLaw":
         """A shape that does not move. value (2, width): its rows in pitch and yaw."""
         return TabulatedLaw(np.array(value), np.arange(2), waves=tuple((0.0, (), row, row) for row in range(2)))
-
-    @staticmethod
-    def between(rows: np.ndarray, start: float, end: float) -> "TabulatedLaw":
-        """The quintic between two samples of a controller from `start` to `end` [s]. rows (12, width): for each axis
-        value, rate and acceleration at both."""
-        return TabulatedLaw(rows, SEGMENT_AXES, segment=(start, end))
 
     @property
     def breakpoints(self) -> tuple[float, ...]:

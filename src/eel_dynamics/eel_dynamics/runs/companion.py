@@ -16,9 +16,10 @@ import numpy as np
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.scene import ROUGH_FRICTION, Scene
 
-from eel_dynamics.accuracy.accuracy import OTHER_GRIDS, Accuracy
+from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import SMALL, ErrorEstimate, growth_rate_of, least_torque
 from eel_dynamics.analysis.peaks import torque_size
+from eel_dynamics.simulation.error_meter import on_another_grid
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 ACCEPTED = 1.5  # factor of the target by which an estimate must lie below it
@@ -137,17 +138,9 @@ def _without_ledger(scene: Scene) -> Scene:
 
 
 def _finished(request, accuracy: Accuracy, nodes: int | None = None):
-    """The swim with the settings `accuracy`; None where it does not come to its end.
-
-    Where these would give a grid of so many `nodes`, as that of another run, there are more points (nodes fill blocks).
-    """
+    """The swim with these settings, on a grid of other than `nodes`; None where it does not come to its end."""
     try:
-        march = request.march(accuracy)
-        for _ in range(OTHER_GRIDS):
-            if len(march.discretisation.grid.x) != nodes:
-                break
-            accuracy = accuracy.with_other_points()
-            march = request.march(accuracy)
+        march = on_another_grid(request.march, accuracy, nodes)
     except (SimulationStopped, ValueError):  # a law that cannot be begun
         return None
     try:

@@ -11,7 +11,7 @@ from eel_base.quantity import is_finite, number, positive
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 
-from eel_dynamics.simulation.observations import size_of
+from eel_dynamics.simulation.observations import places_of
 
 MOST_SAMPLES = 10_000_000  # of a run: the motion alone takes gigabytes
 SAMPLE_PERIOD = 0.05  # s, where the gait is no faster than a period of 1 s
@@ -54,7 +54,7 @@ def checked_times(duration: Any, sample_period: Any) -> np.ndarray:
 
 def check_memory(swimmers: int, samples: int, stations: int, wrench: bool, load: bool, runs: int = 1) -> None:
     """`ValueError` if the profiles of so many `runs` of each swimmer would not fit into memory."""
-    needed = 8.0 * runs * swimmers * size_of(samples, stations, wrench, load)
+    needed = 8.0 * runs * swimmers * places_of(samples, stations, wrench, load)[1]
     there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") * MOST_MEMORY
     if needed > there:
         raise ValueError(

@@ -84,9 +84,11 @@ class SwimRequest(NamedTuple, Generic[Kind]):
         The torque of a robot jumps where motors and stops reach their limits: an error there is seen only by instants
         that lie close together.
         """
-        gaps = len(self.times) - 1
+        gaps, accuracy = len(self.times) - 1, self.setup.accuracy
         every = -(-LEAST_COMPARED // gaps) if self.setup.robot is not None and self.wrench and gaps else 1
-        return self.changed(accuracy=Accuracy.to_refine(self.setup.accuracy))._replace(estimate=True, every=every)
+        if isinstance(accuracy, Accuracy) and accuracy.target:
+            accuracy = replace(accuracy, refinable=True)
+        return self.changed(accuracy=accuracy)._replace(estimate=True, every=every)
 
     @property
     def instants(self) -> np.ndarray:

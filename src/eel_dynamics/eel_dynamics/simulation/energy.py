@@ -21,7 +21,7 @@ are part of kinetic_body. elastic is the energy of its springs, damping_power th
 are 0 without one.
 """
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import Annotated, Any
 
 import numpy as np
@@ -77,15 +77,9 @@ class EnergyLedger(EqualByFields):
         actuators, wake, nose, drag, flow and fins. start [J]: the sum of the energies at the start. robot (T, 3):
         elastic energy [J], power [W] and work [J] of the dampers; None: 0. Of an instant without the dimension T.
         """
-        if robot is not None:
-            elastic, damping_power, damping_work = robot.T
-            ledger = EnergyLedger.of(energies, powers, works, start)
-            residual = ledger.residual + elastic - damping_work
-            more = {"elastic": elastic, "damping_power": damping_power, "damping_work": damping_work}
-            return replace(ledger, residual=residual, **more)
-        if energies.ndim == 1:  # an instant, for a node at real time
-            energies, powers, works = energies.tolist(), powers.tolist(), works.tolist()
-            return EnergyLedger(*(*energies, *powers, sum(energies) - start - sum(works), *works, 0.0, 0.0, 0.0))
-        residual = energies.sum(axis=1) - start - works.sum(axis=1)
-        none = np.zeros(residual.shape)
-        return EnergyLedger(*(*energies.T, *powers.T, residual, *works.T, none, none, none))
+        instant, robot = energies.ndim == 1, np.zeros((*energies.shape[:-1], 3)) if robot is None else robot
+        energies, powers, works, (elastic, damping_power, damping_work) = (
+            each.tolist() if instant else each.T for each in (energies, powers, works, robot)
+        )
+        residual = sum(energies) - start - sum(works) + elastic - damping_work
+        return EnergyLedger(*(*energies, *powers, residual, *works, elastic, damping_power, damping_work))

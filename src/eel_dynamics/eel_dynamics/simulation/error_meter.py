@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from eel_dynamics.accuracy.accuracy import OTHER_GRIDS
+from eel_dynamics.accuracy.accuracy import OTHER_GRIDS, Accuracy
 from eel_dynamics.accuracy.error_estimate import (
     LEAST_SAMPLES,
     SMALL,
@@ -30,6 +30,20 @@ COMPARED_EVERY = 0.1  # s of simulated time between two comparisons
 ROUND_OFF = 1e-9  # part of it
 REMEMBERED = 300  # comparisons from which the growth rate is taken: those of the last 30 s
 FAILURES = SimulationStopped, ValueError, ArithmeticError, MemoryError
+
+
+def on_another_grid(begun: Callable[[Accuracy], March], settings: Accuracy, nodes: int | None) -> March:
+    """The march that is `begun(settings)`; with more points along the body where its grid would have so many `nodes`.
+
+    nodes: of another march's grid. They fill blocks, so that a few more points may give the same grid.
+    """
+    march = begun(settings)
+    for _ in range(OTHER_GRIDS):
+        if len(march.discretisation.grid.x) != nodes:
+            break
+        settings = settings.with_other_points()
+        march = begun(settings)
+    return march
 
 
 class ErrorMeter:
@@ -64,20 +78,15 @@ class ErrorMeter:
         self._distances.clear()
         if not self.wanted:
             return
+
+        def companion(settings: Accuracy) -> March:
+            return march.copy_with(replace(march.setup, accuracy=settings))
+
         try:
             settings = march.setup.settings.coarser()
-            self._companion = march.copy_with(replace(march.setup, accuracy=settings))
-            for _ in range(OTHER_GRIDS):
-                if not self._has_same_grid(march):
-                    break
-                settings = settings.with_other_points()
-                self._companion = march.copy_with(replace(march.setup, accuracy=settings))
+            self._companion = on_another_grid(companion, settings, len(march.discretisation.grid.x))
         except FAILURES:
             self._companion = None
-
-    def _has_same_grid(self, march: March) -> bool:
-        there = self._companion
-        return there is not None and len(there.discretisation.grid.x) == len(march.discretisation.grid.x)
 
     # -- the companion does what the march does
 
@@ -100,7 +109,8 @@ class ErrorMeter:
 
     def keep_apart(self, march: March):
         """After a change of the law: the companion begins again where its grid is that of the `march`."""
-        if self._has_same_grid(march):
+        there = self._companion
+        if there is not None and len(there.discretisation.grid.x) == len(march.discretisation.grid.x):
             self.begin_again(march)
 
     # -- comparisons

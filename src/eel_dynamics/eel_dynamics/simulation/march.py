@@ -7,11 +7,12 @@ A robot, whose joints, tails and muscles bend by themselves, takes the steps of 
 
 import threading
 from collections.abc import Callable
-from copy import deepcopy
+from copy import copy, deepcopy
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.fins.fins import given_angles
@@ -21,7 +22,6 @@ from eel_model.robot.robot import Robot
 
 import eel_core
 from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
-from eel_dynamics.accuracy.step_bounds import step_bounds_of
 from eel_dynamics.curvature.law_follower import LawFollower
 from eel_dynamics.simulation.bending.joint_motion import JointMotion
 from eel_dynamics.simulation.bending.modes_on_grid import ModesOnGrid
@@ -34,7 +34,6 @@ from eel_dynamics.simulation.stopping import (
     by_part,
     first_bad_sample,
     left_grid,
-    not_begun,
     outside_flow,
     remedy,
     stopped_by,
@@ -57,6 +56,7 @@ class March:
         settings: of the grid.
         discretisation: body and scene on the grid.
         robot: its modes on the grid; None without one.
+        joints: as of `Simulation.joints`.
         follower: what drives the shape, and its blends.
         law_on_grid: the law or the samples in force, on the grid.
         energy_at_start: [J], kinetic and potential.
@@ -77,7 +77,7 @@ class March:
         wanted = setup.grid_for(self._needs)
         self.core = eel_core.March(*self._on_grid(wanted if settings is None else settings.at_least(wanted)))
         self._places = self.core.row
-        self._rows = self._empty_rows(0)  # (T, R), the numbers of a robot's coordinates in the last `record`
+        self.joints: JointMotion | None = None
         self.follower = LawFollower(self.discretisation.tabulation, setup.default_transition, law, origin)
         self._hand_over_law()
         position, orientation, _ = setup.initial_state
@@ -86,7 +86,14 @@ class March:
         if not np.isfinite(self.energy_at_start):
             stopped = SimulationStopped(0.0, "kinetic energy", self.energy_at_start, "start slower")
             stopped = stopped_in_flow(setup.flow, self.core, 0.0) or stopped
-            raise stopped if law is None else not_begun(law, stopped)
+            raise stopped if law is None else ValueError(f"law {shown(law.name)} cannot be begun: {stopped.quantity}")
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> "March":
+        """What never changes is shared."""
+        copied = copy(self)
+        copied.core, copied.follower = copy(self.core), copy(self.follower)
+        copied.follower.samples = copy(self.follower.samples)
+        return copied
 
     def copy_with(self, setup: SimulationSetup) -> "March":
         """A copy in the present state, on a grid for the accuracy of `setup`, which differs in that or in its robot."""
@@ -161,28 +168,14 @@ class March:
         """Continue under the follower's law. The next step begins anew, unless the motion goes on `smoothly`."""
         setup, follower = self.setup, self.follower
         law = self.law_on_grid = follower.law_on_grid
-        self._bounds, breakpoints = self._step_bounds(), sorted({*follower.breakpoints, *setup.breakpoints})
+        scale, speed = min(follower.time_scale, self._time_scale), follower.speed(setup.body.length)
+        self._bounds = self.discretisation.step_bounds(setup, follower.between_samples, scale, speed)
+        breakpoints = sorted({*follower.breakpoints, *setup.breakpoints})
         if self.robot is not None:
             law, self._reference = self.robot.law(follower, self.discretisation.tabulation)
         steps, water = (breakpoints, self._bounds, bool(setup.scene.ledger)), (setup.current, setup.core_flow)
         angles = given_angles(setup.fins, self._commands)
         self.core.follow(law, *steps, *water, smoothly, angles, self._reference)
-
-    def _step_bounds(self) -> eel_core.StepBounds:
-        setup, follower, here = self.setup, self.follower, self.discretisation
-        of_law = min(follower.time_scale, self._time_scale)
-        return step_bounds_of(
-            accuracy=setup.settings,
-            ledger=bool(setup.scene.ledger),
-            between_samples=follower.between_samples,
-            nodes=len(here.grid.x),
-            mass=here.mass,
-            length=setup.body.length,
-            speed=follower.speed(setup.body.length),
-            scale=min(of_law, here.weight_time, setup.time_scale_of_surroundings),
-            most_evaluations=setup.most_evaluations,
-            law_scale=of_law,
-        )
 
     # -- march
 
@@ -222,7 +215,8 @@ class March:
         """As `Simulation.record`."""
         out = Observations(len(times), len(self.setup.x), wrench, load, len(self.setup.fins))
         works, done, status = np.zeros((len(times), len(WORKS))), 0, MARCHED
-        self._rows = rows = self._empty_rows(len(times))
+        rows = self._empty_rows(len(times))
+        self.joints = joints = self._joints(rows)
         alone = look is None and threading.current_thread() is not threading.main_thread()
         cut = self.core.set_slice(UNCUT) if alone else None  # no signal arrives, returns wait for Python's lock
         while status == MARCHED and done < len(times):
@@ -239,7 +233,7 @@ class March:
         checked = bool(self.setup.scene.ledger) and self.setup.settings.method == "classical"
         still = self._bounds.momentum_floor
         floor = still * still / self.discretisation.mass if checked else np.inf
-        ledger = None if self.joints is None else self.joints.ledger
+        ledger = None if joints is None else joints.ledger
         failure = first_bad_sample(out, works, done, self.energy_at_start, floor, ledger)
         done = failure[0] if failure else done
         if done:
@@ -256,11 +250,6 @@ class March:
         return stopped if self.robot is None else by_part(stopped, self.core, self.robot.table, status == SINGULAR)
 
     # -- the present
-
-    @property
-    def joints(self) -> JointMotion | None:
-        """As `Simulation.joints`."""
-        return self._joints(self._rows) if len(self._rows) else None
 
     def _joints(self, rows: np.ndarray) -> JointMotion | None:
         return None if self.robot is None else JointMotion(self.robot.table, self._places, rows)

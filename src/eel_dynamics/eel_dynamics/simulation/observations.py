@@ -83,7 +83,7 @@ class Observations:
     def __init__(self, samples: int | None, stations: int, wrench: bool = True, load: bool = True, fins: int = 0):
         """Space for `samples` instants at `stations` stations, and if wanted for the internal wrench and the water's
         load. samples: None for one instant."""
-        self.places, size = _places(samples, stations, bool(wrench), bool(load), fins)
+        self.places, size = places_of(samples, stations, bool(wrench), bool(load), fins)
         self.whole = np.zeros(size)
 
     def __eq__(self, other: object) -> bool:
@@ -161,13 +161,8 @@ class Snapshot(Observations):
         return None if self.torque is None else float(self.closure[1])
 
 
-def size_of(samples: int, stations: int, wrench: bool, load: bool) -> int:
-    """How many numbers the profiles of so many samples and stations hold."""
-    return _places(samples, stations, bool(wrench), bool(load))[1]
-
-
 @lru_cache(maxsize=64)
-def _places(samples: int | None, stations: int, wrench: bool, load: bool, fins: int = 0) -> tuple[Places, int]:
+def places_of(samples: int | None, stations: int, wrench: bool, load: bool, fins: int = 0) -> tuple[Places, int]:
     """The places of all quantities, and how many numbers these hold."""
     places: Places = {}
     end = 0

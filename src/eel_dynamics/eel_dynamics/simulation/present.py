@@ -116,8 +116,7 @@ class Present:
     @property
     def joints(self) -> JointMotion | None:
         """The motion of a robot's joints at the samples of the last `record`; None without one."""
-        joints: JointMotion | None = self._march.joints
-        return joints
+        return self._march.joints
 
     @property
     def energy_at_start(self) -> float:

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 import eel_core
 from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
-from eel_dynamics.accuracy.step_bounds import step_bounds_of
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 from eel_dynamics.simulation.discretisation import discretise
@@ -70,7 +69,7 @@ class SampledSwimmers:
         )
         self.heads: Array = np.zeros((13, count))
         self._energy_at_start = np.zeros(count)
-        self._bounds = [self._bounds_of(setup)] * count
+        self._bounds = [self._discretisation.step_bounds(setup, True, setup.time_scale)] * count
 
     def check(self, rows: Array) -> CurvatureSample:
         """A sample with these `rows` (6, n); `ValueError` for one that `Simulation.add_samples` refuses."""
@@ -90,7 +89,7 @@ class SampledSwimmers:
         setup = self.setup.starting(position, orientation, twist, flow)
         if flow is not None:
             self._check_flow(flow)
-        self._bounds[index] = bounds = self._bounds_of(setup)
+        self._bounds[index] = bounds = self._discretisation.step_bounds(setup, True, setup.time_scale)
         place, turn, _ = setup.initial_state
         energy = self._marches.start(index, bounds, place, turn, setup.initial_twist, rows, setup.core_flow)
         if not (np.isfinite(energy) and self._marches.put_head(index, self.heads)):
@@ -143,17 +142,3 @@ class SampledSwimmers:
 
     def _stopped(self, index: int, status: int) -> SimulationStopped:
         return stopped_by(status, self._marches.present(index)[0], self._bounds[index], self.accuracy)
-
-    def _bounds_of(self, setup: SimulationSetup) -> eel_core.StepBounds:
-        """The bounds of the steps of a swimmer that starts as its `setup` has it."""
-        return step_bounds_of(
-            accuracy=self.accuracy,
-            ledger=bool(self.setup.scene.ledger),
-            between_samples=True,
-            nodes=len(self.grid.x),
-            mass=self._discretisation.mass,
-            length=self.setup.body.length,
-            speed=0.0,
-            scale=min(setup.time_scale, self._discretisation.weight_time, setup.time_scale_of_surroundings),
-            most_evaluations=setup.most_evaluations,
-        )

@@ -13,8 +13,6 @@ from typing import Any
 
 import numpy as np
 from eel_base.wording import WorkStopped, shown
-from eel_gaits.laws.law import Law
-from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.flow.flow import Flow
 from eel_model.robot.compiled import ModeTable
 
@@ -100,11 +98,6 @@ def remedy(accuracy: Accuracy) -> str:
     if accuracy.fixed is not None:
         return "take the accuracy without fixed steps, or a gentler law"
     return "take a gentler law, or start slower"
-
-
-def not_begun(law: Law | SampledLaw, stopped: SimulationStopped) -> ValueError:
-    """The error for a swim by `law` that cannot begin, with the quantity that `stopped` it."""
-    return ValueError(f"law {shown(law.name)} cannot be begun: {stopped.quantity}")
 
 
 def first_bad_sample(

@@ -6,7 +6,7 @@ import time as clock
 from dataclasses import replace
 from functools import cache
 
-from eel_base.wording import one_line
+from eel_base.wording import one_line, shown
 from eel_gaits.gaits.diving import falling
 from eel_gaits.gaits.swimming import straight
 from eel_gaits.laws.law import Law
@@ -23,14 +23,21 @@ def affordable(setup: SimulationSetup) -> SimulationSetup:
 
     They have no target: the error of such a run is measured, and not compared with one. `ValueError` if none do.
     """
-    if not isinstance(setup.accuracy, Budget):
+    budget, best = setup.accuracy, None
+    if not isinstance(budget, Budget):
         return setup
-
-    def exact(target: float) -> SimulationSetup:
-        return replace(setup, accuracy=Accuracy.of(target).in_scene(setup.scene).as_it_is())
-
-    best = exact(setup.accuracy.finest(BUDGET_TARGETS, lambda target: swim_time(exact(target))))
-    return replace(best, accuracy=replace(best.accuracy, name=setup.accuracy.name))
+    for target in BUDGET_TARGETS:  # the coarsest first
+        settings = Accuracy.of(target).in_scene(setup.scene).as_it_is()
+        seconds = swim_time(replace(setup, accuracy=settings))
+        if seconds > budget.seconds_per_second:
+            break
+        best = settings
+    if best is None:
+        raise ValueError(
+            f"accuracy {shown(budget.name)} cannot be met on this machine in this scene: the coarsest run takes "
+            f"{1e3 * seconds:.3g} ms per second"
+        )
+    return replace(setup, accuracy=replace(best, name=budget.name))
 
 
 @cache
