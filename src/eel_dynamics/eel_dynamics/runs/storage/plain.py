@@ -78,39 +78,27 @@ def law_of(plain: dict[str, Any]) -> Law | SampledLaw:
 
 
 def _plain_body(body: Body) -> dict[str, Any]:
-    plain = body.arguments
-    for name in HALF_AXES:
-        value = plain[name]
+    plain, bounds = body.arguments, (0.0, *body.panel_ends)
+    for name, value in plain.items():
         if isinstance(value, np.ndarray):
             plain[name] = value.tolist()
-            continue
-        kind = next((kind for kind, each in FUNCTIONS.items() if type(value) is each), None)
-        if kind is None:
-            kind, value = "polynomial", _polynomial(body, name)
-        plain[name] = {"kind": kind, **asdict(value)}
-    for name in MASSES:
-        value = plain[name]
-        if isinstance(value, np.ndarray):
-            plain[name] = value.tolist()
-        elif callable(value):
-            bounds = (0.0, *body.panel_ends)
+        elif name in HALF_AXES:
+            kind = next((kind for kind, each in FUNCTIONS.items() if type(value) is each), None)
+            function = _polynomial(body, name) if kind is None else value
+            plain[name] = {"kind": kind or "polynomial", **asdict(function)}
+        elif name in MASSES and callable(value):
             plain[name] = asdict(PolynomialAlong(bounds, coefficients_of(getattr(body, name), bounds)))
-    if "x" in plain:
-        plain["x"] = plain["x"].tolist()
     return plain
 
 
 def body_of(plain: dict[str, Any]) -> Body:
     """The body that has become plain values."""
     arguments = dict(plain)
-    for name in HALF_AXES:
-        if isinstance(plain[name], dict):
-            given = dict(plain[name])
-            kind = FUNCTIONS[given.pop("kind")]
-            arguments[name] = kind(**{key: _tuples(value) for key, value in given.items()})
-    for name in MASSES:
-        if isinstance(plain.get(name), dict):
-            arguments[name] = PolynomialAlong(**{key: _tuples(value) for key, value in plain[name].items()})
+    for name in (*HALF_AXES, *MASSES):
+        if isinstance(given := plain.get(name), dict):
+            numbers = {key: _tuples(value) for key, value in given.items() if key != "kind"}
+            kind = FUNCTIONS[given["kind"]] if name in HALF_AXES else PolynomialAlong
+            arguments[name] = kind(**numbers)
     return Body(**arguments)
 
 
