@@ -123,11 +123,16 @@ def test_a_current_is_followed_held_when_it_stops_and_told(start, client):
     rates = np.diff(water[:, 1:], axis=0) / np.diff(water[:, :1], axis=0)
     assert np.abs(rates).max() < 1.5 * 0.2 / 0.1  # no jump: what is left at the second sample is caught up by a cubic
     followed = water[(water[:, 0] > 1.0) & (water[:, 0] < sent[-1])]
-    assert np.abs(followed[:, 2] - 0.1 * followed[:, 0]).max() < 0.05
+    behind = np.diff(sent).max() + 0.4  # s; 0.1 s are meant to lie between two samples, a busy machine sends them later
+    assert np.abs(followed[:, 2] - 0.1 * followed[:, 0]).max() < 0.1 * behind
     twist = swim.received["head_twist"][-1].twist.linear
     assert np.allclose([twist.x, twist.y, twist.z], water[-1, 1:], atol=0.01)
-    sensor.send((0.0, 0.0, 0.0), stopped + 0.3)
-    node.wait_for_output("current is back", LIMIT)
+
+    def back():
+        sensor.send((0.0, 0.0, 0.0), seconds(swim.received["head_pose"][-1]))  # best-effort: one may be lost
+        return "current is back" in node.output()
+
+    swim.until(back, "the current's return")
 
 
 def test_a_current_in_another_frame_or_with_nan_is_left_out(start, client):

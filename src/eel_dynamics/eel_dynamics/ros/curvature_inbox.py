@@ -33,6 +33,7 @@ class CurvatureInbox:
         self._guard = node.create_guard_condition(lambda: None, self._group)
         self._subscriptions: tuple[Any, ...] = ()
         self._wait_set: Any = None
+        self._waited_for: tuple[Any, ...] = ()  # the subscriptions that it is made for
         self._subscribe(reliable=True)
 
     def look(self) -> None:
@@ -45,7 +46,7 @@ class CurvatureInbox:
     def _subscribe(self, reliable: bool) -> None:
         quality = keep_all(reliable=reliable)
         made = self._node.create_subscription(CurvatureSamples, TOPIC, print, quality, callback_group=self._group)
-        self._subscriptions, self._wait_set = (*self._subscriptions, made), None
+        self._subscriptions = *self._subscriptions, made
         self.set()
 
     # In the run loop's thread.
@@ -74,9 +75,9 @@ class CurvatureInbox:
 
     def wait(self, seconds: float) -> bool:
         """Sleep until samples have come or `set` was called, at most `seconds`; whether one of them was the reason."""
-        subscriptions = self._subscriptions
-        if self._wait_set is None:
-            sizes = len(subscriptions), 1, 0, 0, 0, 0
+        subscriptions = self._subscriptions  # the node's thread may add one at any moment
+        if self._waited_for is not subscriptions:
+            self._waited_for, sizes = subscriptions, (len(subscriptions), 1, 0, 0, 0, 0)
             self._wait_set = rclpy_implementation.WaitSet(*sizes, self._node.context.handle)
         waiting = self._wait_set
         waiting.clear_entities()
