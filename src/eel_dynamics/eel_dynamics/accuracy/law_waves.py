@@ -68,6 +68,7 @@ def _wiggles(amplitude: tuple, knots: tuple, length: float) -> float:
     return SHARPNESS * 0.5 * max(int(turning[-1]), (int(closest) - 1) * WIGGLE_POINTS // WINDOW)
 
 
+@lru_cache(maxsize=1024)
 def check_law(law: Law, length: float) -> float:
     """The number of waves of `law` on a body of `length` [m].
 

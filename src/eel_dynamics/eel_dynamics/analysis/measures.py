@@ -70,9 +70,10 @@ def measures_of(run, names=tuple(MEASURES), periods: int | None = None) -> dict[
         where = MEASURES[name][2]
         if where == ESTIMATE:
             return getattr(run.error_estimate, name.removeprefix("error_"), None)
-        with suppress(ValueError):  # the scene has no ledger or no wrench
+        try:
             return (analysis and getattr(analysis, name)) if where == ANALYSIS else where(run)
-        return None
+        except ValueError:  # the scene has no ledger or no wrench
+            return None
 
     found = {name: measure(name) for name in names}
     return {name: float("nan") if value is None else float(value) for name, value in found.items()}

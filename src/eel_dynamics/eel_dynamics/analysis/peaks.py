@@ -129,12 +129,12 @@ def _greatest(x: np.ndarray, sizes: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     """The greatest of the `sizes` (n, ...) at `x` (n,) and its place, by a parabola through it and its neighbours."""
     shape, rows = sizes.shape[1:], sizes.reshape(len(sizes), -1)
     column, at = np.arange(rows.shape[1]), np.argmax(rows, axis=0)
-    inner = np.clip(at, 1, max(1, len(x) - 2))
-    before, size, after = rows[inner - 1, column], rows[inner, column], rows[inner + 1, column]
-    left, right = x[inner] - x[inner - 1], x[inner + 1] - x[inner]
+    inner = np.minimum(np.maximum(at, 1), max(1, len(x) - 2))
+    around = inner + np.arange(-1, 2)[:, None]
+    (before, size, after), (left, right) = rows[around, column], np.diff(x[around], axis=0)
     up, down = (size - before) / left, (after - size) / right
     bend, slope = (down - up) / (left + right), (up * right + down * left) / (left + right)
     inside = (at == inner) & (bend < 0.0)
-    step = np.clip(-0.5 * slope / np.where(inside, bend, -1.0), -left, right)
+    step = np.minimum(np.maximum(-0.5 * slope / np.where(inside, bend, -1.0), -left), right)
     peak = np.where(inside, size + step * (slope + step * bend), rows[at, column])
     return peak.reshape(shape), np.where(inside, x[inner] + step, x[at]).reshape(shape)

@@ -15,8 +15,8 @@ from eel_dynamics.analysis.analysis import STILL
 from eel_dynamics.analysis.averaging_window import PLACES, common_period
 from eel_dynamics.analysis.settling import FEWEST, SETTLED, change_of
 from eel_dynamics.simulation.march import March
+from eel_dynamics.simulation.observations import Observations
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
-from eel_dynamics.simulation.stopping import SimulationStopped
 from eel_dynamics.simulation.time_budget import affordable
 
 UNTIL_SETTLED = "settled"  # as a duration
@@ -49,33 +49,25 @@ def settling_time(law: Any, setup: SimulationSetup) -> float:
     """
     period, last_ramp = period_of(law, setup.body.length), _last_ramp(law)
     coarse = affordable(replace(setup, accuracy=_coarse(setup.accuracy), x=setup.x[:1]))
-    march, before, energy, work = March(coarse, law), [0.0] * 3, 0.0, 0.0
-    ways: list[float] = []  # m, of the centre of mass in each period
-    works: list[float] = []  # J, of the actuators
-    for count in range(MOST_PERIODS + 1):
-        try:
-            march.advance(count * period, None)
-        except SimulationStopped:
-            break
-        seen = march.observe(wrench=False, load=False)
-        centre = (seen.center_of_mass - setup.current * march.time).tolist()
-        if count:
-            ways.append(math.dist(centre, before))
-        before = centre
-        if (total := seen.actuator_work) is not None:
-            if count:
-                works.append(total - work)
-            work, energy = total, sum(seen.energies.tolist()[:2])
+
+    def settled(seen: Observations, done: np.ndarray) -> bool:
+        """Whether the gait has after the `done` (n, 6) [J] works, n - 1 periods."""
+        count = len(done) - 1
         window = (count + 1) // 2
         if window < FEWEST or (count - window) * period < last_ramp * (1.0 - 1e-9):
-            continue
-        moves = max(ways[-window:]) > STILL * setup.body.length
-        if moves and change_of(ways[-window:]) > MARGIN * SETTLED:
-            continue
-        lately = works[-window:]
-        if not lately or max(map(abs, lately)) <= NO_WORK * energy or change_of(lately) <= MARGIN * SETTLED:
-            return count * period
-    return MOST_PERIODS * period
+            return False
+        lately = slice(count - window, count + 1)
+        steps = np.diff(seen.center_of_mass[lately], axis=0) - setup.current * period
+        ways = [math.hypot(*step) for step in steps.tolist()]  # m, of the centre of mass in each period
+        if max(ways) > STILL * setup.body.length and change_of(ways) > MARGIN * SETTLED:
+            return False
+        works = np.diff(done[lately, 0]).tolist()  # J, of the actuators
+        little = max(map(abs, works)) <= NO_WORK * sum(seen.energies[count, :2].tolist())
+        return not setup.scene.ledger or little or change_of(works) <= MARGIN * SETTLED
+
+    times = period * np.arange(MOST_PERIODS + 1)
+    _, _, done, stopped = March(coarse, law).record(times, False, False, enough=settled)
+    return float(times[-1 if stopped else done - 1])
 
 
 def period_of(law: Any, length: float) -> float:

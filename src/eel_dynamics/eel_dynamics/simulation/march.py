@@ -211,8 +211,8 @@ class March:
             self._hand_over_law(smoothly=before and self.follower.between_samples)
         return self.follower.next_event(self.time)
 
-    def record(self, times: np.ndarray, wrench: bool, load: bool, look=None) -> tuple:
-        """As `Simulation.record`."""
+    def record(self, times: np.ndarray, wrench: bool, load: bool, look=None, enough=None) -> tuple:
+        """As `Simulation.record`. enough(out, works): asked after each sample with the works so far, whether to end."""
         out = Observations(len(times), len(self.setup.x), wrench, load, len(self.setup.fins))
         works, done, status = np.zeros((len(times), len(WORKS))), 0, MARCHED
         rows = self._empty_rows(len(times))
@@ -221,13 +221,16 @@ class March:
         cut = self.core.set_slice(UNCUT) if alone else None  # no signal arrives, returns wait for Python's lock
         while status == MARCHED and done < len(times):
             event, status = self._pass_event(), UNFINISHED
+            until = event if enough is None else min(event, times[done])
             while status == UNFINISHED:
-                done, status = self.core.record(times, done, out.whole, works, rows, bool(wrench), bool(load), event)
-                if status == MARCHED and done < len(times):
+                done, status = self.core.record(times, done, out.whole, works, rows, bool(wrench), bool(load), until)
+                if status == MARCHED and done < len(times) and until == event:
                     status = self.core.advance(event)
                 if look is not None and status == UNFINISHED:
                     look(self.core.time)
             self.time = self.core.time
+            if enough is not None and enough(out, works[:done]):
+                break
         if cut is not None:
             self.core.set_slice(cut)
         checked = bool(self.setup.scene.ledger) and self.setup.settings.method == "classical"

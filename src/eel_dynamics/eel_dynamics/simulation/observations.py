@@ -95,7 +95,8 @@ class Observations:
 
     def arrays(self) -> dict[str, np.ndarray]:
         """All quantities by name, without those that a `Snapshot` was not asked for."""
-        return {name: getattr(self, name) for name, (_, shape) in self.places.items() if shape is not None}
+        places = self.places.items()
+        return {name: self.whole[where].reshape(shape) for name, (where, shape) in places if shape is not None}
 
 
 OBSERVED = {name: each.variable for name, each in vars(Observations).items() if isinstance(each, Observed)}
