@@ -209,3 +209,8 @@ class SwimClient:
         """(level, message, values) of the latest /diagnostics, or of the one given."""
         status = (message or self.latest("/diagnostics")).status[0]
         return status.level[0], status.message, {pair.key: pair.value for pair in status.values}
+
+    def is_well(self):
+        """Whether the latest /diagnostics tell of no fault, but that a busy machine does not keep the pace."""
+        level, text, _ = self.diagnosis()
+        return level == 0 or (level == 1 and text.startswith("late by"))

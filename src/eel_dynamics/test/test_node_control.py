@@ -177,7 +177,7 @@ def test_law_that_cannot_be_swum_stops_once_and_reset_starts_again(start, client
     swim.until(lambda: "law 'falling' adopted" in node.output(), "the next law")
     assert swim.reset().success
     swim.until_time(0.5)
-    swim.until(lambda: swim.diagnosis()[0] == 0, "good diagnostics")
+    swim.until(swim.is_well, "good diagnostics")
 
 
 @pytest.mark.fault("laws", "a law that winds the body up beyond all bounds", "refused; the next law is taken")

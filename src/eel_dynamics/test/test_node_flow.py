@@ -425,7 +425,7 @@ def test_samples_of_too_many_points_and_too_many_of_them_are_refused(start, clie
     swim.until(lambda: limit in node.output(), "limit")
     assert swim.reset().success and swim.pause(False).success
     swim.until_time(0.5, "curvature")
-    swim.until(lambda: swim.diagnosis()[0] == 0, "good diagnostics")
+    swim.until(swim.is_well, "good diagnostics")
 
 
 @pytest.mark.fault(

@@ -197,7 +197,7 @@ def test_two_publishers_of_laws_are_a_warning_while_it_lasts(start, client):
     )
     assert swim.diagnosis()[0] == 1 and swim.diagnosis()[2]["publishers_of_laws"] == "2"
     swim.node.destroy_publisher(second)
-    swim.until(lambda: swim.diagnosis()[0] == 0, "end of the warning")
+    swim.until(swim.is_well, "end of the warning")
     assert node.output().count("2 publishers of curvature_law") == 1
 
 

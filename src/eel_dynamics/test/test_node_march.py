@@ -31,7 +31,7 @@ def test_a_law_that_costs_too_much_is_refused(start, client):
         said = f"law 'quick' refused: law 'quick' has a period of {period:g} s, which takes {10 / period:.3g} eval"
         swim.until(lambda said=said: said in node.output(), "refusal")
     swim.until_time(0.5)
-    swim.until(lambda: swim.diagnosis()[2]["law"] == "falling" and swim.diagnosis()[0] == 0, "the law in force")
+    swim.until(lambda: swim.diagnosis()[2]["law"] == "falling" and swim.is_well(), "the law in force")
 
 
 @pytest.mark.fault(
@@ -53,7 +53,7 @@ def test_a_sample_that_takes_minutes_holds_nothing_up(start, client):
     swim.until(lambda: "law 'falling' adopted" in node.output(), "another law")
     assert swim.reset().success
     swim.until_time(0.5)
-    swim.until(lambda: swim.diagnosis()[0] == 0, "good diagnostics")
+    swim.until(swim.is_well, "good diagnostics")
     swim.laws.publish(law_to_message(quick(1e-10)))
     swim.until(lambda: swim.diagnosis()[0] == 2 and "no sample for" in swim.diagnosis()[1], "ERROR again")
     assert node.output().count("no sample for") == 2
