@@ -40,7 +40,7 @@ def test_stubborn_process_is_ended_with_its_children(tmp_path):
     node = NodeProcess("bash", "-c", script, environment=dict(os.environ), log=tmp_path / "log.txt")
     node.wait_for_output("ready")
     child = int(node.output().split()[0])
-    node.end()
+    node.end(patience=1.0)
     assert node.status == -signal.SIGKILL
     await_death(child)
 

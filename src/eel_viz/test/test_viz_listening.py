@@ -49,8 +49,8 @@ def test_every_network_if_asked_and_then_it_says_so(start, tmp_path):
     assert node.interrupt() == 0
 
 
-def test_a_killed_visualiser_leaves_no_web_viewer_behind(start, tmp_path):
-    node, ports = serve(start, tmp_path)
+def test_a_killed_visualiser_leaves_no_web_viewer_behind(start_to_kill, tmp_path):
+    node, ports = serve(start_to_kill, tmp_path)
     (child,) = psutil.Process(node.process.pid).children()
     node.interrupt(signal.SIGKILL)
     child.wait(timeout=60)

@@ -12,6 +12,7 @@ from pathlib import Path
 
 PR_SET_PDEATHSIG = 1  # linux/prctl.h: the signal that the child gets when its parent has died
 PROMPT = 4.0  # s: far above what a good end takes (under 1 s), below any wait for the network (5 s and more)
+PATIENCE = 30.0  # s: a busy machine takes long, and a killed node may leave shared memory locked, for others to wait on
 MIDDLEWARE = "RTPS_TRANSPORT_SHM"  # Fast DDS: shared memory that is held by a process that does not answer
 
 
@@ -99,10 +100,11 @@ class NodeProcess:
                 found[path.parent.name] = int(path.read_text().split()[1]) * 1e-9
         return found
 
-    def end(self, *, descendants: bool = True) -> None:
-        """Make sure that it is gone, asking first; `descendants`: so are the processes that it has started."""
+    def end(self, *, descendants: bool = True, patience: float = PATIENCE) -> None:
+        """Make sure that it is gone, asking first, and killing it after `patience` [s]; `descendants`: so are the
+        processes that it has started."""
         try:
-            self.interrupt(timeout=3.0)
+            self.interrupt(timeout=patience)
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()
