@@ -153,15 +153,17 @@ def _spline(time: np.ndarray, values: np.ndarray):
     from scipy.interpolate import PPoly
     from scipy.linalg.lapack import dgtsv
 
-    rows, step = values.reshape(len(time), -1), np.diff(time)
-    rise = np.diff(rows, axis=0) / step[:, None]
+    rows, step, two_steps = values.reshape(len(time), -1), time[1:] - time[:-1], time[2:] - time[:-2]
+    tall = step[:, None]
+    rise = (rows[1:] - rows[:-1]) / tall
     right = np.empty_like(rows)
-    right[1:-1] = 3.0 * (step[1:, None] * rise[:-1] + step[:-1, None] * rise[1:])
-    for end, (a, b), (first, second) in ((0, step[:2], rise[:2]), (-1, step[:-3:-1], rise[:-3:-1])):
-        right[end] = ((a + 2.0 * (a + b)) * b * first + a**2 * second) / (a + b)
-    below, above = np.append(step[1:], time[-1] - time[-3]), np.append(time[2] - time[0], step[:-1])
+    right[1:-1] = 3.0 * (tall[1:] * rise[:-1] + tall[:-1] * rise[1:])
+    for end, next_one in ((0, 1), (-1, -2)):
+        a, b = step[end], step[next_one]
+        right[end] = ((a + 2.0 * (a + b)) * b * rise[end] + a**2 * rise[next_one]) / (a + b)
+    below, above = np.concatenate((step[1:], two_steps[-1:])), np.concatenate((two_steps[:1], step[:-1]))
     diagonal = np.concatenate((step[1:2], 2.0 * (step[1:] + step[:-1]), step[-2:-1]))
     slope = dgtsv(below, diagonal, above, right)[3]
-    bend = (slope[1:] + slope[:-1] - 2.0 * rise) / step[:, None]
-    cubics = np.stack((bend / step[:, None], (rise - slope[:-1]) / step[:, None] - bend, slope[:-1], rows[:-1]))
+    bend = (slope[1:] + slope[:-1] - 2.0 * rise) / tall
+    cubics = np.concatenate((bend / tall, (rise - slope[:-1]) / tall - bend, slope[:-1], rows[:-1]))
     return PPoly.construct_fast(cubics.reshape(4, len(step), *values.shape[1:]), time)

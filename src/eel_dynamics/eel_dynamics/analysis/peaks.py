@@ -131,10 +131,11 @@ def _greatest(x: np.ndarray, sizes: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     column, at = np.arange(rows.shape[1]), np.argmax(rows, axis=0)
     inner = np.minimum(np.maximum(at, 1), max(1, len(x) - 2))
     around = inner + np.arange(-1, 2)[:, None]
-    (before, size, after), (left, right) = rows[around, column], np.diff(x[around], axis=0)
+    (before, size, after), (previous, here, following) = rows[around, column], x[around]
+    left, right = here - previous, following - here
     up, down = (size - before) / left, (after - size) / right
     bend, slope = (down - up) / (left + right), (up * right + down * left) / (left + right)
     inside = (at == inner) & (bend < 0.0)
     step = np.minimum(np.maximum(-0.5 * slope / np.where(inside, bend, -1.0), -left), right)
     peak = np.where(inside, size + step * (slope + step * bend), rows[at, column])
-    return peak.reshape(shape), np.where(inside, x[inner] + step, x[at]).reshape(shape)
+    return peak.reshape(shape), np.where(inside, here + step, x[at]).reshape(shape)
