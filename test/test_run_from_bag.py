@@ -163,6 +163,7 @@ def test_a_reset_and_several_laws_are_told(run, tmp_path):
     assert again.time == pytest.approx(run.time, abs=1e-9)
     words = [str(each.message) for each in told]
     assert any("time falls back to 0 s" in line for line in words) and any("there are 3 laws" in line for line in words)
+    assert {each.filename for each in told} == {__file__}  # not a line of the library
 
 
 def test_one_swimmer_of_a_namespace(run, tmp_path):

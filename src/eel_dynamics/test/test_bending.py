@@ -252,6 +252,9 @@ def test_a_copy_with_a_lower_limit_goes_on_from_the_present_and_keeps_it():
     for change in (lambda: simulation.copy_with(robot=other), lambda: simulation.change_robot(other)):
         with pytest.raises(ValueError, match="the same parts at the same places"):
             change()
+    bare = Simulation(law=straight())
+    bare.change_robot(Robot([]))  # which is none
+    assert bare.robot is None and bare.advance(0.01)
 
 
 def test_a_robot_that_is_changed_goes_on_as_a_copy_does_and_is_the_same_after_a_reset():

@@ -163,3 +163,7 @@ def test_a_recorded_motion_is_measured_too():
     for time in np.linspace(0.1, 4.0, 40):
         stepped.advance(float(time))
     assert 0.3 < simulation.error_estimate.position / stepped.error_estimate.position < 3.0
+    for times, told in (([np.nan], "times must be finite"), ([3.9], "times must not fall"), (None, "times must be")):
+        with pytest.raises(ValueError, match=told):
+            simulation.record(times, True, False)
+    assert simulation.time == 4.0

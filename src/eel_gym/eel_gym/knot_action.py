@@ -40,11 +40,12 @@ class KnotAction:
         greatest_bend: float = 5.0,
         length: float = 1.0,
     ):
+        length = positive("length", length, "m")
         count = isinstance(knots, int) and not isinstance(knots, bool)
         self.x = np.linspace(0.0, length, max(knots, 0)) if count else checked_row("knots", knots, None)
         if len(self.x) < 2:
             raise ValueError(f"knots must be 2 or more, or their X in m, got {shown(knots)}")
-        if not axes or set(axes) - {"pitch", "yaw"}:
+        if not (np.iterable(axes) and axes) or any(name not in ("pitch", "yaw") for name in axes):
             raise ValueError(f"axes must be pitch, yaw or both, got {shown(axes)}")
         self.axes = tuple(name for name in ("pitch", "yaw") if name in axes)
         self.greatest_rate = positive("greatest_rate", greatest_rate, "rad/m/s")

@@ -51,6 +51,7 @@ class LawAction:
         if not numbers:
             raise ValueError("numbers must hold one or more, got none")
         positive("response", response, "s")
+        length = positive("length", length, "m")
         self.law, self.names, self._rate = law, tuple(numbers), 1.0 / response
         self._span = [(0.5 * (low + high), 0.5 * (high - low)) for low, high in numbers.values()]  # middle, half
         self._steered = SteeredLaw(law, response=response, length=length, points=points)

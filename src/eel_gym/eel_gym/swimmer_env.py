@@ -8,9 +8,10 @@ from typing import Any, Self
 
 import gymnasium
 import numpy as np
-from eel_base.quantity import positive
+from eel_base.quantity import number
 from eel_base.wording import not_one_of, one_line, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.batches.simulate_batch import MOST_THREADS
 from eel_dynamics.simulation.commanded_robots import CommandedRobots
 from eel_dynamics.simulation.sampled_swimmers import LEFT_OUT, Array, SampledSwimmers
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
@@ -27,9 +28,10 @@ from eel_gym.picture import picture
 from eel_gym.task import Action, MeanHeading, Start, Task
 
 
-def checked_count(name: str, count: Any) -> int:
-    """`count` as an int of 1 or more."""
-    if positive(name, count) != int(count):
+def checked_count(name: str, count: Any, most: float | None = None) -> int:
+    """`count` as an int of 1 or more, and at `most`."""
+    found = number(name, count, minimum=0.0, maximum=most, exclusive=True)
+    if found != int(found):
         raise ValueError(f"{name} must be a whole number, got {shown(count)}")
     return int(count)
 
@@ -80,7 +82,8 @@ class SwimmerEnv(Task):
             raise ValueError(f"flow must be a Flow, or a function of random numbers that draws one, got {shown(flow)}")
         self.render_mode, self.flow = render_mode, flow
         self.metadata = self.metadata | {"render_fps": round(1.0 / self.numbers.control_period)}
-        count, threads, stations = math.prod(shape), checked_count("threads", threads), 51 if render_mode else 2
+        threads = checked_count("threads", threads, MOST_THREADS)
+        count, stations = math.prod(shape), 51 if render_mode else 2
         own = {"body": self.body, "scene": self.scene, "robot": getattr(self.action, "robot", None)}
         setup = SimulationSetup.of(**own, accuracy=accuracy, stations=stations)
         self.swimmers: SampledSwimmers | CommandedRobots

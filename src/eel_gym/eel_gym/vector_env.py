@@ -50,8 +50,13 @@ class ThreadedVectorEnv(VectorEnv[Any, Any, Any]):
         except ValueError:
             known = ", ".join(mode.value for mode in AutoresetMode)
             raise ValueError(f"autoreset_mode must be one of {known}, got {shown(autoreset_mode)}") from None
+        task = self.task if task is None else task
+        if not (isinstance(task, type) and issubclass(task, SwimmerEnv)):
+            raise ValueError(f"task must be a class of SwimmerEnv, got {shown(task)}")
+        if max_episode_steps is not None:
+            checked_count("max_episode_steps", max_episode_steps)
         self.num_envs = checked_count("num_envs", num_envs)
-        self.swimmers = (task or self.task)(swimmers=self.num_envs, threads=threads, **settings)
+        self.swimmers = task(swimmers=self.num_envs, threads=threads, **settings)
         first, self._limit = self.swimmers, max_episode_steps
         self.metadata = {**first.metadata, "autoreset_mode": self._mode}
         self.render_mode = first.render_mode
@@ -75,8 +80,9 @@ class ThreadedVectorEnv(VectorEnv[Any, Any, Any]):
             )
         if seed is None or isinstance(seed, (int, np.integer)):
             seed = [None if seed is None else int(seed) + index for index in range(self.num_envs)]
-        if len(seed) != self.num_envs:
-            raise ValueError(f"seed must be one, or {self.num_envs}, got {len(seed)}")
+        if not hasattr(seed, "__len__") or len(seed) != self.num_envs:
+            got = len(seed) if hasattr(seed, "__len__") else shown(seed)
+            raise ValueError(f"seed must be one, or {self.num_envs}, got {got}")
         chosen = np.flatnonzero(mask).tolist()
         for index in chosen:
             if seed[index] is not None:

@@ -4,11 +4,12 @@
 import gymnasium
 import numpy as np
 import pytest
+from eel_gym.vector_env import HeadingVectorEnv
 from gymnasium.utils.env_checker import check_env
 
 from eel_dynamics import Joint, PassiveTail, Robot, Scene, Servo, Simulation
-from eel_gaits import Law
-from eel_gym import JointAction, ThreadedVectorEnv, WayPointsEnv
+from eel_gaits import Law, straight
+from eel_gym import HeadingEnv, JointAction, KnotAction, LawAction, ThreadedVectorEnv, WayPointsEnv
 
 MODES = {"position": "position", "velocity": "velocity", "torque": "effort"}
 GREATEST = {"position": 0.3, "velocity": 2.0, "torque": 0.2}
@@ -77,6 +78,27 @@ def test_an_episode_of_a_robot_is_recorded(tmp_path):
         env.step(action)
     env.close()
     assert (tmp_path / "WayPoints-0.rrd").stat().st_size > 1000
+
+
+@pytest.mark.parametrize(
+    ("make", "told"),
+    [
+        (lambda: KnotAction(length=np.inf), "length must be finite, got inf"),
+        (lambda: KnotAction(axes=1), "axes must be pitch, yaw or both, got 1"),
+        (
+            lambda: LawAction(straight(), {"left_bend": (-1.0, 1.0)}, length="long"),
+            "length must be a number, got 'long'",
+        ),
+        (lambda: HeadingEnv(threads=1e20), "threads must be <= 1000, got 1e"),
+        (lambda: HeadingVectorEnv(task=HeadingEnv()), "task must be a class of SwimmerEnv, got"),
+        (lambda: HeadingVectorEnv(max_episode_steps="ten"), "max_episode_steps must be a number, got 'ten'"),
+        (lambda: HeadingVectorEnv(num_envs=2).reset(seed=0.5), "seed must be one, or 2, got 0.5"),
+        (lambda: HeadingVectorEnv(num_envs=2).reset(seed=[1]), "seed must be one, or 2, got 1"),
+    ],
+)
+def test_what_is_no_argument_of_environments_is_refused_by_name(make, told):
+    with pytest.raises(ValueError, match=told):
+        make()
 
 
 @pytest.mark.fault("parameters", "an action for joints that a robot does not have, or of no kind", "refused by name")

@@ -22,7 +22,7 @@ from dataclasses import fields, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from eel_base.quantity import checked_instance, number
+from eel_base.quantity import number
 from eel_base.wording import did_you_mean, shown
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import measures_of
@@ -38,6 +38,7 @@ from eel_model.flow.plain import KINDS
 from eel_model.flow.text import flow_from_text
 from eel_model.initial_state import InitialState
 from eel_model.robot.robot import Robot, checked_robot, robot_of
+from eel_model.scene import checked_scene
 
 from eel_dynamics import Accuracy, Batch, Flow, Run, Scene, Swim
 from eel_gaits import Law
@@ -72,11 +73,12 @@ def batch_of_points(
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Batch:
-    """Simulate the `points` for the duration of the first. threads, progress: as in `simulate_batch`."""
-    first, most = points[0], {"most_evaluations": how.most_evaluations}
-    swimmers = [numbered(index, point.law, point.swimmer | most) for index, point in enumerate(points)]
-    times = first.duration, first.sample_period
-    return swum(swimmers, *times, estimate=how.estimate, threads=threads, progress=progress)
+    """Simulate the `points` for the duration of the first. stations, threads, progress: as in `simulate_batch`."""
+    first, own = points[0], dict[str, Any](most_evaluations=how.most_evaluations)
+    own |= {"stations": [0.0]} if first.stations is None else {}
+    swimmers = [numbered(index, point.law, point.swimmer | own) for index, point in enumerate(points)]
+    times, profiles = (first.duration, first.sample_period), first.stations is not None
+    return swum(swimmers, *times, profiles, estimate=how.estimate, threads=threads, progress=progress)
 
 
 def run_of_point(point: Swim, how: SwimSettings) -> Run:
@@ -104,11 +106,8 @@ def base_point(
     found = checked_robot(robot_of(robot) if isinstance(robot, str) else robot)
     if found is not None:
         base = base._replace(robot=found, body=found.body or base.body)
-    if body is not None:
-        base = base._replace(body=checked_body(body))
-    if scene is not None:
-        base = base._replace(scene=checked_instance("scene", scene, Scene))
-    return base._replace(accuracy=accuracy)
+    body, scene = base.body if body is None else body, base.scene if scene is None else scene
+    return base._replace(body=checked_body(body), scene=checked_scene(scene), accuracy=accuracy)
 
 
 def point_at(values: Numbers, gait: Gait, numbers: Numbers, base: Swim) -> Swim:

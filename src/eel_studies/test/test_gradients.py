@@ -149,12 +149,20 @@ def test_functions_of_the_user_and_two_swims_per_parameter():
             "gradient gait must return a Law, whose terms are known, got SampledLaw",
         ),
         ({"duration": 0.9}, "measure mean_speed is undefined"),
+        ({"stations": 0}, "^stations must be 2 or more, or their X in m, got 0"),
+        ({"most_evaluations": -1}, "^most_evaluations must be > 0 per simulated second, got -1"),
     ],
 )
 def test_bad_input_is_refused_in_one_line(given, words):
     with pytest.raises(ValueError, match=words) as error:
         gradient(**{"of": "mean_speed", "parameters": {"period": 1.0}, "scene": SMOOTH, **SHORT, **given})
     assert "\n" not in str(error.value)
+
+
+def test_stations_are_as_of_a_batch():
+    given = {"of": "head_x", "parameters": {"period": 1.0}, "estimate": False, "scene": SMOOTH, **SHORT}
+    without, along = gradient(**given | {"stations": None}), gradient(**given)
+    assert np.array_equal(without.derivative, along.derivative) and len(along.run.x) == 11
 
 
 def test_a_swim_that_stops_is_told():

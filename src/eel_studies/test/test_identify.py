@@ -194,6 +194,8 @@ NO_TERMS = "^gait must return a Law, whose terms are known, got SampledLaw"
             lambda: identify(GUESS, [MeasuredSpeed(0.3), MeasuredPath(TIME, PLACES)]),
             "MeasuredSpeed, got MeasuredPath, MeasuredSpeed",
         ),
+        (lambda: identify(GUESS, None), "measured must be of one kind of .*, got NoneType"),
+        (lambda: identify(GUESS, MeasuredSpeed(0.3), numbers=[1.0]), r"numbers must be a dict, got \[1.0\]"),
         (lambda: identify({"body.lateral_drg": 1.0}, MeasuredSpeed(0.3)), r"did you mean 'lateral_drag'\?"),
         (
             lambda: identify({"body.lateral_drag": 1.0}, MeasuredSpeed(0.3), scene=PLANE),

@@ -334,6 +334,15 @@ def test_what_is_no_argument_of_a_sweep_is_refused_by_name(given, message):
         sweep(**{"grid": {"period": [0.5]}} | given, **SHORT)
 
 
+def test_a_swim_of_a_function_has_the_default_body_and_scene():
+    def wave(t, x):
+        return 0.0 * x, np.sin(3.0 * t) * x
+
+    data = sweep({"initial.v_x": [0.1]}, gait=Swim(wave, None, None, "draft", stations=3), duration=0.2)
+    run = simulate(wave, 0.2, accuracy="draft", stations=3, twist=(0.0, 0.0, 0.0, 0.1, 0.0, 0.0))
+    assert float(data.head_x[0]) == run.position[-1, 0] and "wave" in data.attrs["gait"]
+
+
 def test_a_point_that_stops_is_told_and_the_others_stay(client):
     def law(size):
         return straight(amplitude_0=size)

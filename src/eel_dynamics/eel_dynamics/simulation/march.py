@@ -121,7 +121,7 @@ class March:
         self._use(self.settings.at_least(self.setup.grid_for(self._needs)))
         self._hand_over_law()
 
-    def change_robot(self, robot: Robot):
+    def change_robot(self, robot: Robot | None):
         """Go on with a robot that differs in its numbers alone."""
         self.setup = replace(self.setup, robot=robot)
         self._change_grid(self.settings)

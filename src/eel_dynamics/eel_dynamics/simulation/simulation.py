@@ -237,8 +237,8 @@ class Simulation(Present):
         Commands hold. `ValueError` for other parts, or at other places.
         """
         setup = self._with_robot(robot)
-        self._on_both(lambda march: march.change_robot(robot))
-        self._setup, self.robot = setup, robot
+        self._on_both(lambda march: march.change_robot(setup.robot))
+        self._setup, self.robot = setup, setup.robot
         self._meter.due = True
 
     def _with_robot(self, robot: Robot) -> SimulationSetup:
@@ -293,10 +293,13 @@ class Simulation(Present):
 
         Returns the observations, the works (T, 6) [J] of actuators, wake, nose, drag, flow and fins, the number of good
         instants, and what stopped the march, or None. look(time [s]) is called every few milliseconds. After a bad
-        instant the simulation must be reset.
+        instant the simulation must be reset. `ValueError` for times that are not finite, or fall.
         """
+        times = checked_row("times", times, None)
+        if np.any(np.diff(times, prepend=self.time) < 0.0):
+            raise ValueError(f"times must not fall, from the present {self.time} s on, got {shown(times.tolist())}")
         self._started = True
-        recorded = self._march.record(np.array(times, dtype=float), wrench, load, look)
+        recorded = self._march.record(times, wrench, load, look)
         self._meter.compare(self._march)
         return recorded
 

@@ -29,6 +29,7 @@ from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.measures import checked_measures
 from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.sampling import default_sample_period
+from eel_dynamics.simulation.simulation_setup import checked_stations
 from eel_model.equality import EqualByFields
 from eel_model.robot.actuators import at_limit
 from eel_model.section_data import CRITICAL_REYNOLDS
@@ -121,10 +122,12 @@ def gradient(
     base = base._replace(duration=duration, stations=stations)
     point = _point(at, gait, numbers, base)
     settings = point.accuracy.in_scene(point.scene)
+    if stations is not None:
+        checked_stations(stations, point.body.length)
     if sample_period is None:
         sample_period = default_sample_period([point.law], duration)
     base, point = (each._replace(sample_period=sample_period) for each in (base, point))
-    how = SwimSettings(measure, False, most_evaluations)
+    how = SwimSettings(measure, False, positive("most_evaluations", most_evaluations, "per simulated second"))
     tell, swims = progress_of(progress, "swims"), 1 + 2 * len(at)
 
     lines: tuple[str, ...] = ()

@@ -14,8 +14,9 @@ is right and the errors are small: an error of the model is in no interval.
 import warnings
 from typing import Any
 
+import numpy as np
 from eel_base.command.progress import progress_of
-from eel_base.quantity import number, positive
+from eel_base.quantity import checked_instance, number, positive
 from eel_base.wording import shown
 
 from eel_dynamics import Body, Robot, Scene
@@ -69,7 +70,8 @@ def identify(
     if level >= 1.0:
         raise ValueError(f"level must be below 1, got {level:g}")
     base = base_point(body, scene, fixed_steps(accuracy), friction="blended", robot=robot, gait=gait)
-    swims = Swims(gait, dict(numbers or {}), base, threads)
+    own = {} if numbers is None else dict(checked_instance("numbers", numbers, dict))
+    swims = Swims(gait, own, base, threads)
     for each in measurements:
         try:
             point_at(first, gait, {**swims.numbers, **each.numbers}, base)
@@ -91,7 +93,7 @@ KINDS = MeasuredPath, MeasuredAngles, MeasuredSpeed
 
 
 def _checked_measurements(measured: Any) -> list[Measurement]:
-    rows = [measured] if isinstance(measured, KINDS) else list(measured)
+    rows = list(measured) if np.iterable(measured) else [measured]
     kinds = {type(each) for each in rows}
     if len(kinds) != 1 or not kinds <= {*KINDS}:
         given = ", ".join(sorted(kind.__name__ for kind in kinds)) or "none"

@@ -265,7 +265,9 @@ def _dataset(
     variables["error"] = names, np.reshape(np.array(errors, dtype=object), shape), {"long_name": "what stopped it"}
     coordinates = {name: [label_of(value) for value in values] for name, values in zip(names, axes, strict=True)}
     attributes = {
-        "gait": gait if isinstance(gait, str) else getattr(gait, "__name__", first.law.name),
+        "gait": gait
+        if isinstance(gait, str)
+        else getattr(gait, "__name__", None) or getattr(first.law, "name", shown(first.law)),
         "duration": first.duration if until_settled(first.duration) else float(first.duration),
         "estimate": int(how.estimate),
         "axes": REP103,

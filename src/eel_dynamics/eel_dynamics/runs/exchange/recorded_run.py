@@ -112,7 +112,7 @@ def _collected(messages: Iterable[tuple[str, Any]]) -> tuple[dict[str, Any], dic
             stamp = message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
             poses = samples["head_pose"]
             if topic == "head_pose" and poses and stamp < next(reversed(poses)):
-                warnings.warn(f"time falls back to {1e-9 * stamp:g} s: a reset; the run has what follows", stacklevel=4)
+                warnings.warn(f"time falls back to {1e-9 * stamp:g} s: a reset; the run has what follows", stacklevel=5)
                 samples = {name: {} for name in samples}
             samples[topic][stamp] = message
         else:
@@ -164,10 +164,10 @@ def _law(once: dict[str, Any]) -> Law:
     """The last law, in the time of the simulation."""
     laws = once["curvature_law"]
     if not laws:
-        warnings.warn("there is no message on curvature_law: the run's law is the straight body's", stacklevel=4)
+        warnings.warn("there is no message on curvature_law: the run's law is the straight body's", stacklevel=5)
         return Law(name="unknown")
     if len(laws) > 1:
-        warnings.warn(f"there are {len(laws)} laws: the run's law is the last one", stacklevel=4)
+        warnings.warn(f"there are {len(laws)} laws: the run's law is the last one", stacklevel=5)
     message = laws[-1]
     origin = message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec
     return law_from_message(message).delayed(origin)
@@ -190,7 +190,7 @@ def _accuracy(once: dict[str, Any], scene: Scene) -> Accuracy:
     try:
         wanted = Accuracy.of(names[-1] if names else "standard")
     except ValueError as error:
-        warnings.warn(f"the accuracy is not known: {one_line(error)}", stacklevel=4)
+        warnings.warn(f"the accuracy is not known: {one_line(error)}", stacklevel=5)
         wanted = Accuracy.of("standard")
     return (Accuracy.of("standard") if isinstance(wanted, Budget) else wanted).in_scene(scene)
 
