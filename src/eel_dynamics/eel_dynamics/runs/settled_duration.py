@@ -49,6 +49,7 @@ def settling_time(law: Any, setup: SimulationSetup) -> float:
     """
     period, last_ramp = period_of(law, setup.body.length), _last_ramp(law)
     coarse = affordable(replace(setup, accuracy=_coarse(setup.accuracy), x=setup.x[:1]))
+    drift = setup.current * period  # m
 
     def settled(seen: Observations, done: np.ndarray) -> bool:
         """Whether the gait has after the `done` (n, 6) [J] works, n - 1 periods."""
@@ -57,11 +58,12 @@ def settling_time(law: Any, setup: SimulationSetup) -> float:
         if window < FEWEST or (count - window) * period < last_ramp * (1.0 - 1e-9):
             return False
         lately = slice(count - window, count + 1)
-        steps = np.diff(seen.center_of_mass[lately], axis=0) - setup.current * period
+        centre, work = seen.center_of_mass[lately], done[lately, 0]
+        steps = centre[1:] - centre[:-1] - drift
         ways = [math.hypot(*step) for step in steps.tolist()]  # m, of the centre of mass in each period
         if max(ways) > STILL * setup.body.length and change_of(ways) > MARGIN * SETTLED:
             return False
-        works = np.diff(done[lately, 0]).tolist()  # J, of the actuators
+        works = (work[1:] - work[:-1]).tolist()  # J, of the actuators
         little = max(map(abs, works)) <= NO_WORK * sum(seen.energies[count, :2].tolist())
         return not setup.scene.ledger or little or change_of(works) <= MARGIN * SETTLED
 
