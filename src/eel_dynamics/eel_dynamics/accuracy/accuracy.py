@@ -85,7 +85,7 @@ LEAST_TIGHTENED = 0.02  # least ratio in one go: a saturated error says little o
 
 
 @lru_cache(maxsize=256)
-def replace(settings: "Accuracy", **changes: Any) -> "Accuracy":
+def variant(settings: "Accuracy", **changes: Any) -> "Accuracy":
     """The `settings` with these `changes`, which the points of a sweep share."""
     return dataclasses.replace(settings, **changes)
 
@@ -178,12 +178,12 @@ class Accuracy:
             points = min(points, COARSE_POINTS[0] * decades + COARSE_POINTS[1])
         resolution = max(LEAST_POINTS, points)
         if self.fixed is not None:
-            return replace(self, resolution=resolution, fixed=FIXED_STEPS * (1e-2 / self.target) ** 0.25)
+            return variant(self, resolution=resolution, fixed=FIXED_STEPS * (1e-2 / self.target) ** 0.25)
         pair = scene.ledger or (scene.internal_wrench and not (self.refinable and self.target > CUBIC_TARGET))
         method = "dormand_prince" if pair else "adams"
         steps = STEPS_ERRORS if self.refinable else SAFE_STEPS_ERRORS
         tolerance = max(FINEST_TOLERANCE, self.target / steps)
-        return replace(self, resolution=resolution, tolerance=tolerance, method=method, order=5)
+        return variant(self, resolution=resolution, tolerance=tolerance, method=method, order=5)
 
     def for_control_steps(self) -> "Accuracy":
         """These settings in a scene, for a curvature that each of many short control steps has anew: without a target.
@@ -194,7 +194,7 @@ class Accuracy:
             return self.as_it_is()
         steps = CONTROL_STEPS_ERRORS * (1e-4 / self.target) ** 0.2
         tolerance = max(FINEST_TOLERANCE, self.target / steps)
-        return replace(self.as_it_is(), tolerance=tolerance, method="dormand_prince", order=5)
+        return variant(self.as_it_is(), tolerance=tolerance, method="dormand_prince", order=5)
 
     def for_robot(self, rings: bool = False) -> "Accuracy":
         """These settings in a scene, for the steps of a robot. Steps of one length stay as they are.
@@ -205,7 +205,7 @@ class Accuracy:
             return self
         steps = (ROBOT_STEPS if self.refinable else SAFE_ROBOT_STEPS) * (RINGING if rings else 1.0)
         tolerance = self.tolerance if self.target is None else max(FINEST_TOLERANCE, self.target / steps)
-        return replace(self, tolerance=tolerance, method=ROBOTS, order=3)
+        return variant(self, tolerance=tolerance, method=ROBOTS, order=3)
 
     def share_of_distance(self, companion: "Accuracy") -> float:
         """Part of the distance to a run with the settings of a `companion` that counts as the error."""
@@ -216,7 +216,7 @@ class Accuracy:
 
     def as_it_is(self) -> "Accuracy":
         """The same settings without a target. No scene and no motion changes them."""
-        return replace(self, target=None)
+        return variant(self, target=None)
 
     def coarser(self) -> "Accuracy":
         """Settings with some ten times the error, for the companion with which a run measures its own error."""
@@ -229,7 +229,7 @@ class Accuracy:
         """Settings with some such error by Adams' method, where these are those of the embedded pair."""
         if self.method != "dormand_prince":
             return self
-        return replace(self, method="adams", order=5, tolerance=max(FINEST_TOLERANCE, self.tolerance / ADAMS_ERROR))
+        return variant(self, method="adams", order=5, tolerance=max(FINEST_TOLERANCE, self.tolerance / ADAMS_ERROR))
 
     def tightened(self, ratio: float) -> "Accuracy":
         """Settings for an error of `ratio` (< 1) times the error with these. These settings suit their companion."""
@@ -237,16 +237,16 @@ class Accuracy:
         looser, denser, longer = ratio**TIGHTER, ratio**-DENSER, ratio**SHORTER
         least = LEAST_ROBOT_TIGHTER if self.method == ROBOTS else LEAST_TIGHTER
         changes = min(looser, least), max(denser, LEAST_DENSER), min(longer, 1.0 / LONGER_STEPS)
-        return replace(self._changed(*changes), kinks="all")
+        return variant(self._changed(*changes), kinks="all")
 
     def with_other_points(self) -> "Accuracy":
         """The same settings with so many more points that the grid is another one for certain."""
-        return replace(self, resolution=min(1000.0, max(1.4 * self.resolution + 2.0, self.resolution + FURTHER_POINTS)))
+        return variant(self, resolution=min(1000.0, max(1.4 * self.resolution + 2.0, self.resolution + FURTHER_POINTS)))
 
     def _changed(self, looser: float, denser: float, longer: float) -> "Accuracy":
         tolerance = max(self.tolerance * looser, min(self.tolerance, FINEST_TOLERANCE))
         resolution, longest = self.resolution * denser, self.longest_step * longer
-        return replace(
+        return variant(
             self,
             resolution=min(max(resolution, 1.0), 1000.0),
             tolerance=min(tolerance, 1.0),
@@ -281,7 +281,7 @@ def _settings_of(value: Any) -> Any:  # a Budget too
             return Budget.of(name)
         if name.endswith(FIXED):
             wanted = Accuracy.of(name.removesuffix(FIXED).rstrip(" ,"))
-            return replace(wanted, name=name, method="classical", order=4, fixed=0.0)
+            return variant(wanted, name=name, method="classical", order=4, fixed=0.0)
     try:
         target = np.nan if isinstance(value, bool) else float(value)
     except (TypeError, ValueError, OverflowError):

@@ -132,8 +132,10 @@ class AveragingWindow:
         return float(work[-1] - at_start) / self.duration
 
     def spline(self, values: np.ndarray):
-        """Cubic spline in time through samples (T, ...). `ValueError` where they are not finite."""
-        return _spline(self.run.time, np.asarray_chkfinite(values))
+        """Cubic spline in time through samples (T, ...), not a knot at its ends. `ValueError` where not finite."""
+        from scipy.interpolate import make_interp_spline  # in half the time of CubicSpline
+
+        return make_interp_spline(self.run.time, values, k=min(3, len(self.run.time) - 1))
 
     def center_of_mass(self, time: Any) -> np.ndarray:
         """The centre of mass over the water (..., 3) [m] at the times (...) [s]."""
@@ -146,24 +148,3 @@ class AveragingWindow:
         paths = np.stack((self.run.center_of_mass, self.run.backbone[:, -1]), axis=1)
         drift = np.outer(self.run.time - self.run.time[0], self.run.scene.current)
         return self.spline(paths - paths[0] - drift[:, None])
-
-
-def _spline(time: np.ndarray, values: np.ndarray):
-    """`scipy.interpolate.CubicSpline`, not a knot at its ends, to the bit and in a third of the time."""
-    from scipy.interpolate import PPoly
-    from scipy.linalg.lapack import dgtsv
-
-    rows, step, two_steps = values.reshape(len(time), -1), time[1:] - time[:-1], time[2:] - time[:-2]
-    tall = step[:, None]
-    rise = (rows[1:] - rows[:-1]) / tall
-    right = np.empty_like(rows)
-    right[1:-1] = 3.0 * (tall[1:] * rise[:-1] + tall[:-1] * rise[1:])
-    for end, next_one in ((0, 1), (-1, -2)):
-        a, b = step[end], step[next_one]
-        right[end] = ((a + 2.0 * (a + b)) * b * rise[end] + a**2 * rise[next_one]) / (a + b)
-    below, above = np.concatenate((step[1:], two_steps[-1:])), np.concatenate((two_steps[:1], step[:-1]))
-    diagonal = np.concatenate((step[1:2], 2.0 * (step[1:] + step[:-1]), step[-2:-1]))
-    slope = dgtsv(below, diagonal, above, right)[3]
-    bend = (slope[1:] + slope[:-1] - 2.0 * rise) / tall
-    cubics = np.concatenate((bend / tall, (rise - slope[:-1]) / tall - bend, slope[:-1], rows[:-1]))
-    return PPoly.construct_fast(cubics.reshape(4, len(step), *values.shape[1:]), time)
