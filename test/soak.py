@@ -87,13 +87,13 @@ def soak(start, duration: float, *, limit: float, look: float = LOOK, memory_lim
         "-p", "stop_with_publisher:=true",
     )  # fmt: skip
     visualiser.wait_for_output("look at it")
-    gait, clock = start("gait_generator"), Clock()
+    clock = Clock()
     dynamics = start(
         "dynamics", "--ros-args", "-p", f"duration:={duration}", "-p", f"rate:={RATE}", "-p", "real_time_factor:=0",
         "-p", "wait_for_subscribers:=2", "-p", "subscriber_timeout:=60",
     )  # fmt: skip
-    dynamics.wait_for_output("adopted")
-    began = time.monotonic()
+    dynamics.wait_for_output("waiting for curvature_law")
+    gait, began = start("gait_generator"), time.monotonic()  # the run begins after the first look
     processes = dict(zip(NODES, (dynamics, gait, visualiser), strict=True))
     times, memory = [], {node: [] for node in NODES}
     while dynamics.status is None:
@@ -103,10 +103,9 @@ def soak(start, duration: float, *, limit: float, look: float = LOOK, memory_lim
             looked = {name: anonymous_memory(node.process.pid) for name, node in processes.items()}
         except (OSError, IndexError):  # one has just ended
             break
-        if clock.time > 0.0:
-            times.append(clock.time)
-            for name, value in looked.items():
-                memory[name].append(value)
+        times.append(clock.time)
+        for name, value in looked.items():
+            memory[name].append(value)
     clock.close()
     wall = time.monotonic() - began
     for node in (dynamics, visualiser, listener):
