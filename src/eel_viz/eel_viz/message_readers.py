@@ -140,13 +140,13 @@ def read_motors(message: Any) -> messages.Motors:
 
 
 def read_diagnostics(message: Any) -> list[messages.Status]:
-    """From diagnostic_msgs/DiagnosticArray."""
+    """From diagnostic_msgs/DiagnosticArray. A value without a key is left out: a recording has no place for it."""
     return [
         messages.Status(
             name=status.name,
             level=int.from_bytes(status.level, "little") if isinstance(status.level, bytes) else int(status.level),
             message=status.message,
-            values={entry.key: entry.value for entry in status.values},
+            values={entry.key: entry.value for entry in status.values if entry.key},
         )
         for status in message.status
     ]

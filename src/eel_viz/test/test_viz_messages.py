@@ -146,6 +146,7 @@ def test_a_backbone_of_two_points_is_read(sent):
 def test_diagnostics_with_levels_as_bytes_or_numbers():
     from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
-    status = DiagnosticStatus(level=b"\2", name="/dynamics", message="stopped", values=[KeyValue(key="law", value="x")])
+    values = [KeyValue(key="law", value="x"), KeyValue(key="", value="for which a recording has no place")]
+    status = DiagnosticStatus(level=b"\2", name="/dynamics", message="stopped", values=values)
     (read,) = reading.read_diagnostics(DiagnosticArray(status=[status]))
     assert (read.name, read.level, read.message, read.values) == ("/dynamics", 2, "stopped", {"law": "x"})

@@ -19,8 +19,8 @@ from eel_viz.recording.loggers import Loggers
 RETRY = 2.0  # s of wall time between two attempts to open a destination
 WALL_TIME = 10**17  # ns: later stamps are wall time, not simulation time
 MAXIMUM_RECORDINGS, MINUTE = 10, 60.0  # new recordings within so many seconds; each takes memory, and time to close
-LATE = 20  # polls after the next recording begins, within which first messages of a topic may come for the one before
-# it: 2 s of a node, but for those in which its process stands still
+LATE = 10  # polls after the next recording begins, within which first messages of a topic may come for the one before
+# it: a second of a node or more, but for those in which its process stands still
 RESETS, SPAN = 3, 10.0  # so many resets within so many seconds, with several publishers: not a reset
 
 
