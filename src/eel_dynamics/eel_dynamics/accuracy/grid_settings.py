@@ -3,8 +3,6 @@
 
 from typing import NamedTuple
 
-from eel_dynamics.accuracy.accuracy import Accuracy
-
 MUCH_FINER = 1.5  # times the resolution that is needed: a coarser grid replaces such a grid
 ROUND_OFF = 1e-9  # relative, between two resolutions that count as equal
 
@@ -23,12 +21,7 @@ class GridSettings(NamedTuple):
     resolution: float
     kinks: str
     knots: tuple[float, ...]
-    edges: tuple[float, ...] = ()
-
-    @staticmethod
-    def of(accuracy: Accuracy, needs: ShapeNeeds) -> "GridSettings":
-        """The settings that an `accuracy` gives for the `needs` of a law."""
-        return GridSettings(accuracy.points_per_length(needs.waves), accuracy.kinks, needs.knots)
+    edges: tuple[float, ...]
 
     def at_least(self, wanted: "GridSettings") -> "GridSettings":
         """These settings where they are fine enough for the `wanted`. Else those, but no coarser than these."""

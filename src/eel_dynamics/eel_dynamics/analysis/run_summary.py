@@ -10,7 +10,8 @@ from eel_dynamics.analysis.trim import trim_of
 
 def describe(run, periods: int | None = None) -> str:
     """Figures of the whole run, then those over the last `periods` whole periods (None: the later half of the run)."""
-    return "\n".join([*_of_the_run(run), *_of_the_gait(run, periods), *_of_the_cost(run), *_of_the_limits(run)])
+    limits = [f"beyond the model    {text}" for text in run.warnings]
+    return "\n".join([*_of_the_run(run), *_of_the_gait(run, periods), *_of_the_cost(run), *limits])
 
 
 def shown(value: float | None, digits: str = ".4g", unit: str = "") -> str:
@@ -131,7 +132,3 @@ def _of_the_cost(run) -> list[str]:
             f"it took {error.evaluations} evaluations"
         )
     return lines
-
-
-def _of_the_limits(run) -> list[str]:
-    return [f"beyond the model    {text}" for text in run.warnings]

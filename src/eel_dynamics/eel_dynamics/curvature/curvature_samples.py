@@ -23,12 +23,6 @@ QUANTITIES = "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel
 TIME_OF = attrgetter("time")
 
 
-def waves_of_points(count: int) -> float:
-    """The number of waves on the body that a sample of so many points may carry: a power of 2, so that there are few
-    different grids."""
-    return 2.0 ** math.ceil(math.log2(max(1.0, (count - 1) / POINTS_PER_WAVE)))
-
-
 def check_points(count: int) -> None:
     """`ValueError` for a sample with more points along the body than any grid carries."""
     if count > MOST_POINTS:
@@ -71,8 +65,8 @@ class CurvatureSample(NamedTuple):
             raise ValueError(f"curvature samples time must be finite, got {shown(time)} s")
         if time < now or (time == now and begun):
             raise LateSample(f"curvature samples time must lie ahead of the simulation ({now:.9g} s), got {time:.9g} s")
-        if waves is None:
-            waves = waves_of_points(len(x))
+        if waves is None:  # a power of 2, so that there are few different grids
+            waves = 2.0 ** math.ceil(math.log2(max(1.0, (len(x) - 1) / POINTS_PER_WAVE)))
         elif not (is_finite(waves) and 0.0 < waves <= MOST_WAVES):
             raise ValueError(f"curvature samples waves must be > 0 and at most {MOST_WAVES:g}, got {shown(waves)}")
         return CurvatureSample(float(time), x, values, float(waves))

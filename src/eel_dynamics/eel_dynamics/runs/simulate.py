@@ -114,13 +114,10 @@ class ProgressMonitor:
         if self._progress is not None:
             self._progress(reached, left)
         elif took + left > LONG and not self._warned:
-            self._warned = True
+            self._warned, minutes = True, (took + left) / 60.0
+            long = "for ever" if minutes == float("inf") else f"about {minutes:.2g} minutes"
             warnings.warn(
-                f"this swim of {self._duration:g} s is going to take {_minutes(took + left)}: it has come to "
+                f"this swim of {self._duration:g} s is going to take {long}: it has come to "
                 f"{reached:.3g} s in {took:.0f} s; a coarser accuracy, a slower law or a shorter duration takes less",
                 stacklevel=7,  # the caller of `simulate`, behind `swim_to_end`, `outcome`, `swim` and `record`
             )
-
-
-def _minutes(seconds: float) -> str:
-    return "for ever" if seconds == float("inf") else f"about {seconds / 60.0:.2g} minutes"

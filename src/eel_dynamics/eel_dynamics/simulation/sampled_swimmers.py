@@ -10,7 +10,7 @@ from eel_model.flow.functions import FlowField
 from numpy.typing import NDArray
 
 import eel_core
-from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
+from eel_dynamics.accuracy.grid_settings import ShapeNeeds
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 from eel_dynamics.simulation.discretisation import discretise
@@ -52,8 +52,7 @@ class SampledSwimmers:
         setup = self.setup = replace(setup, accuracy=self.accuracy)
         self._points, self._waves = points, waves
         sample = self.check(np.zeros((6, len(points))))
-        settings = GridSettings.of(self.accuracy, ShapeNeeds(sample.waves))
-        self._discretisation = discretise(setup, settings)
+        self._discretisation = discretise(setup, setup.grid_for(ShapeNeeds(sample.waves)))
         self.grid = self._discretisation.grid
         self._marches = eel_core.SampledMarches(
             self._discretisation.swimmer,

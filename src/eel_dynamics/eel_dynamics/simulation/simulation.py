@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import checked_instance, checked_row, is_finite, number
+from eel_base.quantity import checked_instance, checked_row, is_finite, number, positive
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
@@ -107,7 +107,8 @@ class Simulation(Present):
         needs = self._setup.shape_needs(checked_instance("law", law, (Law, SampledLaw)))
         if not is_finite(origin):
             raise ValueError(f"law origin must be finite, got {shown(origin)} s")
-        origin, blend = float(origin), self._setup.transition_to(law, transition)
+        origin, own = float(origin), law.transition or self._setup.default_transition
+        blend = positive("transition", transition or own, "s")
         if self._started:
             self._on_both(lambda march: march.change_law(law, origin, blend, needs))
         else:

@@ -108,10 +108,9 @@ class SimulationSetup(EqualByFields):
         """The settings of the grid for the `needs` of a law, and those of the flow."""
         if self.flow is not None:
             needs = needs._replace(waves=max(needs.waves, self.body.length / self.flow.traits.shortest_wave))
-        wanted = GridSettings.of(self.settings, needs)
         of_modes = () if self.modes is None else self.modes.edges
         edges = tuple(sorted({*of_modes, *edges_of(self.body, self.fins, of_modes)}))
-        return wanted._replace(edges=edges) if edges else wanted
+        return GridSettings(self.settings.points_per_length(needs.waves), self.settings.kinks, needs.knots, edges)
 
     @cached_property
     def modes(self) -> ModeTable | None:
@@ -145,10 +144,6 @@ class SimulationSetup(EqualByFields):
             raise ValueError(f"law {shown(law.name)} is for a body of {law.length:g} m, the body has {length:g} m")
         check_points(len(law.x))
         return ShapeNeeds(waves_of_rows(law))
-
-    def transition_to(self, law: Law | SampledLaw, transition: float | None) -> float:
-        """Time [s] of the blend to `law`: `transition`, the law's own, or the default."""
-        return positive("transition", transition or law.transition or self.default_transition, "s")
 
     @cached_property
     def settings(self) -> Accuracy:

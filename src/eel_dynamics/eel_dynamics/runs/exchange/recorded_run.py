@@ -91,7 +91,10 @@ def fields_of_messages(
     fins = len(rows["fin_states"][0].position) if "fin_states" in rows else 0
     joints = 0 if robot is None else len(robot.joints)
     found |= quantities_of(rows, station=len(found["x"]), fin=fins, joint=joints)
-    found |= {"head_acceleration": _acceleration(found["time"], found["twist"])} | _robot(found, robot)
+    # No message tells the angle of a motor behind a series spring, nor how tails bend.
+    stiff = robot is not None and not any(servo and servo.has_spring for servo in robot.servos)
+    found |= {"robot": robot, "motor_angle": found["joint_angle"] if stiff else None}
+    found["head_acceleration"] = _acceleration(found["time"], found["twist"])
     found["body"] = _body(once, scene) if body is None else body
     found["center_of_mass"] = _center_of_mass(found["body"], found["x"], found["backbone"])
     found |= dict.fromkeys(("closure_torque", "closure_force")) | dict.fromkeys(("steps", "evaluations", "nodes"), 0)
@@ -128,12 +131,6 @@ def _in_order(message: Any, robot: Robot) -> Any:
     order = [list(message.name).index(joint.name) for joint in robot.joints]
     names = FIELDS["joint_states"]
     return SimpleNamespace(**{name: np.array(getattr(message, name))[order] for name in names})
-
-
-def _robot(found: dict[str, Any], robot: Robot | None) -> dict[str, Any]:
-    """No message tells the angle of a motor behind a series spring, nor how tails bend."""
-    stiff = robot is not None and all(servo is None or not servo.has_spring for servo in robot.servos)
-    return {"robot": robot, "motor_angle": found["joint_angle"] if stiff else None}
 
 
 def _acceleration(time: np.ndarray, twist: np.ndarray) -> np.ndarray:

@@ -26,7 +26,6 @@ from eel_dynamics.runs.storage.variables import LABELS, OF_SWIMMERS, VARIABLES, 
 FORMAT = 2  # of the files; format 1 does not name its axes, the paper's; a later one cannot be read
 MOST_BYTES = 2**31 - 4  # of an array in a file
 SUFFIX = ".nc"
-KNOWN = (*VARIABLES, *OF_SWIMMERS)
 
 
 def software() -> str:
@@ -94,7 +93,8 @@ def read(path: Any, kind: str) -> Contents:
     with reading(problem), InputFile(path) as content, netcdf_file(content, "r", mmap=False) as file:
         about: dict[str, Any] = {name: getattr(file, name, None) for name in ("software", "kind", "format", "eel")}
         of_sweep = about["kind"] is None and hasattr(file, "sweep")
-        ours = {} if of_sweep else {name: file.variables[name] for name in KNOWN if name in file.variables}
+        known = () if of_sweep else (*VARIABLES, *OF_SWIMMERS)
+        ours = {name: file.variables[name] for name in known if name in file.variables}
         axes = getattr(file, "axes", PAPER.encode())
         arrays = {name: np.asarray(each.data) for name, each in ours.items()}
         arrays = {name: each.astype(float if each.dtype.kind == "f" else int) for name, each in arrays.items()}

@@ -116,11 +116,6 @@ def robot_of(plain: dict[str, Any] | None, body: Body) -> Robot | None:
     return Robot(**robot_arguments(plain["parts"]) | {"body": body if plain["own_body"] else None})
 
 
-def accuracy_of(plain: dict[str, Any]) -> Accuracy | Budget:
-    """The settings, or the budget of time, that have become plain values."""
-    return Budget.of(plain["budget"]) if "budget" in plain else Accuracy(**plain)
-
-
 def fins_of(plain: Sequence[dict[str, Any]] | None) -> tuple[Fin, ...]:
     """The fins that have become plain values."""
     angles = (each["angle"] for each in plain or ())
@@ -141,7 +136,7 @@ READERS: dict[str, Callable[[Any], Any]] = {  # by the fields of a run whose pla
     "law": law_of,
     "body": body_of,
     "scene": lambda plain: Scene(**plain),
-    "accuracy": accuracy_of,
+    "accuracy": lambda plain: Budget.of(plain["budget"]) if "budget" in plain else Accuracy(**plain),
     "error_estimate": lambda plain: plain and ErrorEstimate(**plain),
     "flow": flow_of,
     "fins": fins_of,

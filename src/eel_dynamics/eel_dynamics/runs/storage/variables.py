@@ -25,15 +25,12 @@ LABELS = {  # of the dimensions that are neither time, station nor swimmer
     "component": ("omega_x", "omega_y", "omega_z", "v_x", "v_y", "v_z"),
 }
 SIZES = {"time": "T", "station": "M", "swimmer": "B", "fin": "F", "joint": "J", "mode": "N"}  # of other dimensions
-CLOSURES = {
-    "closure_torque": Variable(("time",), "N m", "magnitude of the internal torque left over at the nose"),
-    "closure_force": Variable(("time",), "N", "magnitude of the internal force left over at the nose, less its load"),
-}
 OWN = {  # of a run itself
     "time": Variable(("time",), "s", "time"),
     "x": Variable(("station",), "m", "stations of the profiles, from the nose"),
     **{name: each for name, each in OBSERVED.items() if name not in ("energies", "powers", "closure")},
-    **CLOSURES,
+    "closure_torque": Variable(("time",), "N m", "magnitude of the internal torque left over at the nose"),
+    "closure_force": Variable(("time",), "N", "magnitude of the internal force left over at the nose, less its load"),
     **JOINT_ARRAYS,
 }
 ENERGY = "energy_"  # begins the names of the ledger's arrays in a file
