@@ -25,7 +25,7 @@ from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.run_data import ObservedArrays
 from eel_dynamics.runs.run_picture import lines_of_batch, picture_of_batch
 from eel_dynamics.runs.storage.netcdf import loaded, write
-from eel_dynamics.runs.storage.run_contents import OF_EACH, OF_SWIMMER, contents_of_batch, own_of_batch
+from eel_dynamics.runs.storage.run_contents import OF_EACH, contents_of_batch, own_of_batch
 from eel_dynamics.runs.storage.tables import dataset_of, frame_of_all, needed
 from eel_dynamics.runs.storage.variables import (
     COUNTS,
@@ -83,9 +83,6 @@ class Batch(ObservedArrays):
     def __hash__(self) -> int:
         return hash((self.laws, self.bodies, self.scenes))
 
-    def __reduce__(self) -> tuple[Any, ...]:  # each array once
-        return _batch_from, (self._contents(whole=False), *(getattr(self, name) for name in OF_SWIMMER))
-
     def __repr__(self) -> str:
         return (
             f"Batch({len(self)} swimmers, {len(self.time)} samples, {self.x.shape[1]} stations, "
@@ -99,9 +96,9 @@ class Batch(ObservedArrays):
     def _repr_html_(self) -> str:
         return cell_of(self.plot, lines_of_batch(self))
 
-    def _contents(self, whole: bool = True) -> Contents:
+    def _contents(self) -> Contents:
         assert self._energy_at_start is not None
-        return contents_of_batch(self, self._arrays, self._energy_at_start, whole)
+        return contents_of_batch(self, self._arrays, self._energy_at_start)
 
     @property
     def valid(self) -> np.ndarray:
@@ -205,9 +202,9 @@ def batch_of(
     return Batch(time=time, x=x, energy=energy, _arrays=full, _energy_at_start=start, **found)
 
 
-def _batch_from(contents: Contents, *at_hand: Any) -> Batch:
-    """The batch of these contents. at_hand: what need not be made of them, of `OF_SWIMMER`."""
-    arrays, own = contents.arrays, own_of_batch(contents, at_hand)
+def _batch_from(contents: Contents) -> Batch:
+    """The batch of these contents."""
+    arrays, own = contents.arrays, own_of_batch(contents)
     there = {part: PARTS[part][0] in arrays for part in ("wrench", "load", "fins")}  # 0 in older files
     ours = {name: arrays[name] for name in names_with(**there) if name in arrays}
     counts = {name: arrays[name].astype(int) for name in ("samples", *COUNTS)}

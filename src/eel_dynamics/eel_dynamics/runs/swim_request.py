@@ -19,7 +19,7 @@ from eel_dynamics.runs.sampling import check_memory, checked_times, default_samp
 from eel_dynamics.runs.settled_duration import duration_of
 from eel_dynamics.runs.storage.variables import arrays_of
 from eel_dynamics.simulation.march import March
-from eel_dynamics.simulation.simulation_setup import SimulationSetup, check_planar_law
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
 from eel_dynamics.simulation.time_budget import affordable
 
@@ -66,7 +66,6 @@ class SwimRequest(NamedTuple, Generic[Kind]):
         """The request of these arguments of `simulate`. `ValueError` as there."""
         seconds: Any = duration_of(duration, [(motion, setup)])  # a text is refused below
         law = law_from(motion, seconds, setup.body.length)
-        check_planar_law(law, setup.scene)
         period = default_sample_period([law], seconds) if sample_period is None else sample_period
         times, wrench = checked_times(seconds, period), setup.scene.internal_wrench
         check_covers(setup.flow, float(times[-1]))

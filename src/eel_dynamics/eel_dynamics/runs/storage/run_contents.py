@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Takes a run, or a batch, apart into `Contents`, and puts their fields together again."""
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -22,7 +21,6 @@ OF_EACH = {  # fields of a run, and of a batch, whose swimmers have their own
     "accuracy": "accuracies",
     "error_estimate": "error_estimates",
 }
-OF_SWIMMER = tuple(OF_EACH.values())[:6]  # in the order of the arguments of a pickled batch
 
 
 def contents_of_run(run: Any) -> Contents:
@@ -64,29 +62,24 @@ def in_rep103_axes(contents: Contents) -> Contents:
     return contents._replace(arrays=contents.arrays | turned(contents.arrays), axes=REP103)
 
 
-def contents_of_batch(
-    batch: Any, arrays: dict[str, np.ndarray], energy_at_start: np.ndarray, whole: bool = True
-) -> Contents:
-    """The contents of a `Batch` with all `arrays` of its swimmers. whole: with their robots and warnings."""
+def contents_of_batch(batch: Any, arrays: dict[str, np.ndarray], energy_at_start: np.ndarray) -> Contents:
+    """The contents of a `Batch` with all `arrays` of its swimmers."""
     values = {name: plain.plain_of(getattr(batch, name)) for name in ("error_estimates", "flows", "fins")}
     values |= {name: plain.each_once(getattr(batch, name)) for name in ("laws", "bodies", "scenes", "accuracies")}
     values |= {"errors": plain.plain_of(batch.error), "stations": batch.backbone is not None}
-    if whole:
-        robots = map(plain.plain_robot, batch.robots, batch.bodies)
-        lines = [list(batch[index].warnings) if samples else [] for index, samples in enumerate(batch.samples)]
-        values |= {"robots": list(robots), "warnings": lines}
+    robots = map(plain.plain_robot, batch.robots, batch.bodies)
+    lines = [list(batch[index].warnings) if samples else [] for index, samples in enumerate(batch.samples)]
+    values |= {"robots": list(robots), "warnings": lines}
     own = {name: getattr(batch, name) for name in ("time", "x", "samples", *COUNTS)}
     return Contents("batch", values, own | {"energy_at_start": energy_at_start} | arrays)
 
 
-def own_of_batch(contents: Contents, at_hand: Sequence[Any]) -> dict[str, Any]:
-    """What the swimmers of a batch have of their own. at_hand: what need not be read, of `OF_SWIMMER`."""
+def own_of_batch(contents: Contents) -> dict[str, Any]:
+    """What the swimmers of a batch have of their own."""
     values, none = contents.values, len(contents.arrays["samples"]) * [None]
-    own: dict[str, Any] = dict(zip(OF_SWIMMER, at_hand, strict=False))
-    for name, read in plain.READERS.items():
-        several = OF_EACH[name]
-        own[several] = own.get(several) or plain.row_of(values.get(several, none), read)
-    own["robots"] = own.get("robots") or list(map(plain.robot_of, values.get("robots", none), own["bodies"]))
+    several = {OF_EACH[name]: read for name, read in plain.READERS.items()}
+    own: dict[str, Any] = {name: plain.row_of(values.get(name, none), read) for name, read in several.items()}
+    own["robots"] = list(map(plain.robot_of, values.get("robots", none), own["bodies"]))
     own["error"] = plain.row_of(values["errors"], plain.stop_of)
     if any(len(each) != len(none) for each in own.values()):
         raise ValueError(f"there must be a law, a body, a scene and settings for each of {len(none)} swimmers")
