@@ -5,7 +5,7 @@ from contextlib import suppress
 from typing import Any
 
 import numpy as np
-from eel_base.wording import not_one_of, shown
+from eel_base.wording import not_one_of
 
 from eel_dynamics.analysis.analysis import Analysis
 
@@ -93,21 +93,6 @@ def checked_measures(argument: str, names, estimate: bool = True) -> tuple[str, 
         if name in OF_ESTIMATE and not estimate:
             raise ValueError(f"{argument} {name} needs the error estimate, which is off")
     return names
-
-
-def checked_point(found: dict) -> dict:
-    """The measures of a point as plain numbers, and its "error". `ValueError` names a measure that is not a number."""
-    if not isinstance(found.get("error"), str):
-        raise ValueError(f"'error' must be the point's own, a text, and no measure, got {shown(found.get('error'))}")
-    point = {}
-    for name, value in found.items():
-        number = value.item() if hasattr(value, "item") and np.ndim(value) == 0 else value
-        if not isinstance(name, str) or name == "stopped":
-            raise ValueError(f"measure must have a name other than 'stopped', got {shown(name)}")
-        if name != "error" and not isinstance(number, (bool, int, float)):
-            raise ValueError(f"measure {shown(name)} must be a real number, got {shown(value)}")
-        point[name] = number
-    return point
 
 
 def described(name: str) -> dict[str, str]:

@@ -171,9 +171,9 @@ class SampleQueue:
         return self._samples[:2]
 
     @property
-    def next_ones(self) -> list[CurvatureSample]:
-        """The samples for which a grid is chosen."""
-        return self._samples[:SAMPLES_OF_A_GRID]
+    def waves(self) -> float:
+        """The most waves on the body of the samples for which a grid is chosen."""
+        return max(sample.waves for sample in self._samples[:SAMPLES_OF_A_GRID])
 
     @property
     def end(self) -> float | None:

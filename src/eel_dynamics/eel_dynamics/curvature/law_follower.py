@@ -106,16 +106,16 @@ class LawFollower:
         """The next time [s] at which the source changes by itself; inf where there is none."""
         return self.samples.first_two[1].time if self.sampled else self.samples.next_bracket(now)
 
-    def pass_event(self, now: float, prepare: Callable[[list[CurvatureSample]], None]) -> None:
+    def pass_event(self, now: float, prepare: Callable[[float], None]) -> None:
         """Change the source where that is due at `now` [s].
 
-        The new source is the samples that bracket the time, their next interval, or rest. prepare(samples) is called
-        with these samples and the next ones before they drive the shape. It may call `move`.
+        The new source is the samples that bracket the time, their next interval, or rest. prepare(waves on the body) is
+        called before samples drive the shape, for them and the next ones. It may call `move`.
         """
         if self.sampled and now >= self.next_event(now):
             self.samples.drop_first()
             if len(self.samples) > 1:
-                prepare(self.samples.next_ones)
+                prepare(self.samples.waves)
                 self._follow(self._segment())
             else:
                 value, _, _ = self._at(now)
@@ -125,7 +125,7 @@ class LawFollower:
         elif not self.sampled:
             self.samples.drop_until(now)
             if self.samples.begun(now):
-                prepare(self.samples.next_ones)
+                prepare(self.samples.waves)
                 self._take_over(self._segment(), now, self._default_transition)
                 self.sampled, self.resting = True, False
 
@@ -133,7 +133,7 @@ class LawFollower:
         """Change the source at each event from `now` to `time` [s], for who reads the law and does not march."""
         while (event := self.next_event(now)) < time:
             now = event
-            self.pass_event(now, lambda samples: None)
+            self.pass_event(now, lambda waves: None)
 
     def _forget_samples(self) -> None:
         self.samples, self.sampled, self.resting = SampleQueue(), False, False

@@ -110,7 +110,7 @@ class March:
         origin [s]: the time of the law's own t = 0. The grid fits the `needs` of the law and of the last one.
         """
         both = ShapeNeeds(max(self._needs.waves, needs.waves), needs.knots)
-        self._use(self.settings.at_least(self.setup.grid_for(both)))
+        self._fit(both)
         self.follower.blend_into(law, origin=origin, time=self.time, transition=transition)
         self._hand_over_law()
         self._needs = needs
@@ -118,7 +118,7 @@ class March:
     def change_flow(self, flow: Flow | None):
         """Let the water move by `flow` from now on, at present with the same velocity as before."""
         self.setup = replace(self.setup, flow=flow)
-        self._use(self.settings.at_least(self.setup.grid_for(self._needs)))
+        self._fit(self._needs)
         self._hand_over_law()
 
     def change_robot(self, robot: Robot | None):
@@ -137,12 +137,10 @@ class March:
         servo, sign = self.setup.modes.servo_of(joint)
         self.core.command(servo, kind, sign * value)
 
-    def _fit(self, needs: ShapeNeeds):
-        """Make the grid fine enough for the `needs` and, once no finer motion is left, not much finer."""
+    def _fit(self, needs: ShapeNeeds, coarser: bool = False):
+        """Make the grid fine enough for the `needs`; `coarser` where it is much finer."""
         wanted = self.setup.grid_for(needs)
-        self._use(self.settings.at_least(wanted) if self.follower.blending else self.settings.fitted(wanted))
-
-    def _use(self, settings: GridSettings):
+        settings = self.settings.fitted(wanted) if coarser else self.settings.at_least(wanted)
         if settings is not self.settings:
             self._change_grid(settings)
 
@@ -196,7 +194,7 @@ class March:
         if self.follower.law_on_grid is not self.law_on_grid:
             self._hand_over_law(smoothly=True)
             if not self.follower.sampled and self.follower.law is not None:
-                self._fit(self.setup.shape_needs(self.follower.law))
+                self._fit(self.setup.shape_needs(self.follower.law), coarser=not self.follower.blending)
         return True
 
     def _pass_event(self) -> float:
@@ -205,11 +203,11 @@ class March:
         From one pair of samples to the next the curvature has two continuous derivatives, and the motion goes on
         smoothly: the rate of the momentum depends on the curvature and its rate.
         """
-        before = self.follower.between_samples
-        self.follower.pass_event(self.time, lambda ahead: self._fit(ShapeNeeds(max(each.waves for each in ahead))))
-        if self.follower.law_on_grid is not self.law_on_grid:
-            self._hand_over_law(smoothly=before and self.follower.between_samples)
-        return self.follower.next_event(self.time)
+        follower, before = self.follower, self.follower.between_samples
+        follower.pass_event(self.time, lambda waves: self._fit(ShapeNeeds(waves), coarser=not follower.blending))
+        if follower.law_on_grid is not self.law_on_grid:
+            self._hand_over_law(smoothly=before and follower.between_samples)
+        return follower.next_event(self.time)
 
     def record(self, times: np.ndarray, wrench: bool, load: bool, look=None, enough=None) -> tuple:
         """As `Simulation.record`. enough(out, works): asked after each sample with the works so far, whether to end."""

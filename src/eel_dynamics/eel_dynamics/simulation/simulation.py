@@ -17,7 +17,7 @@ from eel_model.flow.flow import Flow
 from eel_model.flow.stream import LATEST, CurrentStream
 from eel_model.initial_state import checked_state
 from eel_model.robot.actuators import Servo
-from eel_model.robot.robot import Robot, checked_robot
+from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
 from numpy.typing import ArrayLike
 
@@ -223,7 +223,7 @@ class Simulation(Present):
         robot: with the same parts at the same places; its gains, limits, springs and dampers may differ. None: as here.
         """
         other = copy(self)
-        setup = self._setup if robot is None else self._with_robot(robot)
+        setup = self._setup if robot is None else self._setup.with_robot(robot)
         if accuracy is not None:
             setup = affordable(replace(setup, accuracy=Accuracy.of(accuracy)))
         other._setup, other.robot = setup, setup.robot
@@ -237,17 +237,10 @@ class Simulation(Present):
 
         Commands hold. `ValueError` for other parts, or at other places.
         """
-        setup = self._with_robot(robot)
+        setup = self._setup.with_robot(robot)
         self._on_both(lambda march: march.change_robot(setup.robot))
         self._setup, self.robot = setup, setup.robot
         self._meter.due = True
-
-    def _with_robot(self, robot: Robot) -> SimulationSetup:
-        changed = replace(self._setup, robot=checked_robot(robot))
-        parts = robot.parts if changed.modes else ()  # they fit the body
-        if [*map(_place, parts)] != [*map(_place, self.robot.parts if self.robot else ())]:
-            raise ValueError("robot must have the same parts at the same places to go on")
-        return changed
 
     # -- march
 
@@ -303,13 +296,3 @@ class Simulation(Present):
         recorded = self._march.record(times, wrench, load, look)
         self._meter.compare(self._march)
         return recorded
-
-
-def _place(part: Any) -> tuple[Any, ...]:
-    """Kind and place of a part of a robot, and whether it has coordinates of its own."""
-    own = getattr(getattr(part, "actuator", None), "has_spring", False)
-    return (
-        type(part),
-        *(getattr(part, name, None) for name in ("position", "start", "end", "width", "modes", "axis")),
-        own,
-    )

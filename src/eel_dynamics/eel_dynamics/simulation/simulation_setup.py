@@ -2,6 +2,7 @@
 """The set-up of a simulation: its checked arguments, and the accuracy and grid that follow from them."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from eel_base.cached import cached_property
@@ -78,6 +79,14 @@ class SimulationSetup(EqualByFields):
         start = _checked_start(self.scene, position, orientation, twist, flow)
         return replace(self, initial_state=start, flow=flow)
 
+    def with_robot(self, robot: Robot | None) -> "SimulationSetup":
+        """The same with other numbers of the robot. `ValueError` for other parts, or at other places."""
+        changed = replace(self, robot=checked_robot(robot))
+        parts = changed.robot.parts if changed.robot and changed.modes else ()  # they fit the body
+        if [*map(_place, parts)] != [*map(_place, self.robot.parts if self.robot else ())]:
+            raise ValueError("robot must have the same parts at the same places to go on")
+        return changed
+
     def __hash__(self) -> int:  # type: ignore[override]
         return hash((self.body, self.scene, self.accuracy, self.x.tobytes(), self.flow, self.robot, self.fins))
 
@@ -153,6 +162,12 @@ class SimulationSetup(EqualByFields):
         if self.robot is None:
             return settings
         return settings.for_robot(any(servo and servo.has_spring for servo in self.robot.servos))
+
+
+def _place(part: Any) -> tuple[Any, ...]:
+    """Kind and place of a part of a robot, and whether it has coordinates of its own."""
+    where = (getattr(part, name, None) for name in ("position", "start", "end", "width", "modes", "axis"))
+    return type(part), *where, getattr(getattr(part, "actuator", None), "has_spring", False)
 
 
 def _checked_start(scene: Scene, position, orientation, twist, flow) -> InitialState:

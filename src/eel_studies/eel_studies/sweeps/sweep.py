@@ -23,7 +23,7 @@ from eel_base.quantity import checked_instance, positive
 from eel_base.wording import WorkStopped, one_line, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
-from eel_dynamics.analysis.measures import checked_measures, checked_point, described
+from eel_dynamics.analysis.measures import checked_measures, described
 from eel_dynamics.analysis.settling import tell_unsettled
 from eel_dynamics.batches.simulate_batch import available_cores
 from eel_dynamics.runs.sampling import checked_times, default_sample_period
@@ -50,7 +50,7 @@ from eel_studies.points import (
     run_of_point,
 )
 from eel_studies.sweeps.sweep_key import key_of
-from eel_studies.sweeps.sweep_parts import Parts, Results
+from eel_studies.sweeps.sweep_parts import Parts, Results, checked_point
 from eel_studies.sweeps.sweep_recordings import SweepRecordings
 from eel_studies.workers import workers_of
 

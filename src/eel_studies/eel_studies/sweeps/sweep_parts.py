@@ -11,15 +11,30 @@ import warnings
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from eel_base.files.input_file import InputFile, from_json, reading
 from eel_base.files.output_file import check_output, replacing
 from eel_base.quantity import checked_instance
 from eel_base.wording import one_line, shown
-from eel_dynamics.analysis.measures import checked_point
 from eel_dynamics.runs.storage.digest import ATTRIBUTE, add_digest_to, check_digest_of, digest_of_text
 
 Results = dict[int, dict[str, Any]]  # the measures of each point, by its index
 ABOUT, OURS = "sweep.json", ("sweep*.json", "part-*.json")
+
+
+def checked_point(found: dict[str, Any]) -> dict[str, Any]:
+    """The measures of a point as plain numbers, and its "error". `ValueError` names a measure that is not a number."""
+    if not isinstance(found.get("error"), str):
+        raise ValueError(f"'error' must be the point's own, a text, and no measure, got {shown(found.get('error'))}")
+    point = {}
+    for name, value in found.items():
+        number = value.item() if hasattr(value, "item") and np.ndim(value) == 0 else value
+        if not isinstance(name, str) or name == "stopped":
+            raise ValueError(f"measure must have a name other than 'stopped', got {shown(name)}")
+        if name != "error" and not isinstance(number, (bool, int, float)):
+            raise ValueError(f"measure {shown(name)} must be a real number, got {shown(value)}")
+        point[name] = number
+    return point
 
 
 class Parts:
