@@ -243,8 +243,9 @@ class March:
     def command(self, servo: int, kind: str, value: float) -> None:
         """Have a servo do so from now on. kind: angle [rad], rate [rad/s], torque [N m]; law: what the law asks."""
 
-    def singular_mode(self) -> int | None:
-        """The first mode that makes the mass matrix singular in the present state; None where it is definite."""
+    def to_blame(self, singular: bool) -> int:
+        """The coordinate with the greatest error in the last step. singular: the first mode that makes the mass matrix
+        singular in the present state, if one does."""
 
     @property
     def time(self) -> float:
@@ -263,9 +264,6 @@ class March:
         """Where the numbers of an instant lie in a row, from and up to: x, rate, acceleration (C,) each; moment (M,),
         the internal moment on each mode; torque (S,) of the servos; pushing (C,) of muscles and given torques; elastic
         [J], rotors [J], motor_power [W], damping_power [W], damping_work [J]. Without modes all are empty."""
-    @property
-    def hardest(self) -> int:
-        """The coordinate with the greatest error in the last step."""
     @property
     def counts(self) -> tuple[int, int, int]:
         """Steps, rejected steps and evaluations of the head's dynamics so far."""

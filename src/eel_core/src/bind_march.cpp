@@ -41,12 +41,11 @@ std::shared_ptr<Modes> modes_from(const py::object& table, const py::object& x, 
     modes->inertia = numbers("inertia", c).vector(), modes->rest = numbers("rest", c).vector();
     modes->stiffness = numbers("stiffness", c * c).vector(), modes->damping = numbers("damping", c * c).vector();
     for (const py::handle motor : table.attr("motors")) {
-        const py::object servo = motor.attr("servo");
-        const auto number = [&](const char* name) { return servo.attr(name).cast<std::optional<double>>(); };
-        constexpr double none = std::numeric_limits<double>::infinity();
-        const auto coordinate = motor.attr("coordinate").cast<std::size_t>();
-        modes->servos.push_back({coordinate, *number("kp"), *number("kd"), number("torque_limit").value_or(none),
-                                 number("speed_limit").value_or(none)});
+        const auto number = [servo = py::object(motor.attr("servo"))](const char* name) {  // none: no limit
+            return servo.attr(name).cast<std::optional<double>>().value_or(std::numeric_limits<double>::infinity());
+        };
+        modes->servos.push_back({motor.attr("coordinate").cast<std::size_t>(), number("kp"), number("kd"),
+                                 number("torque_limit"), number("speed_limit")});
     }
     modes->drive = drive;
     modes->push = Numbers::sized(push, "push", drive ? c * drive->tables->rows() : 0).vector();
@@ -124,13 +123,12 @@ void bind_marches(py::module_& module)
              py::arg("rows"), py::arg("wrench"), py::arg("load"), py::arg("until"))
         .def("observe", &PyMarch::observe, py::arg("whole"), py::arg("row"), py::arg("wrench"), py::arg("load"))
         .def("command", &PyMarch::command, py::arg("servo"), py::arg("kind"), py::arg("value"))
-        .def("singular_mode", &PyMarch::singular_mode)
+        .def("to_blame", &PyMarch::to_blame, py::arg("singular"))
         .def_property_readonly("time", of_present(&Present::time))
         .def_property_readonly("state", [](PyMarch& march) { return shown(march.march().now().state); })
         .def_property_readonly("works", of_present(&Present::works))
         .def_property_readonly("outside", &PyMarch::outside)
         .def_property_readonly("row", &PyMarch::row)
-        .def_property_readonly("hardest", [](PyMarch& march) { return march.march().hardest(); })
         .def_property_readonly("counts", [](PyMarch& march) { return tuple_of(march.march().counts()); });
 
     bind_sampled_marches(module);

@@ -142,10 +142,10 @@ class PyMarch {
         const InUse in_use(in_use_);
         return march_.set_slice(nodes);
     }
-    std::optional<std::size_t> singular_mode()
+    std::size_t to_blame(bool singular)
     {
         const Driven in_use(*this);
-        return march_.singular_mode();
+        return march_.to_blame(singular);
     }
     std::optional<std::tuple<double, double, double, double>> outside() const
     {

@@ -82,8 +82,7 @@ def outside_flow(flow: Flow | None, time: float, places: np.ndarray) -> Simulati
 
 def by_part(stopped: SimulationStopped, core: eel_core.March, table: ModeTable, singular: bool) -> SimulationStopped:
     """The error of a robot with the modes of `table`, with the part that is to blame. singular: the inertia is."""
-    mode = core.singular_mode() if singular else None
-    part = shown(table.name[core.hardest if mode is None else mode])
+    part = shown(table.name[core.to_blame(singular)])
     if singular:
         hint = f"{part} has no inertia of its own: give it an armature, or a support apart from the others"
     else:

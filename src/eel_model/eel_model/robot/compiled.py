@@ -86,11 +86,6 @@ class ModeTable:
         """(M,) whether a mode is that of a joint."""
         return np.asarray(self.degree == HINGE)
 
-    @property
-    def sprung(self) -> list[Motor]:
-        """The motors behind series springs, in the order of their coordinates."""
-        return [motor for motor in self.motors if motor.servo.has_spring]
-
     def servo_of(self, joint: str) -> tuple[int, float]:
         """The number of the servo that drives a `joint`, and the joint's sign."""
         mode = self.name.index(joint)

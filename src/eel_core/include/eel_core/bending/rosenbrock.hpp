@@ -75,24 +75,13 @@ class BentStepper {
         trial_ = before_.y;
     }
 
+    Pace pace;
+
     BentBody<M>& body() { return body_; }
     Workspace<M>& work() { return body_.work; }
     const Workspace<M>& work() const { return body_.work; }
-    const Counts& counts() const { return counts_; }
     std::size_t hardest() const { return hardest_; }  // coordinate with the greatest error in the last step
     double end_time() const { return here_.time; }
-
-    void forget(const State& y, double spare_steps)
-    {
-        scale_ = {}, torque_scale_ = 0.0, counts_ = {}, budget_ = spare_steps, proposed_ = 0.0;
-        scale_.include(y);
-    }
-    template <class Other>
-    void take_over(const BentStepper<Other>& other)
-    {
-        scale_ = other.scale_, torque_scale_ = other.torque_scale_, counts_ = other.counts_, budget_ = other.budget_,
-        proposed_ = other.proposed_;
-    }
 
     void begin(const BentSettings& settings, const Present& now)
     {
@@ -100,22 +89,14 @@ class BentStepper {
         if (body_.find_present(settings, now)) body_.momenta_of(body_.work.twist, now.rate.data(), y.momentum.data());
         here_.time = before_.time = now.time, here_.y = y, works_ = with_dampers(now.works, now.damping_work);
         anew_ = true, known_ends_ = 0;
-        if (proposed_ == 0.0) proposed_ = first_step * settings.bounds.longest;
     }
 
     Status march(const BentSettings& settings, double until, Slice& slice)
     {
-        const double tiny = 1e-12 * std::max(1.0, std::abs(until));
         if (anew_ && !find_point(settings, here_, false)) return Status::singular;
-        while (end_time() < until - tiny) {
-            if (budget_ < 0.0) return Status::too_many_steps;
-            if (slice.used_up()) return Status::unfinished;
-            const std::int64_t first = counts_.evaluations;
-            const Status status = take_step(settings, tiny);
-            if (status != Status::marched) return status;
-            slice.spend(static_cast<std::size_t>(counts_.evaluations - first) * 2 * swimmer_->grid.nodes);
-        }
-        return Status::marched;
+        return pace.march(
+            until, 2 * swimmer_->grid.nodes, 0, slice, [this] { return end_time(); },
+            [&](double tiny) { return take_step(settings, tiny); });
     }
 
     // Has the last step end at `time` [s] within it: it is taken again. Whether it was. What lies between the ends of
@@ -159,9 +140,6 @@ class BentStepper {
     }
 
   private:
-    template <class>
-    friend class BentStepper;
-
     // Integral up to theta of the parabola through powers at 0, 1/2 and 1.
     static double work_until(double theta, double a, double b, double c)
     {
@@ -189,15 +167,9 @@ class BentStepper {
         }
     }
 
-    static void normalise(State& y)
-    {
-        const double length = std::sqrt(square_of(y, 3, 7));
-        for (std::size_t k = 3; k < 7; ++k) y[k] /= length;
-    }
-
     bool evaluate(const BentSettings& settings, double time, const BentState& y)
     {
-        ++counts_.evaluations;
+        ++pace.counts.evaluations;
         if (!body_.configure_at(settings, time, y.head, y.x.data())) return false;
         body_.find_rates_of(y.momentum.data());
         body_.move(y.x.data());
@@ -217,7 +189,7 @@ class BentStepper {
     // step.
     bool find_point(const BentSettings& settings, BentPoint<M>& point, bool smoothed)
     {
-        ++counts_.evaluations;
+        ++pace.counts.evaluations;
         if (!body_.configure_at(settings, point.time, point.y.head, point.y.x.data())) return false;
         body_.find_rates_of(point.y.momentum.data());
         if (smoothed && smooth_rates(point)) {
@@ -377,7 +349,7 @@ class BentStepper {
         for (std::size_t i = 0; i < modes_->modes; ++i)
             if (modes_->continuous[i]) du[i] -= smoothed[M::freedoms + i];
         double worst = 0.0;
-        const double scale = std::max(torque_scale_, settings.bounds.torque_floor);
+        const double scale = std::max(pace.torque_scale, settings.bounds.torque_floor);
         for (std::size_t i = 0; i < c; ++i) {
             double torque = 0.0;
             for (std::size_t j = 0; j < c; ++j)
@@ -388,21 +360,19 @@ class BentStepper {
             if (here > worst) worst = here, hardest_ = i;
         }
         return std::max(worst / settings.bounds.tolerance,
-                        error_by_tolerance(settings.bounds, scale_, trial_.head, defect, length));
+                        error_by_tolerance(settings.bounds, pace.scale, trial_.head, defect, length));
     }
 
     Status take_step(const BentSettings& settings, double tiny)
     {
-        // For the choice of lengths: a step by itself, of a length of its own or of a fixed one.
-        static const Method adaptive = Method::dormand_prince(), equal = Method::classical();
         const bool fixed = std::isinf(settings.bounds.tolerance);
-        const Method& like = fixed ? equal : adaptive;
         constexpr double order = 3.0;
         const StepBounds& bounds = settings.bounds;
         const double start = here_.time;
         const Span span(settings.breakpoints, start + tiny);
-        double proposed = proposed_, length = time_step_size(like, bounds, proposed, start, span, tiny), error = 0.0;
-        torque_scale_ = std::max(torque_scale_, greatest_torque(here_.force));
+        double asked = pace.proposed, length = time_step_size(!fixed, false, bounds, asked, start, span, tiny);
+        double error = 0.0;
+        pace.torque_scale = std::max(pace.torque_scale, greatest_torque(here_.force));
         for (;;) {
             Status status = attempt(settings, length, error);
             if (status == Status::marched && error <= 1.0) {
@@ -412,19 +382,16 @@ class BentStepper {
                 if (find_point(settings, here_, true)) break;
                 std::swap(before_, here_), status = Status::singular;
             }
-            ++counts_.rejected, budget_ -= 1.0;
-            length *= status != Status::marched ? shrinking_of_lost : shrink_factor(error, order);
-            proposed = length;
+            pace.shorten(status, error, order, length);
+            asked = length;
             if (fixed || length < bounds.smallest) {
                 return status == Status::marched ? Status::step_too_small : status;
             }
         }
-        const double grown = length * rounded_down(growth_factor(error, order));
-        proposed_ = std::min(bounds.longest, length >= proposed ? grown : std::max(proposed, grown));
+        pace.propose(bounds, length, asked, growth_factor(error, order));
         remember_end();
-        anew_ = false, ++counts_.steps;
-        budget_ = std::min(bounds.spare_steps, budget_ + bounds.most_steps * length) - 1.0;
-        scale_.include(here_.y.head);
+        anew_ = false;
+        pace.accept(bounds, length, here_.y.head);
         works_before_ = works_;
         return settings.ledger ? add_works(settings) : Status::marched;
     }
@@ -437,15 +404,15 @@ class BentStepper {
         return greatest;
     }
 
-    // By Simpson's rule.
-    Status add_works(const BentSettings& settings)
+    // By Simpson's rule. Apart, so that its sums round alike whatever calls it.
+    EEL_CORE_APART Status add_works(const BentSettings& settings)
     {
         const double length = here_.time - before_.time, time = before_.time + 0.5 * length;
         State head{};
         std::vector<double> x, rate;
         interpolate(0.5, head, x, rate);
         normalise(head);
-        ++counts_.evaluations;
+        ++pace.counts.evaluations;
         if (!body_.configure_at(settings, time, head, x.data())) return Status::singular;
         body_.move_by_rates(rate.data(), x.data());
         body_.find_rates(settings, head);
@@ -472,10 +439,7 @@ class BentStepper {
     std::array<State, Tableau::stages> step_head_{};
     std::array<std::vector<double>, Tableau::stages> step_x_, step_p_, step_u_;
     BentPowers works_{}, works_before_{}, middle_{};  // at the end and the start of the step; powers at its middle
-    MomentumScale scale_;
     std::size_t hardest_ = 0;
-    double torque_scale_ = 0.0, proposed_ = 0.0, budget_ = 0.0;
-    Counts counts_;
     bool anew_ = true;
 };
 

@@ -200,16 +200,14 @@ class March {
         return true;
     }
 
-    // Of a body with modes: the coordinate that has asked for the last step's length, and the first of the modes that
-    // make M singular in the present state; none where it is positive definite.
-    std::size_t hardest()
+    // Of a body with modes, the coordinate that has asked for the last step's length or, where the inertia is
+    // `singular` in the present state, the first mode that makes it so.
+    std::size_t to_blame(bool singular)
     {
-        return steps_.of_modes<std::size_t>([](auto& stepper) { return stepper.hardest(); });
-    }
-    std::optional<std::size_t> singular_mode()
-    {
-        return steps_.of_modes<std::optional<std::size_t>>(
-            [&](auto& stepper) { return stepper.body().singular_mode(settings_, now_); });
+        return steps_.of_modes<std::size_t>([&](auto& stepper) {
+            const auto mode = singular ? stepper.body().singular_mode(settings_, now_) : std::nullopt;
+            return mode.value_or(stepper.hardest());
+        });
     }
 
   private:

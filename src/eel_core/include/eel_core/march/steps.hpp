@@ -20,17 +20,11 @@ class Steps {
     }
 
     // Goes on as `last` would, which takes steps of another swimmer or by another method.
-    void take_over(const Steps& last)
-    {
-        const auto take_over = [](auto& stepper, const auto& other) {
-            if constexpr (requires { stepper.take_over(other); }) stepper.take_over(other);
-        };
-        std::visit(take_over, stepper_, last.stepper_);
-    }
+    void take_over(Steps& last) { pace() = last.pace(); }
 
     Counts counts() const
     {
-        return std::visit([](const auto& stepper) { return stepper.counts(); }, stepper_);
+        return std::visit([](const auto& stepper) { return stepper.pace.counts; }, stepper_);
     }
     // Time [s] and place [m] in the world outside the grid of the flow, where the last evaluation was there.
     std::optional<std::array<double, 4>> outside() const
@@ -71,10 +65,7 @@ class Steps {
     }
 
     // Forgets what was before the first of all steps, which begins at present.
-    void forget(const StepBounds& bounds, const Present& now)
-    {
-        std::visit([&](auto& stepper) { stepper.forget(now.state, bounds.spare_steps); }, stepper_);
-    }
+    void forget(const StepBounds& bounds, const Present& now) { pace().forget(now.state, bounds); }
     // Lets the next step begin at present.
     void begin(const BentSettings& settings, const Present& now)
     {
@@ -113,6 +104,11 @@ class Steps {
 
   private:
     using Steppers = std::variant<Stepper<Space>, Stepper<Plane>, BentStepper<Space>, BentStepper<Plane>>;
+
+    Pace& pace()
+    {
+        return std::visit([](auto& stepper) -> Pace& { return stepper.pace; }, stepper_);
+    }
 
     static Steppers made(const Swimmer& swimmer, const Method& method, bool planar, const Modes* modes)
     {

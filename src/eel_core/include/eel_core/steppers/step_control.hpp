@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What sets the time step. `error_by_tolerance` judges the error of the last one, `growth_factor` or `shrink_factor`
-// propose the next one by it (called by `Stepper`, and for robots in bending/rosenbrock.hpp), and `time_step_size` fits
-// the proposal to `StepBounds` and to what lies ahead. The bounds come from the accuracy and the law: `step_bounds_of`
-// in eel_dynamics/accuracy/step_bounds.py.
+// propose the next one by it (called by `Pace`, for `Stepper` and, for robots, `BentStepper`), and `time_step_size`
+// fits the proposal to `StepBounds` and to what lies ahead. The bounds come from the accuracy and the law:
+// `step_bounds_of` in eel_dynamics/accuracy/step_bounds.py.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "eel_core/momentum_balance.hpp"
-#include "eel_core/steppers/method.hpp"
 
 namespace eel_core {
 
@@ -34,6 +33,13 @@ inline double square_of(const State& values, std::size_t first, std::size_t last
     double square = 0.0;
     for (std::size_t k = first; k < last; ++k) square += values[k] * values[k];
     return square;
+}
+
+// Makes the orientation a unit quaternion again.
+inline void normalise(State& y)
+{
+    const double length = std::sqrt(square_of(y, 3, 7));
+    for (std::size_t k = 3; k < 7; ++k) y[k] /= length;
 }
 
 // Squares of the greatest angular and linear momentum of a march so far.
@@ -102,13 +108,13 @@ struct Span {
 
 // Length [s] of the next step from `start`: as proposed, or such that steps end on the next breakpoint without a sliver
 // before it; at most a part of the span, for the works are integrals of what goes on there.
-inline double time_step_size(const Method& method, const StepBounds& bounds, double proposed, double start,
+inline double time_step_size(bool adaptive, bool adams, const StepBounds& bounds, double proposed, double start,
                              const Span& span, double tiny)
 {
     const double left = span.next - start;
-    if (!method.adaptive) return left < 1e100 ? left / std::ceil(left / bounds.longest - 1e-9) : bounds.longest;
+    if (!adaptive) return left < 1e100 ? left / std::ceil(left / bounds.longest - 1e-9) : bounds.longest;
     const double length = std::min({bounds.longest, proposed, bounds.part_of_span * (span.next - span.before)});
-    if (method.adams > 0 && left < equal_steps * length) return left / std::ceil(left / length - 1e-9);
+    if (adams && left < equal_steps * length) return left / std::ceil(left / length - 1e-9);
     if (length > left - tiny) return left;
     return length > 0.5 * left ? std::min(length, 0.5 * left) : length;
 }

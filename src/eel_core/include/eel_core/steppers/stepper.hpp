@@ -10,7 +10,7 @@
 #include "eel_core/algorithm.hpp"
 #include "eel_core/steppers/adams.hpp"
 #include "eel_core/steppers/method.hpp"
-#include "eel_core/steppers/present.hpp"
+#include "eel_core/steppers/pace.hpp"
 
 namespace eel_core {
 
@@ -23,9 +23,10 @@ class Stepper {
     {
     }
 
+    Pace pace;
+
     Workspace<M>& work() { return work_; }
     const Workspace<M>& work() const { return work_; }
-    const Counts& counts() const { return counts_; }
     double end_time() const { return start_ + length_; }
 
     // The head's twist relative to the water at `time` [s], where the last step ends there: it is known already.
@@ -35,41 +36,19 @@ class Stepper {
         return end_twist_;
     }
 
-    // Forgets what was before the first of all steps.
-    void forget(const State& y, double spare_steps)
-    {
-        scale_ = {}, counts_ = {}, budget_ = spare_steps, proposed_ = 0.0;
-        scale_.include(y);
-    }
-
-    // Goes on as `other` would, which takes steps of another swimmer or by another method.
-    template <class Other>
-    void take_over(const Stepper<Other>& other)
-    {
-        scale_ = other.scale_, counts_ = other.counts_, budget_ = other.budget_, proposed_ = other.proposed_;
-    }
-
     // Lets the next step begin at present.
-    void begin(const MarchSettings& settings, const Present& now)
+    void begin(const MarchSettings&, const Present& now)
     {
         end_ = now.state, works_ = now.works;
         start_ = now.time, length_ = 0.0, anew_ = true;
-        if (proposed_ == 0.0) proposed_ = first_step * settings.bounds.longest;
     }
 
     // Marches until the step holds the time `until` [s].
     Status march(const MarchSettings& settings, double until, Slice& slice)
     {
-        const double tiny = 1e-12 * std::max(1.0, std::abs(until));
-        while (end_time() < until - tiny) {
-            if (budget_ < 0.0) return Status::too_many_steps;
-            if (slice.used_up()) return Status::unfinished;
-            const std::int64_t before = counts_.evaluations - (settings.ledger ? evaluations_of_powers : 0);
-            const Status status = take_step(settings, tiny);
-            if (status != Status::marched) return status;
-            slice.spend(static_cast<std::size_t>(counts_.evaluations - before) * swimmer_->grid.nodes);
-        }
-        return Status::marched;
+        return pace.march(
+            until, swimmer_->grid.nodes, settings.ledger ? evaluations_of_powers : 0, slice,
+            [this] { return end_time(); }, [&](double tiny) { return take_step(settings, tiny); });
     }
 
     // Puts state and works at the present time, which lies within the step.
@@ -86,16 +65,7 @@ class Stepper {
     }
 
   private:
-    template <class>
-    friend class Stepper;
-
     bool ends_at(double time) const { return std::abs(end_time() - time) <= 1e-12 * std::max(1.0, std::abs(time)); }
-
-    static void normalise(State& y)
-    {
-        const double length = std::sqrt(square_of(y, 3, 7));
-        for (std::size_t k = 3; k < 7; ++k) y[k] /= length;
-    }
 
     std::span<const State> rates(std::size_t count) const { return std::span(rate_).first(count); }
 
@@ -113,7 +83,7 @@ class Stepper {
 
     bool evaluate(const MarchSettings& settings, double time, const State& y, State& rate)
     {
-        ++counts_.evaluations;
+        ++pace.counts.evaluations;
         return rate_of_state(*swimmer_, settings.law, settings.water, time, y, work_, rate);
     }
 
@@ -143,7 +113,7 @@ class Stepper {
         double sum = 0.0;
         for (std::size_t k = 0; k < state_space; ++k) sum += std::abs(trial_[k]) + std::abs(rate_[last][k]);
         if (!(sum < 1e300)) return Status::not_finite;  // NaN too
-        error = method_.adaptive ? error_by_tolerance(settings.bounds, scale_, trial_, defect, length) : 0.0;
+        error = method_.adaptive ? error_by_tolerance(settings.bounds, pace.scale, trial_, defect, length) : 0.0;
         return Status::marched;
     }
 
@@ -155,22 +125,22 @@ class Stepper {
         const bool first_of_span = anew_;
         begin_anew_ = anew_;
         if (!anew_) rate_[0] = rate_[method_.stages - 1];  // the last rate of a step is the first of the next
-        double proposed = proposed_, length = time_step_size(method_, bounds, proposed, start, span, tiny), error = 0.0;
-        const double accepted = method_.adams > 0 ? accepted_of_adams : 1.0;
+        const bool adams = method_.adams > 0;
+        double asked = pace.proposed, error = 0.0;
+        double length = time_step_size(method_.adaptive, adams, bounds, asked, start, span, tiny);
+        const double accepted = adams ? accepted_of_adams : 1.0;
         for (;;) {
             const Status status = attempt(settings, start, length, error);
             if (status == Status::marched && error <= accepted) break;
-            ++counts_.rejected, budget_ -= 1.0;
-            length *= status != Status::marched ? shrinking_of_lost : shrink_factor(error, method_.order);
-            proposed = length;
+            pace.shorten(status, error, method_.order, length);
+            asked = length;
             if (!method_.adaptive || length < bounds.smallest) {
                 anew_ = true;
                 return status == Status::marched ? Status::step_too_small : status;
             }
         }
-        const double grown = length * rounded_down(growth(bounds, length, error));
-        if (method_.adams > 0) adams_.accept(length, rate_[method_.stages - 1]);
-        proposed_ = std::min(bounds.longest, length >= proposed ? grown : std::max(proposed, grown));
+        pace.propose(bounds, length, asked, growth(bounds, length, error));
+        if (adams) adams_.accept(length, rate_[method_.stages - 1]);
         if (std::abs(start + length - span.next) <= tiny) length = span.next - start;
         accept(settings, start, length);
         return settings.ledger ? find_step_powers(settings, first_of_span) : Status::marched;
@@ -183,7 +153,7 @@ class Stepper {
         const bool steps_are_short = length <= Adams::is_short * bounds.longest;
         const auto promised = [&](std::size_t terms) {
             const State defect = adams_.defect(terms, rate_[method_.stages - 1]);
-            return growth_factor(error_by_tolerance(bounds, scale_, trial_, defect, length),
+            return growth_factor(error_by_tolerance(bounds, pace.scale, trial_, defect, length),
                                  static_cast<double>(terms + 1));
         };
         const double here = growth_factor(error, static_cast<double>(adams_.order() + 1));
@@ -200,9 +170,7 @@ class Stepper {
         }
         begin_ = end_, end_ = trial_, end_twist_ = work_.twist;  // its end was evaluated last
         start_ = start, length_ = length, anew_ = false;
-        ++counts_.steps;
-        budget_ = std::min(settings.bounds.spare_steps, budget_ + settings.bounds.most_steps * length) - 1.0;
-        scale_.include(end_);
+        pace.accept(settings.bounds, length, end_);
     }
 
     Status find_step_powers(const MarchSettings& settings, bool at_start_too)
@@ -224,16 +192,13 @@ class Stepper {
     Method method_;
     Adams adams_;
     Workspace<M> work_;
-    double start_ = 0.0, length_ = 0.0, proposed_ = 0.0;  // [s]
+    double start_ = 0.0, length_ = 0.0;  // [s]
     State begin_{}, end_{}, trial_{};
     Twist<M, double> end_twist_{};
     std::array<State, Method::most_stages> rate_{};
     WorkDone works_{};  // at the start of the step
     StepPowers powers_;
-    MomentumScale scale_;
-    Counts counts_;
-    double budget_ = 0.0;  // steps that may still be tried before the next are earned by motion
-    bool anew_ = true;     // the rate and powers at the start of the next step are not known
+    bool anew_ = true;  // the rate and powers at the start of the next step are not known
     bool begin_anew_ = true;
 };
 

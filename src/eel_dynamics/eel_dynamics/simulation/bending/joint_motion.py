@@ -46,14 +46,15 @@ class JointMotion:
         """The arrays of `JOINT_ARRAYS`."""
         table, x, rate = self._table, self._of("x"), self._of("rate")
         coordinate = np.arange(len(table))  # of each mode's motor
-        torque = self._of("pushing")[:, coordinate].copy()
-        for column, (_, mode, own) in enumerate(table.motors):
+        torque = self._of("pushing")[:, coordinate]
+        on_joint = torque.copy()
+        for column, (servo, mode, own) in enumerate(table.motors):
             coordinate[mode] = own
             torque[:, mode] += self._of("torque")[:, column]
-        on_joint = torque.copy()
-        for servo, mode, own in table.sprung:
-            between, slip = x[:, own] - x[:, mode], rate[:, own] - rate[:, mode]
-            on_joint[:, mode] = servo.series_stiffness * between + servo.series_damping * slip
+            on_joint[:, mode] = torque[:, mode]
+            if servo.has_spring:
+                between, slip = x[:, own] - x[:, mode], rate[:, own] - rate[:, mode]
+                on_joint[:, mode] = servo.series_stiffness * between + servo.series_damping * slip
         joints, soft = np.flatnonzero(table.joints), np.flatnonzero(~table.joints)
         sign, motors, torque = table.sign[joints], coordinate[joints], torque[:, joints]
         return {
