@@ -105,7 +105,8 @@ def described_fields(kind: type[Any]) -> str:
 
 def documented(kind: Kind) -> Kind:
     """Decorator: append the `described_fields` to the docstring of the dataclass `kind`."""
-    kind.__doc__ = f"{(kind.__doc__ or '').rstrip()}\n\n{described_fields(kind)}\n"
+    head = "    Fields, with default, meaning, unit, and bounds or choices:"
+    kind.__doc__ = f"{(kind.__doc__ or '').rstrip()}\n\n{head}\n\n{described_fields(kind)}\n"
     return kind
 
 

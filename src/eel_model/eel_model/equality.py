@@ -9,12 +9,12 @@ import numpy as np
 
 def same(one: Any, other: Any) -> bool:
     """Whether two values are equal: numbers, texts, arrays, errors, and dicts, tuples and lists of such values."""
-    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
-        return _same_arrays(one, other)
     if isinstance(one, float) and isinstance(other, float):
         return one == other or (one != one and other != other)
     if type(one) is not type(other):
         return False
+    if isinstance(one, np.ndarray):
+        return one.dtype == other.dtype and np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
     if isinstance(one, BaseException):
         return one.args == other.args and same(vars(one), vars(other))
     if isinstance(one, dict):
@@ -38,9 +38,3 @@ class EqualByFields:
         return same_fields(self, other)
 
     __hash__ = None  # type: ignore[assignment]  # typeshed has `object` hashable
-
-
-def _same_arrays(one: Any, other: Any) -> bool:
-    if not (isinstance(one, np.ndarray) and isinstance(other, np.ndarray)):
-        return False
-    return one.dtype == other.dtype and np.array_equal(one, other, equal_nan=one.dtype.kind == "f")

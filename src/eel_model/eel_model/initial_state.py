@@ -21,10 +21,7 @@ class InitialState(NamedTuple):
 
     def in_water(self, current: np.ndarray) -> np.ndarray:
         """Twist (6,) of the head relative to water that flows with the `current` (3,) [m/s]."""
-        relative = self.twist - 0.0
-        if current.any():
-            relative[3:] -= world_from_body(self.orientation).T @ current
-        return relative
+        return self.against_water(-current).twist
 
     def against_water(self, current: np.ndarray) -> "InitialState":
         """The same in the world, of a state whose twist is relative to water that flows with the `current` (3,)."""

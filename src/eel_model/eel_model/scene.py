@@ -42,9 +42,7 @@ TAIL_PRESSURE = ("lumped", "distributed")
 @documented
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Scene(Quantities):
-    """Physics of a run. Immutable; every field has a default. `ValueError` names a field that does not fit.
-
-    Fields, with default, meaning, unit, and bounds or choices:"""
+    """Physics of a run. Immutable; every field has a default. `ValueError` names a field that does not fit."""
 
     what: ClassVar[str] = "scene"
 

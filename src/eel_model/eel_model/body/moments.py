@@ -24,6 +24,7 @@ from eel_model.body.grid import Grid, Panel, collocation_matrix, integration_mat
 # Points of Gauss' rule in each part between two breaks, and how many equal parts of a panel are short enough for them
 # beside the waves of its polynomials.
 RULES = (8, 8), (4, 64), (3, 256)
+_gauss_rule = cache(legendre.leggauss)
 
 
 Field = Callable[[np.ndarray], np.ndarray]  # of X (M,) [m] to values (m, M)
@@ -142,8 +143,3 @@ def _gauss_points(breaks: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarra
     points, weights = _gauss_rule(number)
     half = 0.5 * np.diff(ends, prepend=0.0)[:, None]
     return ends, (ends[:, None] - half * (1.0 - points)).ravel(), (half * weights).ravel()
-
-
-@cache
-def _gauss_rule(number: int) -> tuple[np.ndarray, np.ndarray]:
-    return legendre.leggauss(number)

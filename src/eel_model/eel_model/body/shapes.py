@@ -34,28 +34,11 @@ class NamedHalfAxis:
 
 
 @dataclass(frozen=True)
-class PolynomialHalfAxis:
-    """A half-axis whose square is a Chebyshev polynomial between two of the `bounds` (0, kinks, length) [m].
-
-    coefficients [m^2]: one row for each panel.
-    """
-
-    bounds: tuple[float, ...]
-    coefficients: tuple[tuple[float, ...], ...]
-
-    def __call__(self, x: ArrayLike) -> np.ndarray:
-        """[m] at `x` [m]; 0 at the nose."""
-        x = np.asarray(x, dtype=float)
-        along = PolynomialAlong(self.bounds, self.coefficients)
-        square = along(x)
-        square -= np.where(x <= self.bounds[1], along(0.0), 0.0)
-        least = np.finfo(float).tiny  # no section inside is singular by round-off
-        return np.asarray(np.sqrt(np.where(x > 0.0, np.maximum(square, least), 0.0)))
-
-
-@dataclass(frozen=True)
 class PolynomialAlong:
-    """A number along the body that is a Chebyshev polynomial between two of the `bounds` (0, kinks, length) [m]."""
+    """A number along the body that is a Chebyshev polynomial between two of the `bounds` (0, kinks, length) [m].
+
+    coefficients: one row for each panel.
+    """
 
     bounds: tuple[float, ...]
     coefficients: tuple[tuple[float, ...], ...]
@@ -65,6 +48,18 @@ class PolynomialAlong:
         ends = zip(pairwise(self.bounds), self.coefficients, strict=True)
         series = [chebyshev.Chebyshev(row, domain=domain) for domain, row in ends]
         return piecewise(series, self.bounds, np.asarray(x, dtype=float))
+
+
+class PolynomialHalfAxis(PolynomialAlong):
+    """A half-axis whose square is such a polynomial, with coefficients [m^2]."""
+
+    def __call__(self, x: ArrayLike) -> np.ndarray:
+        """[m] at `x` [m]; 0 at the nose."""
+        x = np.asarray(x, dtype=float)
+        square = super().__call__(x)
+        square -= np.where(x <= self.bounds[1], super().__call__(0.0), 0.0)
+        least = np.finfo(float).tiny  # no section inside is singular by round-off
+        return np.asarray(np.sqrt(np.where(x > 0.0, np.maximum(square, least), 0.0)))
 
 
 def _boyer_radius(x: np.ndarray) -> np.ndarray:

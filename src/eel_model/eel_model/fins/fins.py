@@ -32,7 +32,6 @@ from eel_model.scene import Scene
 COMMANDED = "commanded"  # angle of a fin that follows commands
 SIDES = {"right": 1.0, "left": -1.0}  # along axis 2 of the sections
 APART = 1e-9  # of the body's length: stations that are closer count as one place
-Table = tuple[tuple[float, ...], tuple[float, ...]]  # times [s], angles [rad]
 
 
 @dataclass(frozen=True)
@@ -51,9 +50,7 @@ class RollHold(Quantities):
 @documented
 @dataclass(frozen=True)
 class Fin(Quantities):
-    """A fin. Immutable; `ValueError` names what does not fit.
-
-    Fields, with default, meaning, unit, and bounds:"""
+    """A fin. Immutable; `ValueError` names what does not fit."""
 
     what: ClassVar[str] = "fin"
 

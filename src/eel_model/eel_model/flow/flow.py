@@ -168,5 +168,4 @@ def lattice_around(place: np.ndarray, length: float, flow: Flow) -> np.ndarray:
 
 def velocities_at(flow: Flow, points: np.ndarray, time: float) -> np.ndarray:
     """Velocities (n, 3) [m/s] at the `points` at `time` [s]; 0 where they are not known."""
-    velocity: np.ndarray = np.nan_to_num(flow.rows_at(points, time)[..., 3:6], nan=0.0)
-    return velocity
+    return np.asarray(np.nan_to_num(flow.rows_at(points, time)[..., 3:6], nan=0.0))

@@ -12,7 +12,7 @@ from eel_base.quantity import checked_row, number, numbers
 from eel_base.wording import shown
 from numpy.typing import ArrayLike
 
-from eel_model.equality import same_fields
+from eel_model.equality import EqualByFields
 from eel_model.flow.flow import Flow, FlowTraits
 from eel_model.flow.grid_files import AXES, read_grid
 
@@ -21,7 +21,7 @@ RESOLVED = 8.0  # points of a grid in the shortest wave that its cubics follow w
 
 
 @dataclass(frozen=True, eq=False)
-class GriddedFlow(Flow):
+class GriddedFlow(EqualByFields, Flow):
     """A flow between the points of a grid: cubics of Catmull and Rom, with one continuous derivative.
 
     Args:
@@ -88,10 +88,7 @@ class GriddedFlow(Flow):
         rows, axes = read_grid(source, velocity)
         return GriddedFlow(rows, **axes, period=period, wave=wave)
 
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, GriddedFlow) and same_fields(self, other)
-
-    def __hash__(self) -> int:
+    def __hash__(self) -> int:  # type: ignore[override]  # the base has none
         return self._hash
 
     @cached_property

@@ -60,9 +60,7 @@ class Uniform(Flow):
 @documented
 @dataclass(frozen=True, kw_only=True)
 class Gust(Quantities, Flow):
-    """A gust that is the same everywhere: it grows and falls by the smooth ramp f_r of eq. (64).
-
-    Fields, with default, meaning, unit, and bounds:"""
+    """A gust that is the same everywhere: it grows and falls by the smooth ramp f_r of eq. (64)."""
 
     vectors = ("velocity",)
 
@@ -88,8 +86,7 @@ class Shear(Quantities, Flow):
     """A shear layer: u = velocity tanh(d / width), d the distance from its middle plane; or u = velocity d / width.
 
     The theory is that of irrotational flow: see the limits in docs/howto/flow.md.
-
-    Fields, with default, meaning, unit, and bounds or choices:"""
+    """
 
     vectors = "velocity", "across"
 
@@ -133,9 +130,7 @@ class _Vortices(Flow):
 @documented
 @dataclass(frozen=True, kw_only=True)
 class Vortex(_Vortices, Quantities):
-    """A vortex of Lamb and Oseen about a vertical axis: u = Gamma / (2 pi r^2) (1 - exp(-r^2 / r_c^2)) (-y, x, 0).
-
-    Fields, with default, meaning, unit, and bounds:"""
+    """A vortex of Lamb and Oseen about a vertical axis: u = Gamma / (2 pi r^2) (1 - exp(-r^2 / r_c^2)) (-y, x, 0)."""
 
     circulation: float = quantity(0.1, "m^2/s", "Gamma; > 0 turns from x to y")
     core: float = quantity(0.2, "m", "radius r_c of the core", 0.0, exclusive=True)
@@ -155,8 +150,7 @@ class VortexStreet(_Vortices, Quantities):
     Vortex number i of each row lies i `spacing` downstream of `start`; the right row lies half a spacing further. With
     circulation > 0 the left row turns from y to x, as the wake of a body that is dragged; with < 0, of one that swims.
     The vortices drift as told; they do not move each other.
-
-    Fields, with default, meaning, unit, and bounds:"""
+    """
 
     circulation: float = quantity(0.1, "m^2/s", "size of Gamma of each vortex")
     core: float = quantity(0.1, "m", "radius r_c of the cores", 0.0, exclusive=True)
@@ -188,8 +182,7 @@ class Wave(Quantities, Flow):
 
     u = amplitude w exp(k (z - surface)) (cos p along the direction, sin p upwards), p = k s - w t + phase, w^2 = g k,
     s the way along the direction.
-
-    Fields, with default, meaning, unit, and bounds:"""
+    """
 
     in_plane = False
 

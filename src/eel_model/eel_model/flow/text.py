@@ -6,6 +6,8 @@ vortex_street core=0.3 + gust velocity=0,0.1,0 start=3
 tank.nc
 """
 
+from functools import reduce
+from operator import add
 from typing import Any
 
 from eel_base.wording import not_one_of, shown
@@ -21,26 +23,19 @@ JOINED = " + "
 
 def flow_from_text(text: str) -> Flow | None:
     """The flow of a `text`; None of an empty one. `ValueError` names what does not fit."""
-    flow: Flow | None = None
-    for part in text.split(JOINED) if text.strip() else []:
-        one = _part(part.strip())
-        flow = one if flow is None else flow + one
-    return flow
+    return reduce(add, (_part(part.strip()) for part in text.split(JOINED))) if text.strip() else None
 
 
 def text_of_flow(flow: Flow) -> str:
     """The text of a `flow`. `ValueError` for one of functions or a grid."""
-    plain = plain_of_flow(flow) or []
-    names = {kind: name for name, kind in NAMES.items()}
-    for part, each in zip(parts_of(flow), plain, strict=True):
-        if each["kind"] not in names:
+    names, texts = {kind: name for name, kind in NAMES.items()}, []
+    for part, plain in zip(parts_of(flow), plain_of_flow(flow) or [], strict=True):
+        kind = plain.pop("kind")
+        if kind not in names:
             raise ValueError(f"flow {part!r} has no text: give its file")
-    return JOINED.join(
-        " ".join(
-            [names[each.pop("kind")], *(f"{name}={_written(value)}" for name, value in each.items() if value != ())]
-        )
-        for each in ({name: value for name, value in each.items() if value is not None} for each in plain)
-    )
+        given = (f"{name}={_written(value)}" for name, value in plain.items() if value not in (None, ()))
+        texts.append(" ".join((names[kind], *given)))
+    return JOINED.join(texts)
 
 
 def _part(text: str) -> Flow:

@@ -27,9 +27,7 @@ from eel_base.wording import shown
 @documented
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Servo(Quantities):
-    """A motor that follows the law by its own feedback. Immutable; `ValueError` names a field that does not fit.
-
-    Fields, with default, meaning, unit, and bounds:"""
+    """A motor that follows the law by its own feedback. Immutable; `ValueError` names a field that does not fit."""
 
     what: ClassVar[str] = "servo"
 

@@ -71,7 +71,8 @@ class ContinuousPart(Part):
 class PassiveTail(ContinuousPart):
     """A part that springs and dampers alone hold straight, up to the tail or to `end`. Immutable.
 
-    `ValueError` names a field that does not fit. Fields, with default, meaning, unit, and bounds:"""
+    `ValueError` names a field that does not fit.
+    """
 
     what: ClassVar[str] = "passive tail"
 
@@ -87,9 +88,7 @@ class PassiveTail(ContinuousPart):
 @documented
 @dataclass(frozen=True, repr=False)
 class Muscle(ContinuousPart):
-    """A part that muscles bend against its own stiffness. Immutable; `ValueError` names a field that does not fit.
-
-    Fields, with default, meaning, unit, and bounds:"""
+    """A part that muscles bend against its own stiffness. Immutable; `ValueError` names a field that does not fit."""
 
     what: ClassVar[str] = "muscle"
 

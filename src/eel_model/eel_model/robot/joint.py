@@ -26,9 +26,7 @@ LONGEST_NAME = 100
 @documented
 @dataclass(frozen=True, repr=False)
 class Joint(Part):
-    """A joint. Immutable; `ValueError` names a field that does not fit.
-
-    Fields, with default, meaning, unit, and bounds:"""
+    """A joint. Immutable; `ValueError` names a field that does not fit."""
 
     what: ClassVar[str] = "joint"
 
