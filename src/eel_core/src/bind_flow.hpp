@@ -84,10 +84,7 @@ inline std::shared_ptr<Flow> flow_from(const py::list& sources)
         const auto number = [&](std::size_t i) { return source[i].cast<double>(); };
         const auto vector = [&](std::size_t i, const char* name) { return vector_from(source[i], name); };
         if (kind == "ramped") {
-            RampedFlow ramped{vector(1, "velocity"), {}};
-            for (const auto& [start, end, delta] : source[2].cast<std::vector<std::tuple<double, double, double>>>())
-                ramped.ramps.push_back({start, end, delta});
-            flow->sources.emplace_back(std::move(ramped));
+            flow->sources.emplace_back(RampedFlow{vector(1, "velocity"), ramps_from(source[2])});
         } else if (kind == "spline") {
             SplineFlow spline{cubics_from<Vector3<double>>(source[1], source[2])};
             for (auto& cubic : spline.velocity.pieces)

@@ -125,7 +125,11 @@ void bind_marches(py::module_& module)
         .def("command", &PyMarch::command, py::arg("servo"), py::arg("kind"), py::arg("value"))
         .def("to_blame", &PyMarch::to_blame, py::arg("singular"))
         .def_property_readonly("time", of_present(&Present::time))
-        .def_property_readonly("state", [](PyMarch& march) { return shown(march.march().now().state); })
+        .def_property_readonly("state",
+                               [](PyMarch& march) {
+                                   const State state = half_turn(march.march().now().state);
+                                   return std::vector<double>(state.begin(), state.begin() + state_size);
+                               })
         .def_property_readonly("works", of_present(&Present::works))
         .def_property_readonly("outside", &PyMarch::outside)
         .def_property_readonly("row", &PyMarch::row)

@@ -32,9 +32,8 @@ class PySampledMarches {
     {
         const Numbers sample = Numbers::sized(values, "values", sample_rows * marches_.points());
         const InUse in_use(in_use_, these);
-        marches_[index].set_flow(std::move(flow));
         return marches_[index].start(bounds, vector_from(position, "position"), orientation_from(orientation),
-                                     twist_from(twist, "twist"), sample.data());
+                                     twist_from(twist, "twist"), sample.data(), std::move(flow));
     }
     void wake() { marches_.wake(); }
     // Whether all that are not left out have marched.

@@ -61,7 +61,10 @@ class PyMarch {
         check_fits(*law);
         BentSettings settings{
             {*law, std::move(breakpoints), bounds, ledger, water_from(current, std::move(flow))}, 0, {}, {}};
-        settings.law.fins = angles_from(fin_angles);
+        for (const py::handle each : fin_angles) {
+            const auto [knots, coefficients] = each.cast<std::pair<py::object, py::object>>();
+            settings.law.fins.push_back(cubics_from<double>(knots, coefficients));
+        }
         if (const Modes* const modes = march_.modes()) {
             settings.first_mode = law->tables->rows() - modes->modes;
             const std::size_t imposed = modes->servos.size() * settings.first_mode;

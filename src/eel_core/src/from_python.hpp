@@ -97,13 +97,6 @@ inline Twist<Space, double> twist_from(const py::handle& object, const std::stri
 {
     return twist_of(row_from<6>(object, name).data());
 }
-inline State state_from(const py::handle& object)
-{
-    const auto v = row_from<state_size>(object, "state");
-    State y{};
-    std::copy(v.begin(), v.end(), y.begin());
-    return half_turn(y);
-}
 
 // Knots (n,) [s], and the coefficients (n - 1, 4) of cubics from the constant on, of numbers or of vectors.
 template <class Value>
@@ -122,24 +115,11 @@ Cubics<Value> cubics_from(const py::handle& knots, const py::handle& coefficient
     return cubics;
 }
 
-// What the servos are given: a pair of knots and coefficients each.
-inline std::vector<AngleLaw> angles_from(const py::list& given)
+inline std::vector<Ramp> ramps_from(const py::handle& ramps)
 {
-    std::vector<AngleLaw> laws;
-    for (const py::handle each : given) {
-        const auto [knots, coefficients] = each.cast<std::pair<py::object, py::object>>();
-        laws.push_back(cubics_from<double>(knots, coefficients));
-    }
-    return laws;
-}
-
-// Of a state, what Python sees.
-using PythonState = std::array<double, state_size>;
-inline PythonState shown(const State& state)
-{
-    const State turned = half_turn(state);
-    PythonState result;
-    std::copy_n(turned.begin(), state_size, result.begin());
+    std::vector<Ramp> result;
+    for (const auto& [start, end, delta] : ramps.cast<std::vector<std::tuple<double, double, double>>>())
+        result.push_back({start, end, delta});
     return result;
 }
 

@@ -50,13 +50,7 @@ py::dict layout(std::size_t samples, std::size_t stations, bool wrench, bool loa
 Wave wave_from(const py::tuple& wave)
 {
     Wave result{wave[0].cast<double>(), {}, wave[2].cast<std::size_t>(), wave[3].cast<std::size_t>()};
-    for (const py::handle factor : wave[1]) {
-        auto& ramps = result.factors.emplace_back();
-        for (const py::handle ramp : factor) {
-            const auto [start, end, delta] = ramp.cast<std::tuple<double, double, double>>();
-            ramps.push_back({start, end, delta});
-        }
-    }
+    for (const py::handle factor : wave[1]) result.factors.push_back(ramps_from(factor));
     return result;
 }
 
@@ -107,9 +101,11 @@ void repeat_rate_in(const Swimmer& swimmer, const LawOnGrid& law, double time, c
 void repeat_rate(const Swimmer& swimmer, bool planar, const LawOnGrid& law, double time, const py::object& state,
                  std::size_t count, std::shared_ptr<Flow> flow)
 {
-    const State y = state_from(state);
+    State y{};
+    std::ranges::copy(row_from<state_size>(state, "state"), y.begin());
     const py::gil_scoped_release unlocked;
-    (planar ? repeat_rate_in<Plane> : repeat_rate_in<Space>)(swimmer, law, time, y, count, {{}, std::move(flow)});
+    (planar ? repeat_rate_in<Plane> : repeat_rate_in<Space>)(swimmer, law, time, half_turn(y), count,
+                                                             {{}, std::move(flow)});
 }
 
 std::array<std::array<double, 6>, 6> inertia_at(Instant& instant, const LawOnGrid& law, double time)

@@ -25,18 +25,26 @@ EEL_CORE_INLINE inline void find_loads(const Swimmer& swimmer, Workspace<M>& wor
 // powers are.
 inline double height_in(const Water& water, double time, const State& y) { return y[2] - water.current.z * time; }
 
-// Shape and twist of the head in state y at `time` [s], in such `water`. False where the inertia is not positive
-// definite.
+// Shape of the body and axes of the head in state y at `time` [s], with the flow of such `water` along it, and its
+// fins.
+template <class M>
+void place_body(const Swimmer& swimmer, const LawOnGrid& law, const Water& water, double time, const State& y,
+                Workspace<M>& work)
+{
+    configure(swimmer, law, time, work);  // eq. (25)
+    work.head = head_frame(y, M());
+    set_flow(swimmer, water, time, Vector3{y[0], y[1], y[2]}, work);
+    if constexpr (!M::planar)
+        if (!work.fins.empty()) place_fins(swimmer, law, water, time, y, work);
+}
+
+// The same, and the twist of the head. False where the inertia is not positive definite.
 template <class M>
 bool find_head_motion(const Swimmer& swimmer, const LawOnGrid& law, const Water& water, double time, const State& y,
                       Workspace<M>& work)
 {
-    configure(swimmer, law, time, work);  // eq. (25)
-    work.head = head_frame(y, M());
+    place_body(swimmer, law, water, time, y, work);
     work.momentum = momentum_in_head(y, work.head);
-    set_flow(swimmer, water, time, Vector3{y[0], y[1], y[2]}, work);
-    if constexpr (!M::planar)
-        if (!work.fins.empty()) place_fins(swimmer, law, water, time, y, work);
     return find_twist(swimmer, work);  // section 6
 }
 

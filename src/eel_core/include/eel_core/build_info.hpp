@@ -17,34 +17,30 @@ struct BuildInfo {
     std::string_view sanitizers;  // empty: none
 };
 
-constexpr std::string_view target_level()
-{
+inline constexpr std::string_view target_level =
 #if defined(__AVX512F__) && defined(__AVX512BW__) && defined(__AVX512CD__) && defined(__AVX512DQ__) && \
     defined(__AVX512VL__)
-    return "x86-64-v4";
+    "x86-64-v4";
 #elif defined(__AVX2__) && defined(__FMA__) && defined(__BMI2__)
-    return "x86-64-v3";
+    "x86-64-v3";
 #elif defined(__SSE4_2__) && defined(__SSSE3__)
-    return "x86-64-v2";
+    "x86-64-v2";
 #elif defined(__x86_64__)
-    return "x86-64";
+    "x86-64";
 #elif defined(__aarch64__)
-    return "aarch64";
+    "aarch64";
 #else
-    return "other";
+    "other";
 #endif
-}
 
-constexpr std::string_view compiler_name()
-{
+inline constexpr std::string_view compiler_name =
 #if defined(__clang__)
-    return "Clang " __clang_version__;
+    "Clang " __clang_version__;
 #elif defined(__GNUC__)
-    return "GCC " __VERSION__;
+    "GCC " __VERSION__;
 #else
-    return "other";
+    "other";
 #endif
-}
 
 constexpr std::string_view active_sanitizers()
 {
@@ -60,6 +56,6 @@ constexpr std::string_view active_sanitizers()
     return "";
 }
 
-constexpr BuildInfo build_info() { return {target_level(), compiler_name(), EEL_CORE_FLAGS, active_sanitizers()}; }
+constexpr BuildInfo build_info() { return {target_level, compiler_name, EEL_CORE_FLAGS, active_sanitizers()}; }
 
 }  // namespace eel_core

@@ -21,11 +21,8 @@ Vector3<T> turning(const Frame3<T>& frame, const Vector2<T>& bending)
 // before.
 inline void turn_intervals(const Swimmer& swimmer, const LawOnGrid& law, Workspace<Space>& work)
 {
-    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-        const auto pitch = law.combine(law.tables->moments, LawOnGrid::pitch, work.factor, 0, k);
-        const auto yaw = law.combine(law.tables->moments, LawOnGrid::yaw, work.factor, 0, k);
-        work.turn.store(k, magnus({pitch[0], yaw[0]}, {pitch[1], yaw[1]}, {pitch[2], yaw[2]}));
-    }
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
+        work.turn.store(k, law.turn(law.tables->moments, work.factor, k));
 }
 
 // Axes of the sections and, in space, their angular velocities.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "eel_core/algebra/field.hpp"
+#include "eel_core/algebra/rotation.hpp"
 #include "eel_core/model/fin.hpp"
 
 namespace eel_core {
@@ -219,6 +220,12 @@ struct LawOnGrid {
                                 std::size_t block) const
     {
         return {combine(table, pitch, factor, derivative, block)[0], combine(table, yaw, factor, derivative, block)[0]};
+    }
+    // The rotations over the intervals whose `moments` these are.
+    Quaternion<Lanes> turn(const RowTable<3>& moments, const std::vector<Jet>& factor, std::size_t block) const
+    {
+        const auto p = combine(moments, pitch, factor, 0, block), y = combine(moments, yaw, factor, 0, block);
+        return magnus({p[0], y[0]}, {p[1], y[1]}, {p[2], y[2]});
     }
 };
 

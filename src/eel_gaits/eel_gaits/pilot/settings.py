@@ -17,7 +17,7 @@ CIRCLE = 0.95  # radius of a turn times the bend of the body that gives it
 @documented
 @dataclass(frozen=True, kw_only=True)
 class PilotSettings(Quantities):
-    """Numbers of the swimmer and of the pilot. The body's own length is the unit of lengths that are given in lengths."""
+    """Numbers of the swimmer and of the pilot. Lengths that are given in lengths have the body's own for their unit."""
 
     length: float = quantity(1.0, "m", "body length", 1e-3, 1e3)
     cruise_speed: float = quantity(0.653, "m/s", "speed of the gait in still water", 1e-4, 1e2)

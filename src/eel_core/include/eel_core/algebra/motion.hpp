@@ -116,16 +116,9 @@ struct Frame3 {
     static constexpr std::tuple members{&Frame3::axis1, &Frame3::axis2, &Frame3::axis3};
 
     Vector3<T> t1() const { return axis1; }
-    template <Number B>
-    auto local(Vector3<B> v) const  // components in these axes of a vector given in the parent's
-    {
-        return Vector3{dot(axis1, v), dot(axis2, v), dot(axis3, v)};
-    }
-    template <Number B>
-    auto parent(Vector3<B> v) const  // the inverse
-    {
-        return v.x * axis1 + v.y * axis2 + v.z * axis3;
-    }
+    // Components in these axes of a vector given in the parent's; and the inverse.
+    auto local(auto v) const { return Vector3{dot(axis1, v), dot(axis2, v), dot(axis3, v)}; }
+    auto parent(auto v) const { return v.x * axis1 + v.y * axis2 + v.z * axis3; }
 };
 
 template <Number T>
@@ -134,26 +127,10 @@ struct Frame2 {
     static constexpr std::tuple members{&Frame2::cosine, &Frame2::sine};
 
     Vector2<T> t1() const { return {cosine, sine}; }
-    template <Number B>
-    auto local(Vector2<B> v) const
-    {
-        return Vector2{cosine * v.x + sine * v.y, cosine * v.y - sine * v.x};
-    }
-    template <Number B>
-    auto parent(Vector2<B> v) const
-    {
-        return Vector2{cosine * v.x - sine * v.y, sine * v.x + cosine * v.y};
-    }
-    template <Number B>
-    B local(B turning) const
-    {
-        return turning;
-    }
-    template <Number B>
-    B parent(B turning) const
-    {
-        return turning;
-    }
+    auto local(auto v) const { return Vector2{cosine * v.x + sine * v.y, cosine * v.y - sine * v.x}; }
+    auto parent(auto v) const { return Vector2{cosine * v.x - sine * v.y, sine * v.x + cosine * v.y}; }
+    auto local(Number auto turning) const { return turning; }
+    auto parent(Number auto turning) const { return turning; }
 };
 
 // Symmetric matrices.

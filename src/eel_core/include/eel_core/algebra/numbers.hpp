@@ -27,8 +27,7 @@ inline constexpr std::size_t width = 4;
 #else
 inline constexpr std::size_t width = 2;
 #endif
-inline constexpr std::size_t filled =
-    8;  // nodes are filled up to a multiple of this on every machine: one grid for all
+inline constexpr std::size_t filled = 8;  // of which the number of nodes is a multiple, on every machine: one grid
 
 class Mask;
 
@@ -51,7 +50,6 @@ class Lanes {
     Lanes operator-() const { return Lanes(-native_); }
     Lanes& operator+=(Lanes other) { return native_ += other.native_, *this; }
     Lanes& operator-=(Lanes other) { return native_ -= other.native_, *this; }
-    Lanes& operator*=(Lanes other) { return native_ *= other.native_, *this; }
     friend Lanes operator+(Lanes a, Lanes b) { return Lanes(a.native_ + b.native_); }
     friend Lanes operator-(Lanes a, Lanes b) { return Lanes(a.native_ - b.native_); }
     friend Lanes operator*(Lanes a, Lanes b) { return Lanes(a.native_ * b.native_); }
@@ -165,8 +163,7 @@ inline Lanes with_sign_of(Lanes value, Lanes sign)
 // -- functions
 
 // What `of` gives for each lane by itself. Compilers take all lanes at once where the processor can.
-template <class Of>
-Lanes lane_by_lane(Lanes value, const Of& of)
+inline Lanes lane_by_lane(Lanes value, const auto& of)
 {
     Lanes::Native result;
     for (std::size_t lane = 0; lane < width; ++lane) result[lane] = of(value[lane]);

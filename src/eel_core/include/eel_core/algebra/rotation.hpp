@@ -58,12 +58,10 @@ inline Quaternion<Lanes> rotation_by(const Vector3<Lanes>& vector)
     const Lanes square = 0.25 * dot(vector, vector);
     if ((square > series_ends).any()) {
         std::array<std::array<double, width>, 4> far;
-        for (std::size_t lane = 0; lane < width; ++lane) {
-            const auto q = rotation_by(Vector3{vector.x[lane], vector.y[lane], vector.z[lane]});
-            far[0][lane] = q.x, far[1][lane] = q.y, far[2][lane] = q.z, far[3][lane] = q.w;
-        }
-        return {Lanes::load(far[0].data()), Lanes::load(far[1].data()), Lanes::load(far[2].data()),
-                Lanes::load(far[3].data())};
+        for (std::size_t lane = 0; lane < width; ++lane)
+            Components<Quaternion<double>>::each(rotation_by(Vector3{vector.x[lane], vector.y[lane], vector.z[lane]}),
+                                                 [&](std::size_t c, double component) { far[c][lane] = component; });
+        return Components<Quaternion<Lanes>>::make([&](std::size_t c) { return Lanes::load(far[c].data()); });
     }
     const auto [s, c] = sine_and_cosine_series(square);
     const Lanes half = 0.5 * s;

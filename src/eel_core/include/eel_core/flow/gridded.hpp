@@ -46,8 +46,7 @@ struct GridAxis {
 
   private:
     // Adds the derivative at a point, times these factors.
-    template <class Add>
-    void add_tangent(std::size_t point, double value, double slope, const Add& add) const
+    void add_tangent(std::size_t point, double value, double slope, const auto& add) const
     {
         if (points.size() == 2) {
             const double inverse = 1.0 / (points[1] - points[0]);
@@ -113,7 +112,8 @@ struct GriddedFlow {
             return {{u[0], u[1], u[2]}, {rate[0], rate[1], rate[2]}, {row(0), row(1), row(2)}};
         }
     };
-    Now at(double time) const { return {*this, axes[0].covers(time) ? axes[0].at(time) : AxisWeights{}}; }
+    // Of places in the world, whatever the view.
+    Now at(double time, const auto&) const { return {*this, axes[0].covers(time) ? axes[0].at(time) : AxisWeights{}}; }
 };
 
 }  // namespace eel_core

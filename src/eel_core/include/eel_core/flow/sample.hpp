@@ -15,19 +15,10 @@ struct Jacobian<Space, T> {
     Vector3<T> x, y, z;
     static constexpr std::tuple members{&Jacobian::x, &Jacobian::y, &Jacobian::z};
 
-    template <Number B>
-    auto times(const Vector3<B>& v) const  // g v
-    {
-        return Vector3{dot(x, v), dot(y, v), dot(z, v)};
-    }
-    template <Number B>
-    auto transposed_times(const Vector3<B>& v) const  // g^T v
-    {
-        return v.x * x + v.y * y + v.z * z;
-    }
+    auto times(const auto& v) const { return Vector3{dot(x, v), dot(y, v), dot(z, v)}; }  // g v
+    auto transposed_times(const auto& v) const { return v.x * x + v.y * y + v.z * z; }    // g^T v
     // Of the curl of u, along `axis`.
-    template <Number B>
-    auto curl_along(const Vector3<B>& axis) const
+    auto curl_along(const auto& axis) const
     {
         return axis.x * (z.y - y.z) + axis.y * (x.z - z.x) + axis.z * (y.x - x.y);
     }
@@ -45,21 +36,9 @@ struct Jacobian<Plane, T> {
     Vector2<T> x, y;
     static constexpr std::tuple members{&Jacobian::x, &Jacobian::y};
 
-    template <Number B>
-    auto times(const Vector2<B>& v) const
-    {
-        return Vector2{dot(x, v), dot(y, v)};
-    }
-    template <Number B>
-    auto transposed_times(const Vector2<B>& v) const
-    {
-        return v.x * x + v.y * y;
-    }
-    template <Number B>
-    T curl_along(const Vector2<B>&) const  // the curl is along axis 3
-    {
-        return T(0.0);
-    }
+    auto times(const auto& v) const { return Vector2{dot(x, v), dot(y, v)}; }
+    auto transposed_times(const auto& v) const { return v.x * x + v.y * y; }
+    T curl_along(const auto&) const { return T(0.0); }  // the curl is along axis 3
     Jacobian in(const Frame2<double>& frame) const
     {
         const Vector2<T> a = frame.local(x), b = frame.local(y);

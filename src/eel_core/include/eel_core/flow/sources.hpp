@@ -193,6 +193,10 @@ struct FunctionFlow {
     static constexpr std::size_t columns = 18;
     std::function<void(double time, std::vector<double>& rows)> function;
 };
+inline WaterAt<double> water_in(const double* row)
+{
+    return Components<WaterAt<double>>::make([&](std::size_t c) { return row[3 + c]; });
+}
 
 struct Flow {
     std::vector<std::variant<RampedFlow, SplineFlow, ShearFlow, VortexFlow, WaveFlow, GriddedFlow, FunctionFlow>>
@@ -203,27 +207,22 @@ struct Flow {
 inline void flow_at(const Flow& flow, double time, double* rows, std::size_t count)
 {
     constexpr std::size_t columns = FunctionFlow::columns;
+    const View<Space> from_the_world{{}, {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}, {}};
     std::vector<WaterAt<double>> sum(count);
     for (const auto& source : flow.sources) {
-        if (const auto* const function = std::get_if<FunctionFlow>(&source)) {
-            std::vector<double> own(rows, rows + columns * count);
-            function->function(time, own);
-            for (std::size_t i = 0; i < count; ++i)
-                sum[i] += Components<WaterAt<double>>::make([&](std::size_t c) { return own[columns * i + 3 + c]; });
-            continue;
-        }
         std::visit(
             [&]<class Source>(const Source& each) {
-                const auto add = [&](const auto& now) {
+                if constexpr (std::same_as<Source, FunctionFlow>) {
+                    std::vector<double> own(rows, rows + columns * count);
+                    each.function(time, own);
+                    for (std::size_t i = 0; i < count; ++i) sum[i] += water_in(&own[columns * i]);
+                } else {
+                    const auto now = each.at(time, from_the_world);
                     for (std::size_t i = 0; i < count; ++i) {
                         const double* const x = rows + columns * i;
                         sum[i] += now(Vector3{x[0], x[1], x[2]});
                     }
-                };
-                if constexpr (std::same_as<Source, GriddedFlow>)
-                    add(each.at(time));
-                else if constexpr (!std::same_as<Source, FunctionFlow>)
-                    add(each.at(time, View<Space>{{}, {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}, {}}));
+                }
             },
             source);
     }

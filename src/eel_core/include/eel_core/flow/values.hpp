@@ -37,8 +37,7 @@ class FlowValues {
 
   private:
     // Adds a source, or sets the values to it.
-    template <class Source>
-    void add(const Source& source, double time, const View<M>& view, const Field<Vector<M, double>>& position,
+    void add(const auto& source, double time, const View<M>& view, const Field<Vector<M, double>>& position,
              std::size_t, bool first)
     {
         const auto now = source.at(time, view);
@@ -47,7 +46,7 @@ class FlowValues {
     void add(const GriddedFlow& source, double time, const View<M>& view, const Field<Vector<M, double>>& position,
              std::size_t count, bool first)
     {
-        const auto now = source.at(time);
+        const auto now = source.at(time, view);
         find_places(view, position);
         const auto at = [&](const Vector3<double>& place) {
             const WaterAt<double> water = now(place);
@@ -70,15 +69,12 @@ class FlowValues {
             Components<Vector3<double>>::each(i < count ? place_.node(i) : view.nose,
                                               [&](std::size_t c, double value) { rows_[columns * i + c] = value; });
         source.function(time, rows_);
-        const auto row = [&](std::size_t i) {
-            return Components<WaterAt<double>>::make([&](std::size_t c) { return rows_[columns * i + 3 + c]; });
-        };
+        const auto row = [&](std::size_t i) { return water_in(&rows_[columns * i]); };
         put_each(row, row(count), view, count, first);
     }
 
     // Adds what `block` gives for each block of points, and the water at the nose; or sets the values to them.
-    template <class Block>
-    void put(const Block& block, const FlowSample<M, double>& at_nose, bool first)
+    void put(const auto& block, const FlowSample<M, double>& at_nose, bool first)
     {
         for (std::size_t k = 0; k < here_.stride() / width - 1; ++k) {
             FlowSample<M, Lanes> water = block(k);
@@ -92,8 +88,7 @@ class FlowValues {
     }
 
     // The same for what `row` gives in the world at each of the `count` points, one by one; behind the last as there.
-    template <class Row>
-    void put_each(const Row& row, const WaterAt<double>& at_nose, const View<M>& view, std::size_t count, bool first)
+    void put_each(const auto& row, const WaterAt<double>& at_nose, const View<M>& view, std::size_t count, bool first)
     {
         for (std::size_t i = 0; i + width < place_.stride(); ++i)
             Components<WaterAt<double>>::each(row(std::min(i, count - 1)),

@@ -24,16 +24,9 @@ struct LoadSigns {
     // That of the load which changes its sign with a speed.
     T& of(Speed speed)
     {
-        switch (speed) {
-            case Speed::lateral:
-                return lateral;
-            case Speed::vertical:
-                return vertical;
-            case Speed::roll:
-                return roll;
-            default:
-                return excess;
-        }
+        if (speed == Speed::lateral) return lateral;
+        if (speed == Speed::vertical) return vertical;
+        return speed == Speed::roll ? roll : excess;
     }
 };
 

@@ -66,8 +66,17 @@ EEL_CORE_APART std::pair<Wrench<M, double>, double> total_of_gradient(const Swim
     return {total_of(sum), total(power)};
 }
 
-// The flow's part of the load on the momentum of a block, about the sections and weighed by their length:
-// rho_f A a_u - g^T p, with the torque U x p besides.
+// rho_f A a_u - g^T p of a block, in the axes of the head: without `flow_gradient` rho_f A u_t.
+template <class M>
+EEL_CORE_INLINE inline Vector<M, Lanes> force_of_flow(const Swimmer& swimmer, Lanes displaced,
+                                                      const FlowSample<M, Lanes>& water, const Vector<M, Lanes>& p)
+{
+    if (!swimmer.flow_gradient) return displaced * water.u_t;
+    return displaced * water.acceleration() - water.g.transposed_times(p);
+}
+
+// The flow's part of the load on the momentum of a block, about the sections and weighed by their length: that force,
+// and the torque U x p.
 template <class M>
 EEL_CORE_INLINE inline Wrench<M, Lanes> load_of_flow(const Swimmer& swimmer, const Workspace<M>& work, std::size_t k)
 {
@@ -76,8 +85,7 @@ EEL_CORE_INLINE inline Wrench<M, Lanes> load_of_flow(const Swimmer& swimmer, con
     const auto frame = work.frame[k];
     const FlowSample<M, Lanes> water = work.flow[k];
     const Vector<M, Lanes> p = frame.parent(section.water_momentum(frame.local(work.relative[k])));
-    if (!swimmer.flow_gradient) return {cross(water.u, p), displaced * water.u_t};
-    return {cross(water.u, p), displaced * water.acceleration() - water.g.transposed_times(p)};
+    return {cross(water.u, p), force_of_flow<M>(swimmer, displaced, water, p)};
 }
 
 // Velocities through the water, and the flow's part of the load on the momentum; m_o a_u at the nose.

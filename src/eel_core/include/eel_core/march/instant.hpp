@@ -23,7 +23,7 @@ class Instant {
     // Wrenches of wake and drag on the body for a given twist of the head, in still water.
     std::array<Wrench<Space, double>, 2> loads(const LawOnGrid& law, double time, const Twist<Space, double>& twist)
     {
-        move(law, time, twist, {}, {});
+        move(law, time, twist);
         return {work_.tail, work_.drag};
     }
 
@@ -59,7 +59,7 @@ class Instant {
     Wrench<Space, double> momentum_rate(const LawOnGrid& law, double time, const Twist<Space, double>& twist,
                                         const Twist<Space, double>& acceleration)
     {
-        move(law, time, twist, {}, {});
+        move(law, time, twist);
         find_shape_accelerations(*swimmer_, law, work_);
         add_head_motion(*swimmer_, acceleration, work_.position, work_.shape_acceleration.angular,
                         work_.shape_acceleration.linear, work_.acceleration.angular, work_.acceleration.linear);
@@ -67,14 +67,14 @@ class Instant {
     }
 
   private:
-    void move(const LawOnGrid& law, double time, const Twist<Space, double>& twist, const Water& water, const State& y)
+    static constexpr State origin{0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0};
+
+    void move(const LawOnGrid& law, double time, const Twist<Space, double>& twist, const Water& water = {},
+              const State& y = origin)
     {
         configure(*swimmer_, law, time, work_);
-        work_.flowing = false;
-        if (water.flow) {
-            work_.head = head_frame(y, Space());
-            set_flow(*swimmer_, water, time, Vector3{y[0], y[1], y[2]}, work_);
-        }
+        work_.head = head_frame(y, Space());
+        set_flow(*swimmer_, water, time, Vector3{y[0], y[1], y[2]}, work_);
         set_velocities(*swimmer_, twist, work_);
         if (work_.flowing) set_flow_load(*swimmer_, work_);
         find_loads(*swimmer_, work_);

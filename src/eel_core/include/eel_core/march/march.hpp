@@ -12,24 +12,6 @@ namespace eel_core {
 
 using HeadMotion = std::array<double, 13>;  // see `March::head`
 
-// Gives the present state the momentum of the head's twist, in the shape by the factors in `work`. Returns the kinetic
-// and potential energy [J].
-inline double put_twist(const Swimmer& swimmer, const MarchSettings& settings, const Twist<Space, double>& twist,
-                        Present& now, Workspace<Space>& work)
-{
-    State& y = now.state;
-    configure(swimmer, settings.law, now.time, work);
-    work.head = head_frame(y, Space());
-    set_flow(swimmer, settings.water, now.time, Vector3{y[0], y[1], y[2]}, work);
-    if (!work.fins.empty()) place_fins(swimmer, settings.law, settings.water, now.time, y, work);
-    put_momentum(momentum_of(swimmer, twist, work), work.head, y);
-    set_velocities(swimmer, twist, work);
-    if (work.flowing) set_flow_load(swimmer, work);
-    if (swimmer.weighs()) set_weight(swimmer, height_in(settings.water, now.time, y), work);
-    const auto [body, fluid, potential] = energies_of(swimmer, work);
-    return body + fluid + potential;
-}
-
 // A copy goes on by itself: state, steps and work space are its own; swimmer, modes and law, which never change, are
 // shared.
 class March {
@@ -117,7 +99,14 @@ class March {
     // Gives the present state the momenta of the head's twist. Returns all energy [J].
     double set_twist(const Twist<Space, double>& twist)
     {
-        const double energy = put_twist(*swimmer_, settings_, twist, now_, shaped());
+        Workspace<Space>& work = shaped();
+        place_body(*swimmer_, settings_.law, settings_.water, now_.time, now_.state, work);
+        put_momentum(momentum_of(*swimmer_, twist, work), work.head, now_.state);
+        set_velocities(*swimmer_, twist, work);
+        if (work.flowing) set_flow_load(*swimmer_, work);
+        if (swimmer_->weighs()) set_weight(*swimmer_, height_in(settings_.water, now_.time, now_.state), work);
+        const auto [body, fluid, potential] = energies_of(*swimmer_, work);
+        const double energy = body + fluid + potential;
         steps_.begin(settings_, now_);
         if (!modes_) return energy;
         return steps_.of_modes<double>(
@@ -192,8 +181,8 @@ class March {
         };
         if (modes_ && !steps_.of_modes<bool>(show)) return false;
         Workspace<Space>& work = shaped(row + places.begin[CoordinateRow::acceleration]);
-        const Observer observer(*swimmer_, profiles, whole);
-        if (!observer.observe(settings_.law, settings_.water, now_.time, now_.state, sample, work, here_)) return false;
+        const Observer observer(*swimmer_, profiles, whole, sample);
+        if (!observer.observe(settings_.law, settings_.water, now_.time, now_.state, work, here_)) return false;
         if (!modes_) return true;
         profiles.at(whole, Profiles::energies, sample)[0] += row[places.begin[CoordinateRow::rotors]];
         profiles.at(whole, Profiles::powers, sample)[0] = actuators;

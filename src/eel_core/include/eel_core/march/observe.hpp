@@ -71,51 +71,48 @@ inline void put(const Spatial<Space, double>& s, double* to) { put(s.angular, to
 
 class Observer {
   public:
-    Observer(const Swimmer& swimmer, const Profiles& profiles, double* whole)
-        : swimmer_(swimmer), profiles_(profiles), whole_(whole)
+    // Fills the `sample` of `whole`, as `profiles` has it.
+    Observer(const Swimmer& swimmer, const Profiles& profiles, double* whole, std::size_t sample)
+        : swimmer_(swimmer), profiles_(profiles), whole_(whole), sample_(sample)
     {
     }
 
-    // Fills the `sample` with what state y at `time` [s] shows. False where the inertia is not positive definite.
-    bool observe(const LawOnGrid& law, const Water& water, double time, const State& y, std::size_t sample,
-                 Workspace<Space>& work, StationWork& here) const
+    // With what state y at `time` [s] shows. False where the inertia is not positive definite.
+    bool observe(const LawOnGrid& law, const Water& water, double time, const State& y, Workspace<Space>& work,
+                 StationWork& here) const
     {
         if (!find_motion(swimmer_, law, water, time, y, work)) return false;
         const Powers powers = find_powers(swimmer_, law, work);
         find_accelerations(swimmer_, work);
-        std::copy(powers.begin(), powers.end(), at(Profiles::powers, sample));
-        show_head(y, water.current, sample, work);
-        show_energies_and_closure(sample, work);
-        if (profiles_.fins > 0) show_fins(sample, work);
-        place_stations(law, y, sample, work, here);
+        std::copy(powers.begin(), powers.end(), at(Profiles::powers));
+        show_head(y, water.current, work);
+        show_energies_and_closure(work);
+        if (profiles_.fins > 0) show_fins(work);
+        place_stations(law, y, work, here);
         if (profiles_.wrench || profiles_.load) {
             find_velocities(work, here);
             if (work.flowing) find_flow(water, time, y, work, here);
         }
-        if (profiles_.wrench) show_internal_wrench(sample, work, here);
+        if (profiles_.wrench) show_internal_wrench(work, here);
         if (profiles_.load) {
             find_accelerations_there(law, work, here);
-            if (work.flowing)
-                show_loads<true>(sample, work, here);
-            else
-                show_loads<false>(sample, work, here);
+            work.flowing ? show_loads<true>(work, here) : show_loads<false>(work, here);
         }
         return true;
     }
 
   private:
-    double* at(Profiles::Quantity quantity, std::size_t sample) const { return profiles_.at(whole_, quantity, sample); }
+    double* at(Profiles::Quantity quantity) const { return profiles_.at(whole_, quantity, sample_); }
     std::size_t blocks() const { return blocks_of(swimmer_.stations); }
 
-    void show_head(const State& y, const Vector3<double>& current, std::size_t sample,
-                   const Workspace<Space>& work) const
+    void show_head(const State& y, const Vector3<double>& current, const Workspace<Space>& work) const
     {
         const State shown = half_turn(y);
-        std::copy_n(shown.begin(), 3, at(Profiles::position, sample));
-        std::copy_n(shown.begin() + 3, 4, at(Profiles::orientation, sample));
+        std::copy_n(shown.begin(), 3, at(Profiles::position));
+        std::copy_n(shown.begin() + 3, 4, at(Profiles::orientation));
         put(half_turn(Twist<Space, double>{work.twist.angular, work.twist.linear + work.head.local(current)}),
-            at(Profiles::twist, sample));
-        put(half_turn(work.head_acceleration), at(Profiles::head_acceleration, sample));
+            at(Profiles::twist));
+        put(half_turn(work.head_acceleration), at(Profiles::head_acceleration));
 
         Vector3<Lanes> moment{};
         Lanes mass(0.0);
@@ -126,31 +123,29 @@ class Observer {
                 moment += mass_moment(swimmer_.grid.weight[k] * swimmer_.sections.lever[k], work.frame[k].axis3);
         }
         const Vector3<double> centre = work.head.parent((1.0 / total(mass)) * total_of(moment));
-        put(half_turn(Vector3{y[0], y[1], y[2]} + centre), at(Profiles::center_of_mass, sample));
+        put(half_turn(Vector3{y[0], y[1], y[2]} + centre), at(Profiles::center_of_mass));
     }
 
-    void show_energies_and_closure(std::size_t sample, const Workspace<Space>& work) const
+    void show_energies_and_closure(const Workspace<Space>& work) const
     {
         const auto energies = energies_of(swimmer_, work);
-        std::copy(energies.begin(), energies.end(), at(Profiles::energies, sample));
+        std::copy(energies.begin(), energies.end(), at(Profiles::energies));
 
         const auto left = plus_axial<Space>(work.tail - work.balance, work.nose_force);
-        double* const closure = at(Profiles::closure, sample);
+        double* const closure = at(Profiles::closure);
         closure[0] = std::sqrt(dot(left.angular, left.angular)), closure[1] = std::sqrt(dot(left.linear, left.linear));
     }
 
-    void show_fins(std::size_t sample, const Workspace<Space>& work) const
+    void show_fins(const Workspace<Space>& work) const
     {
         for (std::size_t i = 0; i < swimmer_.fins.size(); ++i) {
-            at(Profiles::fin_angle, sample)[i] = work.fins[i].angle;
-            put(work.frame.node(swimmer_.fins[i].node).local(work.fins[i].whole),
-                at(Profiles::fin_force, sample) + 3 * i);
+            at(Profiles::fin_angle)[i] = work.fins[i].angle;
+            put(work.frame.node(swimmer_.fins[i].node).local(work.fins[i].whole), at(Profiles::fin_force) + 3 * i);
         }
     }
 
     // Backbone, orientation and curvature.
-    void place_stations(const LawOnGrid& law, const State& y, std::size_t sample, const Workspace<Space>& work,
-                        StationWork& here) const
+    void place_stations(const LawOnGrid& law, const State& y, const Workspace<Space>& work, StationWork& here) const
     {
         const Quaternion<Lanes> head_turn{y[3], y[4], y[5], y[6]};
         const Vector3<double> nose{y[0], y[1], y[2]};
@@ -162,16 +157,13 @@ class Observer {
         for (std::size_t k = 0; k < blocks(); ++k) {
             const Vector2<Lanes> curvature = law.combine_both(law.tables->station, work.factor, 0, k);
             const Vector2<Lanes> rate = law.combine_both(law.tables->station, work.factor, 1, k);
-            const auto pitch = law.combine(law.tables->station_moments, LawOnGrid::pitch, work.factor, 0, k);
-            const auto yaw = law.combine(law.tables->station_moments, LawOnGrid::yaw, work.factor, 0, k);
-            const Quaternion<Lanes> turn =
-                here.base[k] * magnus({pitch[0], yaw[0]}, {pitch[1], yaw[1]}, {pitch[2], yaw[2]});
+            const Quaternion<Lanes> turn = here.base[k] * law.turn(law.tables->station_moments, work.factor, k);
             here.frame.store(k, turn.frame());
             here.curvature.store(k, curvature);
-            show(Profiles::backbone, sample, k, half_turn(nose + work.head.parent(here.position[k])));
-            show(Profiles::section_orientation, sample, k, half_turn(head_turn * turn));
-            show(Profiles::curvature, sample, k, Vector3<Lanes>{0.0, curvature.x, curvature.y});
-            show(Profiles::curvature_rate, sample, k, Vector3<Lanes>{0.0, rate.x, rate.y});
+            show(Profiles::backbone, k, half_turn(nose + work.head.parent(here.position[k])));
+            show(Profiles::section_orientation, k, half_turn(head_turn * turn));
+            show(Profiles::curvature, k, Vector3<Lanes>{0.0, curvature.x, curvature.y});
+            show(Profiles::curvature_rate, k, Vector3<Lanes>{0.0, rate.x, rate.y});
         }
     }
 
@@ -211,28 +203,23 @@ class Observer {
                                       here.linear_acceleration);
     }
 
-    void show_internal_wrench(std::size_t sample, Workspace<Space>& work, StationWork& here) const
+    void show_internal_wrench(Workspace<Space>& work, StationWork& here) const
     {
         find_internal_wrench(swimmer_, work, here.resistance, here.integral);
         if (!swimmer_.missed.empty())
             here.missed.add(swimmer_, work, here.frame, here.omega, through_water(work, here), here.flow,
                             here.integral);
-        if (!work.fins.empty()) take_fins_ahead(work, here);
         for (std::size_t k = 0; k < blocks(); ++k) {
             const Frame3<Lanes> frame = here.frame[k];
-            const auto wrench = internal_wrench<Space>(
-                swimmer_, work, here.integral[k], frame, here.position[k], swimmer_.at_station[k],
-                frame.local(through_water(work, here)[k]), frame.local(here.omega[k]));
-            show(Profiles::torque, sample, k, wrench.angular);
-            show(Profiles::force, sample, k, wrench.linear);
+            Wrench<Space, Lanes> integral = here.integral[k];
+            if (!work.fins.empty())  // those ahead of a station, and at it, are no part of what lies behind
+                integral = integral - fins_ahead(swimmer_, work, k, &Fin::station_behind);
+            const auto wrench =
+                internal_wrench<Space>(swimmer_, work, integral, frame, here.position[k], swimmer_.at_station[k],
+                                       frame.local(through_water(work, here)[k]), frame.local(here.omega[k]));
+            show(Profiles::torque, k, wrench.angular);
+            show(Profiles::force, k, wrench.linear);
         }
-    }
-
-    // The wrenches of the fins ahead of the stations, and at them, are no longer those of the part behind.
-    void take_fins_ahead(const Workspace<Space>& work, StationWork& here) const
-    {
-        for (std::size_t k = 0; k < blocks(); ++k)
-            here.integral.store(k, here.integral[k] - fins_ahead(swimmer_, work, k, &Fin::station_behind));
     }
 
     // Makes the velocity, its rate and slope, and Omega1 of a block of stations those through the water.
@@ -249,20 +236,10 @@ class Observer {
         turning -= 0.5 * water.g.curl_along(frame.axis1);
     }
 
-    // rho_f A a_u - g^T p of a block of stations.
-    Vector3<Lanes> force_of_flow(std::size_t k, const StationWork& here, const Vector3<Lanes>& p) const
-    {
-        const FlowSample<Space, Lanes> water = here.flow[k];
-        const Frame3<Lanes> frame = here.frame[k];
-        if (!swimmer_.flow_gradient) return frame.local(swimmer_.at_station.displaced[k] * water.u_t);
-        return frame.local(swimmer_.at_station.displaced[k] * water.acceleration() -
-                           water.g.transposed_times(frame.parent(p)));
-    }
-
     // The water's force per length: the rate at which a strip's water gives up momentum p = M_f V, of which V1 p is
     // swept past the section, - (d/dt + Omega x) p + (d/dX + K x) V1 p; and the drag.
     template <bool Flowing>
-    void show_loads(std::size_t sample, const Workspace<Space>& work, const StationWork& here) const
+    void show_loads(const Workspace<Space>& work, const StationWork& here) const
     {
         for (std::size_t k = 0; k < blocks(); ++k) {
             const Section<Lanes> section = swimmer_.at_station[k];
@@ -281,7 +258,9 @@ class Observer {
             const Vector3<Lanes> p_slope = slope.water_momentum(v) + section.water_momentum(v_slope);
             Vector3<Lanes> force = -(section.water_momentum(v_rate) + cross(omega, p));
             if (swimmer_.inertia_of_water == 0.0) force = {};
-            if constexpr (Flowing) force += force_of_flow(k, here, swimmer_.inertia_of_water * p);
+            if constexpr (Flowing)
+                force += frame.local(force_of_flow<Space>(swimmer_, swimmer_.at_station.displaced[k], here.flow[k],
+                                                          frame.parent(swimmer_.inertia_of_water * p)));
             if (swimmer_.wake > 0.0)
                 force += Lanes(swimmer_.wake) * (v_slope.x * p + v.x * (p_slope + cross(curvature, p)));
             if (swimmer_.distributed_pressure && swimmer_.wake > 0.0) {  // - d/dX (T_f t1)
@@ -297,24 +276,24 @@ class Observer {
                 const auto sign = local_signs<Space>(friction.turbulent_share, v, turning);
                 resistive = resistive_load(drag, friction.laminar, friction.excess, sign, v, turning).linear;
             }
-            show(Profiles::resistive_force, sample, k, resistive);
-            show(Profiles::fluid_force, sample, k, force + resistive);
+            show(Profiles::resistive_force, k, resistive);
+            show(Profiles::fluid_force, k, force + resistive);
         }
-        at(Profiles::tail_force, sample)[0] = swimmer_.distributed_pressure ? 0.0 : -work.tail_energy;
-        at(Profiles::nose_force, sample)[0] = work.nose_force;
+        at(Profiles::tail_force)[0] = swimmer_.distributed_pressure ? 0.0 : -work.tail_energy;
+        at(Profiles::nose_force)[0] = work.nose_force;
         const auto tail = work.frame.node(swimmer_.grid.nodes - 1);
-        put(-tail.local(work.tail.linear), at(Profiles::wake_momentum_rate, sample));
+        put(-tail.local(work.tail.linear), at(Profiles::wake_momentum_rate));
     }
 
-    template <class Block>
-    void show(Profiles::Quantity quantity, std::size_t sample, std::size_t block, const Block& value) const
+    void show(Profiles::Quantity quantity, std::size_t block, const auto& value) const
     {
-        put(value, block, swimmer_.stations, at(quantity, sample));
+        put(value, block, swimmer_.stations, at(quantity));
     }
 
     const Swimmer& swimmer_;
     const Profiles& profiles_;
     double* whole_;
+    std::size_t sample_;
 };
 
 }  // namespace eel_core

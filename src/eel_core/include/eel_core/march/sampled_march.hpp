@@ -60,16 +60,14 @@ class SampledMarch {
     }
 
     March& march() { return march_; }
-    const March& march() const { return march_; }
 
-    // Lets the water move by a flow, from the next start on; none: not by itself. It may be no function of Python.
-    void set_flow(std::shared_ptr<const Flow> flow) { flow_ = std::move(flow); }
-
-    // Stands at the start, straight, with the head's twist relative to the water; `values`: the sample at time 0.
-    // Returns the kinetic and potential energy [J].
+    // Stands at the start, straight, with the head's twist relative to the water; `values`: the sample at time 0;
+    // `flow`: by which its water moves, no function of Python; none: not by itself. Returns the kinetic and potential
+    // energy [J].
     double start(const StepBounds& bounds, const Vector3<double>& position, const Quaternion<double>& orientation,
-                 const Twist<Space, double>& twist, const double* values)
+                 const Twist<Space, double>& twist, const double* values, std::shared_ptr<const Flow> flow = {})
     {
+        flow_ = std::move(flow);
         static const std::vector<std::size_t> axes{0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 1, 1};
         tables_ = std::make_shared<LawTables>(axes, kind_->swimmer->grid.nodes, kind_->swimmer->stations);
         law_ = {tables_, 0.0, {}, {}, {}, {}};

@@ -67,8 +67,7 @@ class Threads {
     }
 
     // Waits for a while until `come`: to wake from sleep takes as long as several items.
-    template <class Condition>
-    static void look_out(const Condition& come)
+    static void look_out(const auto& come)
     {
         using Clock = std::chrono::steady_clock;
         constexpr std::chrono::microseconds patience{100};

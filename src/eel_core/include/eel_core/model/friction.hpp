@@ -44,8 +44,7 @@ inline Lanes speed_across(const Vector2<Lanes>& v) { return abs(v.y); }
 inline Lanes speed_across(const Vector3<Lanes>& v) { return sqrt(v.y * v.y + v.z * v.z); }
 
 // By the velocity v of the section through the water, in its axes.
-template <class V>
-AxialFriction axial_friction(const DragSection<Lanes>& section, Friction law, const V& v)
+inline AxialFriction axial_friction(const DragSection<Lanes>& section, Friction law, const auto& v)
 {
     const Lanes speed = abs(v.x);
     if (law == Friction::taylor) {

@@ -58,7 +58,6 @@ class FromNose {
     }
 
     std::span<const Stretch> stretches() const { return stretches_; }
-    const Column* columns(const Stretch& stretch) const { return columns_.data() + stretch.column; }
     // Of each point: the index of the first node of its panel, plus its fraction of the panel; it rises along the body.
     const Row& place() const { return place_; }
 
@@ -123,7 +122,7 @@ class FromNose {
         using Block = typename Field<Value>::Block;
         constexpr std::size_t count = Components<Block>::count;
         const std::size_t stride = integrand.stride();
-        const Column* column = columns(stretch);
+        const Column* column = columns_.data() + stretch.column;
         const double* f = integrand.row(first_row) + stretch.begin;
         // Few sums would wait for their last term: the nodes go to two sets of them in turn.
         constexpr std::size_t sets = count * parts < 6 ? 2 : 1;

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Data of the elliptic sections of body and water, and what they say of momentum and energy: eq. (37), section 7.2.1.
 //
-// Half-axes a along axis 3, b along axis 2. Body: m = rho_b pi a b, J2 = rho_b pi a^3 b / 4, J3 = rho_b pi a b^3 / 4,
-// J1 = J2 + J3. Water: M_f = rho_f pi diag(0, a^2, b^2) (the printed eq. (37) has a and b exchanged), J_f1 = rho_f
-// (pi/8) (a^2 - b^2)^2.
+// They come from half-axes a along axis 3, b along axis 2, by the formulae in eel_model/section_data.py.
 #pragma once
 
 #include "eel_core/algebra/field.hpp"
@@ -45,8 +43,7 @@ struct Section {
     T water_roll(T) const { return T(0.0); }
 
     // T_f, the kinetic energy of the water [J/m].
-    template <class V, class W>
-    T water_energy(const V& v, const W& omega) const
+    T water_energy(const auto& v, const auto& omega) const
     {
         return 0.5 * (dot(v, water_momentum(v)) + dot(omega, water_roll(omega)));
     }

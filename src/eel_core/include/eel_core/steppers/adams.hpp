@@ -47,8 +47,7 @@ inline State stepped(State y, double length, std::span<const double> weight, std
 
 class Adams {
   public:
-    static constexpr std::size_t highest =
-        6;  // beyond, the steps that are stable are shorter than those that are exact
+    static constexpr std::size_t highest = 6;   // beyond, stable steps are shorter than exact ones
     static constexpr double is_short = 0.0125;  // of the longest step: below, the order may fall
     // How many times longer a step must get by a neighbouring order, and the least growth that is taken, so that steps
     // stay equal: in the way of LSODE (Hindmarsh, ODEPACK, 1983), where they are 1.3/1.2, 1.4/1.2 and 1.1.
