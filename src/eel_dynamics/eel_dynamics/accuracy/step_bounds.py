@@ -5,13 +5,13 @@ Within them the core chooses each step by its error: `time_step_size` in eel_cor
 """
 
 import math
-from functools import lru_cache
+from typing import Any
 
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 
 import eel_core
-from eel_dynamics.accuracy.accuracy import LONGEST_STEP, Accuracy
+from eel_dynamics.accuracy.accuracy import LONGEST_STEP
 from eel_dynamics.accuracy.error_estimate import TORQUE_FLOOR
 
 # A run takes at most so many evaluations per simulated second. They take seconds of wall time. The most exact runs need
@@ -50,29 +50,19 @@ def check_cost(law: Law, most_evaluations: float):
         )
 
 
-@lru_cache(maxsize=64)
 def step_bounds_of(
-    *,
-    accuracy: Accuracy,
-    ledger: bool,
-    between_samples: bool,
-    nodes: int,
-    mass: float,
-    length: float,
-    speed: float,
-    scale: float,
-    most_evaluations: float,
-    law_scale: float,
+    setup: Any, here: Any, between_samples: bool, law_scale: float, speed: float = 0.0
 ) -> eel_core.StepBounds:
-    """The bounds of the steps for a body of `length` [m] and `mass` [kg] on a grid of `nodes`.
+    """The bounds of the steps of a swimmer of this `SimulationSetup` on the grid of `here`, a `Discretisation`.
 
-    ledger: whether the energy ledger is kept. between_samples: whether the curvature is a quintic between two samples.
-    speed [m/s]: that the law gives to the body. scale [s]: the shortest time scale of all. most_evaluations: per
-    simulated second. law_scale [s]: of the law and the initial velocity, for the torques of robots.
+    between_samples: whether the curvature is a quintic between two samples. law_scale [s]: the shortest time scale of
+    the law and the initial velocity. speed [m/s]: that the law gives to the body.
     """
+    accuracy, length, mass = setup.settings, setup.body.length, here.mass
+    scale = min(law_scale, here.weight_time, setup.time_scale_of_surroundings)
     longest = accuracy.longest_step * min(scale, 10.0)
     fixed = accuracy.step or (accuracy.fixed and min(scale, 1.0) / accuracy.fixed)
-    part_of_span = PART_OF_RAMP if ledger else PART_OF_SPAN
+    part_of_span = PART_OF_RAMP if setup.scene.ledger else PART_OF_SPAN
     fast = length / min(law_scale, 1.0)
     slowest = max(SLOWEST * length / min(scale, 10.0), PART_OF_SPEED * speed)
     return eel_core.StepBounds(
@@ -82,7 +72,7 @@ def step_bounds_of(
         length=length,
         momentum_floor=mass * slowest,
         part_of_span=1.0 if between_samples else min(1.0, part_of_span * accuracy.longest_step / LONGEST_STEP),
-        most_steps=most_evaluations / EVALUATIONS[accuracy.method],
-        spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / nodes)),
+        most_steps=setup.most_evaluations / EVALUATIONS[accuracy.method],
+        spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / len(here.grid.x))),
         torque_floor=TORQUE_FLOOR * mass * (fast * fast),  # infinite where a power would overflow
     )

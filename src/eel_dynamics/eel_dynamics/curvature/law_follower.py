@@ -192,10 +192,7 @@ class LawFollower:
         """Tabulated value, rate and acceleration (3, 2, width) at `time` [s]."""
         rows, axis = self.rows()
         factor = np.array(self.law_on_grid.factors(time))
-        result = np.zeros((3, 2, self._tabulation.width))
-        for each in range(2):
-            result[:, each] = factor[:, axis == each] @ rows[axis == each]
-        return result
+        return np.stack([factor[:, axis == each] @ rows[axis == each] for each in (0, 1)], axis=1)
 
     def _segment(self) -> TabulatedLaw:
         """The quintic between the two samples that bracket the present."""

@@ -81,8 +81,7 @@ class CommandedRobots:
 
     def evaluations(self, index: int) -> tuple[int, int, int]:
         """Numbers of steps, rejected steps and evaluations of a robot since its start."""
-        counts: tuple[int, int, int] = self._swims[index].core.counts
-        return counts
+        return self._swims[index].core.counts
 
     def _command(self, index: int, commands: Array) -> None:
         for name, value in zip(self._names, commands.tolist(), strict=True):

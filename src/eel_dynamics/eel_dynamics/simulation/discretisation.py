@@ -15,7 +15,6 @@ from eel_model.section_data import SectionData, check_weight, core_swimmer, nose
 
 import eel_core
 from eel_dynamics.accuracy.grid_settings import GridSettings
-from eel_dynamics.accuracy.step_bounds import step_bounds_of
 from eel_dynamics.curvature.tabulated_law import Tabulation
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 
@@ -29,23 +28,6 @@ class Discretisation(NamedTuple):
     mass: float  # kg, of the body
     weight_time: float  # s
     tabulation: Tabulation
-
-    def step_bounds(
-        self, setup: SimulationSetup, between_samples: bool, law_scale: float, speed: float = 0.0
-    ) -> eel_core.StepBounds:
-        """The bounds of the steps of a swimmer of a `setup` with this body; the others are as of `step_bounds_of`."""
-        return step_bounds_of(
-            accuracy=setup.settings,
-            ledger=bool(setup.scene.ledger),
-            between_samples=between_samples,
-            nodes=len(self.grid.x),
-            mass=self.mass,
-            length=setup.body.length,
-            speed=speed,
-            scale=min(law_scale, self.weight_time, setup.time_scale_of_surroundings),
-            most_evaluations=setup.most_evaluations,
-            law_scale=law_scale,
-        )
 
 
 def discretise(setup: SimulationSetup, settings: GridSettings) -> Discretisation:

@@ -77,9 +77,8 @@ class EnergyLedger(EqualByFields):
         actuators, wake, nose, drag, flow and fins. start [J]: the sum of the energies at the start. robot (T, 3):
         elastic energy [J], power [W] and work [J] of the dampers; None: 0. Of an instant without the dimension T.
         """
-        instant, robot = energies.ndim == 1, np.zeros((*energies.shape[:-1], 3)) if robot is None else robot
-        energies, powers, works, (elastic, damping_power, damping_work) = (
-            each.tolist() if instant else each.T for each in (energies, powers, works, robot)
-        )
+        columns: Any = np.ndarray.tolist if energies.ndim == 1 else np.ndarray.transpose
+        robot = np.zeros(energies.shape) if robot is None else robot
+        energies, powers, works, (elastic, damping_power, damping_work) = map(columns, (energies, powers, works, robot))
         residual = sum(energies) - start - sum(works) + elastic - damping_work
         return EnergyLedger(*(*energies, *powers, residual, *works, elastic, damping_power, damping_work))

@@ -78,13 +78,12 @@ class ErrorMeter:
         self._distances.clear()
         if not self.wanted:
             return
-
-        def companion(settings: Accuracy) -> March:
-            return march.copy_with(replace(march.setup, accuracy=settings))
-
         try:
-            settings = march.setup.settings.coarser()
-            self._companion = on_another_grid(companion, settings, len(march.discretisation.grid.x))
+            self._companion = on_another_grid(
+                lambda settings: march.copy_with(replace(march.setup, accuracy=settings)),
+                march.setup.settings.coarser(),
+                len(march.discretisation.grid.x),
+            )
         except FAILURES:
             self._companion = None
 

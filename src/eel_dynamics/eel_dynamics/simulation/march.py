@@ -22,6 +22,7 @@ from eel_model.robot.robot import Robot
 
 import eel_core
 from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
+from eel_dynamics.accuracy.step_bounds import step_bounds_of
 from eel_dynamics.curvature.law_follower import LawFollower
 from eel_dynamics.simulation.bending.joint_motion import JointMotion
 from eel_dynamics.simulation.bending.modes_on_grid import ModesOnGrid
@@ -167,7 +168,7 @@ class March:
         setup, follower = self.setup, self.follower
         law = self.law_on_grid = follower.law_on_grid
         scale, speed = min(follower.time_scale, self._time_scale), follower.speed(setup.body.length)
-        self._bounds = self.discretisation.step_bounds(setup, follower.between_samples, scale, speed)
+        self._bounds = step_bounds_of(setup, self.discretisation, follower.between_samples, scale, speed)
         breakpoints = sorted({*follower.breakpoints, *setup.breakpoints})
         if self.robot is not None:
             law, self._reference = self.robot.law(follower, self.discretisation.tabulation)

@@ -131,8 +131,7 @@ class Present:
     @property
     def evaluations(self) -> tuple[int, int, int]:
         """Numbers of steps, rejected steps and evaluations of the head's dynamics so far."""
-        counts: tuple[int, int, int] = self._march.core.counts
-        return counts
+        return self._march.core.counts
 
     # -- error, where it is measured (`measure_error`); else None
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 import eel_core
 from eel_dynamics.accuracy.grid_settings import ShapeNeeds
+from eel_dynamics.accuracy.step_bounds import step_bounds_of
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 from eel_dynamics.simulation.discretisation import discretise
@@ -68,7 +69,7 @@ class SampledSwimmers:
         )
         self.heads: Array = np.zeros((13, count))
         self._energy_at_start = np.zeros(count)
-        self._bounds = [self._discretisation.step_bounds(setup, True, setup.time_scale)] * count
+        self._bounds = [step_bounds_of(setup, self._discretisation, True, setup.time_scale)] * count
 
     def check(self, rows: Array) -> CurvatureSample:
         """A sample with these `rows` (6, n); `ValueError` for one that `Simulation.add_samples` refuses."""
@@ -88,7 +89,7 @@ class SampledSwimmers:
         setup = self.setup.starting(position, orientation, twist, flow)
         if flow is not None:
             self._check_flow(flow)
-        self._bounds[index] = bounds = self._discretisation.step_bounds(setup, True, setup.time_scale)
+        self._bounds[index] = bounds = step_bounds_of(setup, self._discretisation, True, setup.time_scale)
         place, turn, _ = setup.initial_state
         energy = self._marches.start(index, bounds, place, turn, setup.initial_twist, rows, setup.core_flow)
         if not (np.isfinite(energy) and self._marches.put_head(index, self.heads)):
