@@ -24,18 +24,18 @@ def tell_unsettled(settled: ArrayLike, what: str, stacklevel: int = 3) -> None:
         warnings.warn(f"{many} of {array.size} {what} have not settled", Unsettled, stacklevel=stacklevel)
 
 
-def change_of(means: Sequence[float] | np.ndarray, scale: float | None = None) -> float:
-    """The change of the `means` (n,) over successive periods, relative to `scale` (None: the last of them).
+def change_of(means: Sequence[float] | np.ndarray) -> float:
+    """The change of the `means` (n,) over successive periods, relative to the last of them.
 
     The greater of two: from the first mean to the last, and what is left to come. The latter follows from the last two
     changes d1, d2. Where they fall geometrically it is d2^2 / (d1 - d2); where they alternate it is d2; where they
     have one sign and do not fall it has no bound. So a slow change is not taken for none. Infinite for fewer than three
-    means, and for a scale of 0.
+    means, and where the last is 0.
     """
     if len(means) < FEWEST:
         return math.inf
     values = [float(each) for each in means]
-    scale = abs(values[-1]) if scale is None else scale
+    scale = abs(values[-1])
     if not scale > 0.0:
         return math.inf
     spread = (max(values) - min(values)) / scale

@@ -22,12 +22,10 @@ DEFAULT_TRANSITION = 1.0  # s
 
 
 class Blend(NamedTuple):
-    """The difference (6, width) between two motions at `start` [s]. It dies out until `end` [s].
+    """The difference (6, width) between two motions at `start` [s]: value, rate and acceleration for each axis.
 
-    Its factors in time are `Quintic::set_blend` in eel_core/law.hpp. Swimmers marched together (`SampledMarch` in
-    eel_core/march/sampled_march.hpp) have their one blend, into the first sample, in C++.
-
-    The rows are the value, the rate and the acceleration for each axis.
+    It dies out until `end` [s]. Its factors in time are `Quintic::set_blend` in eel_core/law.hpp. Swimmers marched
+    together (`SampledMarch` in eel_core/march/sampled_march.hpp) have their one blend, into the first sample, in C++.
     """
 
     difference: np.ndarray

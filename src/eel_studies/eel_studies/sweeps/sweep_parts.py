@@ -2,6 +2,7 @@
 """Stores the partial results of a sweep on disk beside its output, so that an interrupted sweep can be resumed."""
 
 import contextlib
+import hashlib
 import itertools
 import json
 import math
@@ -16,7 +17,7 @@ from eel_base.files.input_file import InputFile, from_json, reading
 from eel_base.files.output_file import check_output, replacing
 from eel_base.quantity import checked_instance
 from eel_base.wording import one_line, shown
-from eel_dynamics.runs.storage.digest import ATTRIBUTE, add_digest_to, check_digest_of, digest_of_text
+from eel_dynamics.runs.storage.digest import ATTRIBUTE, add_digest, check_digest
 
 Results = dict[int, dict[str, Any]]  # the measures of each point, by its index
 ABOUT, OURS = "sweep.json", ("sweep*.json", "part-*.json")
@@ -69,7 +70,7 @@ class Parts:
 
         data = None
         with contextlib.suppress(ValueError), reading(""), InputFile(self.out) as file:
-            check_digest_of(self.out)
+            _check_digest_of(self.out)
             data = xarray.load_dataset(file, engine="scipy")
         if data is not None and data.attrs.get("sweep") == self._key:
             data.attrs.pop(ATTRIBUTE, None)  # the file's
@@ -103,7 +104,7 @@ class Parts:
             for index, point in result.items()
         }
         with replacing(self.folder / f"part-{min(result)}-{os.getpid()}-{next(self._number)}.json") as draft:
-            draft.write_text(json.dumps({ATTRIBUTE: digest_of_text(json.dumps(points)), "points": points}))
+            draft.write_text(json.dumps({ATTRIBUTE: _digest_of(points), "points": points}))
 
     def finish(self, data: Any) -> None:
         """Write the complete sweep, and remove the parts."""
@@ -111,7 +112,7 @@ class Parts:
             return
         with replacing(self.out, self._began) as draft:
             data.to_netcdf(draft, engine="scipy")
-            add_digest_to(draft)
+            _add_digest_to(draft)
         self._remove()
 
     def _part(self, path: Path) -> Results:
@@ -128,7 +129,7 @@ class Parts:
             points[int(index)] = checked_point(
                 {name: math.nan if value is None else value for name, value in point.items()}
             )
-        if found.get(ATTRIBUTE) != digest_of_text(json.dumps(held)):
+        if found.get(ATTRIBUTE) != _digest_of(held):
             raise ValueError("its content does not fit its digest")
         return points
 
@@ -158,3 +159,24 @@ def _infinity(text: str) -> float:
     if text == "NaN":
         raise ValueError("it holds NaN in place of a number")
     return float(text)
+
+
+def _add_digest_to(path: str | os.PathLike[str]) -> None:
+    """Give the complete netCDF file at `path` its digest."""
+    from scipy.io import netcdf_file
+
+    with netcdf_file(os.fspath(path), "a", mmap=False) as file:
+        add_digest(file)
+
+
+def _check_digest_of(path: str | os.PathLike[str]) -> None:
+    """As `check_digest`, of the netCDF file at `path`; SciPy raises nearly anything for one that is damaged."""
+    from scipy.io import netcdf_file
+
+    with InputFile(path) as content, netcdf_file(content, "r", mmap=False) as file:
+        check_digest(file, os.fspath(path))
+
+
+def _digest_of(points: dict[Any, Any]) -> str:
+    """The digest of the points of a part."""
+    return hashlib.sha256(json.dumps(points).encode()).hexdigest()

@@ -6,12 +6,10 @@ does not fit either; without the attribute `digest` it can be read, with a warni
 """
 
 import hashlib
-import os
 import warnings
 from typing import Any
 
 import numpy as np
-from eel_base.files.input_file import InputFile
 
 ATTRIBUTE = "digest"
 
@@ -38,27 +36,6 @@ def digest_of(file: Any) -> str:
         content.update(repr((name, variable.dimensions, data.dtype.str, data.shape, _attributes(variable))).encode())
         content.update(data.data)
     return content.hexdigest()
-
-
-def add_digest_to(path: str | os.PathLike[str]) -> None:
-    """Give the complete netCDF file at `path` its digest."""
-    from scipy.io import netcdf_file
-
-    with netcdf_file(os.fspath(path), "a", mmap=False) as file:
-        add_digest(file)
-
-
-def check_digest_of(path: str | os.PathLike[str]) -> None:
-    """As `check_digest`, of the netCDF file at `path`; SciPy raises nearly anything for one that is damaged."""
-    from scipy.io import netcdf_file
-
-    with InputFile(path) as content, netcdf_file(content, "r", mmap=False) as file:
-        check_digest(file, os.fspath(path))
-
-
-def digest_of_text(text: str) -> str:
-    """The digest of a text."""
-    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _attributes(held: Any) -> list[Any]:
