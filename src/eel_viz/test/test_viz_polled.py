@@ -6,8 +6,9 @@ import weakref
 from collections import Counter
 from contextlib import nullcontext
 
+from eel_base.topics import SWIMMER
 from eel_viz.ros import polled_subscriptions
-from eel_viz.ros.polled_subscriptions import TAKE_LIMIT, PolledSubscriptions
+from eel_viz.ros.polled_subscriptions import GONE, TAKE_LIMIT, PolledSubscriptions, SwimmerPresence
 from eel_viz.same_stamp import UNSEEN, SameStamp
 from rclpy.qos import QoSProfile
 from rclpy.serialization import serialize_message
@@ -38,6 +39,12 @@ class Node:
 
     def get_publishers_info_by_topic(self, topic):
         return []
+
+    def resolve_topic_name(self, topic):
+        return f"/{topic}"
+
+    def count_publishers(self, topic):
+        return 0
 
 
 def test_a_turn_of_slow_messages_ends_and_all_topics_get_their_turns(monkeypatch):
@@ -84,6 +91,19 @@ def test_a_topic_whose_message_comes_a_little_later_is_not_left_behind(monkeypat
     monkeypatch.setattr(late, "take_message", lambda *kind: empty.pop() if empty else take(*kind))
     assert polled.take() == 10
     assert shown == ["pose"] * 3 + ["curvature", "pose"] * 2 + ["curvature"] * 3 and polled.take() == 0
+
+
+def test_a_swimmer_has_not_gone_while_its_messages_wait(monkeypatch):
+    """However long it takes to show one, or to send what is shown."""
+    now = [0.0]
+    monkeypatch.setattr(polled_subscriptions.time, "monotonic", lambda: now[0])
+    presence = SwimmerPresence(Node())
+    presence.heard(f"/{SWIMMER}")
+    for taken, gone in ((1, False), (1, False), (0, True)):
+        now[0] += 2.0 * GONE
+        assert not presence.has_gone()
+        presence.look(taken)
+        assert presence.has_gone() is gone
 
 
 def test_a_topic_that_is_ahead_by_a_whole_history_loses_nothing():

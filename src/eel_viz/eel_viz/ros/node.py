@@ -91,7 +91,9 @@ class Visualiser(ParameterNode):
 
     def take_messages(self, before: int) -> int:
         """Log messages that have come; the number of those from `before` [ns]; 0: all."""
-        return self._polled.take(before)
+        count = self._polled.take(before)
+        self._presence.look(count)
+        return count
 
     def _subscribe(self, space: str, dispatcher: Dispatcher) -> None:
         """Subscribe to the topics of the swimmer in the namespace `space`; the body first, as the others need it."""

@@ -21,7 +21,7 @@ from rclpy.subscription import Subscription
 TAKE_LIMIT = 0.2  # s after which `take` returns, so that the node hears calls and signals
 PROCESS = 12  # bytes of an endpoint's identifier that all endpoints of a process share (RTPS: the GUID's prefix)
 PAUSE = 0.3  # s between two messages, after which the publishers are looked up: no node starts faster
-GONE = 0.5  # s without publishers and messages, after which a swimmer has gone
+GONE = 0.5  # s without publishers, in which no look has found a message: then a swimmer has gone
 
 Receive = Callable[[bytes, Mapping[str, Any]], None]  # the serialised message, and the message info
 Show = Callable[[Any, bool, int], None]  # the message, whether it is another publisher's first, when it was sent [ns]
@@ -136,18 +136,23 @@ class SwimmerPresence:
     def __init__(self, node: Node) -> None:
         self._node, self._topic = node, node.resolve_topic_name(SWIMMER)
         self._present = False
-        self._last_seen = time.monotonic()
+        self._last_seen = self._looked = time.monotonic()
 
     def heard(self, topic: str) -> None:
         """A message has come on `topic`; a law alone is not a swimmer."""
-        self._last_seen = time.monotonic()
         self._present |= topic == self._topic
+
+    def look(self, taken: int) -> None:
+        """So many messages have just been taken; what is not looked for may be waiting, however long that takes."""
+        self._looked = time.monotonic()
+        if taken:
+            self._last_seen = self._looked
 
     def has_gone(self) -> bool:
         """Whether the swimmer was there and has gone, with all of its publishers and messages."""
         if self._node.count_publishers(SWIMMER):
             self._present, self._last_seen = True, time.monotonic()
-        return self._present and time.monotonic() - self._last_seen >= GONE
+        return self._present and self._looked - self._last_seen >= GONE
 
 
 def unused(message: Any) -> None:

@@ -99,6 +99,7 @@ class Recorder(Node):
     def take_messages(self, before: int) -> int:
         """Record messages that have come; the number of those from `before` [ns]; 0: all. Save where it is time."""
         count = self._polled.take(before)
+        self._presence.look(count)
         self._save_if_due(time.monotonic())
         return count
 
