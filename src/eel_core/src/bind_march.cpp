@@ -44,14 +44,17 @@ std::shared_ptr<Modes> modes_from(const py::object& table, const py::object& x, 
         const auto number = [servo = py::object(motor.attr("servo"))](const char* name) {  // none: no limit
             return servo.attr(name).cast<std::optional<double>>().value_or(std::numeric_limits<double>::infinity());
         };
-        modes->servos.push_back({motor.attr("coordinate").cast<std::size_t>(), number("kp"), number("kd"),
-                                 number("torque_limit"), number("speed_limit")});
+        const auto coordinate = motor.attr("coordinate").cast<std::size_t>();
+        if (coordinate >= c) throw py::value_error("a servo must drive a coordinate");
+        modes->servos.push_back(
+            {coordinate, number("kp"), number("kd"), number("torque_limit"), number("speed_limit")});
     }
     modes->drive = drive;
     modes->push = Numbers::sized(push, "push", drive ? c * drive->tables->rows() : 0).vector();
     for (const py::handle each : torques) {
         const auto torque = each.cast<py::tuple>();
         const auto coordinate = torque[0].cast<std::size_t>();
+        if (coordinate >= c) throw py::value_error("a torque must drive a coordinate");
         if (torque.size() == 2)
             modes->torques.push_back({coordinate, [function = py::object(torque[1])](double time) {
                                           const py::gil_scoped_acquire locked;

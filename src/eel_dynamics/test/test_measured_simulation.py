@@ -167,3 +167,5 @@ def test_a_recorded_motion_is_measured_too():
         with pytest.raises(ValueError, match=told):
             simulation.record(times, True, False)
     assert simulation.time == 4.0
+    simulation.record([np.nextafter(4.0, 0.0), 4.1], True, False)
+    assert simulation.time == pytest.approx(4.1)

@@ -51,7 +51,7 @@ class ThreadedVectorEnv(VectorEnv[Any, Any, Any]):
             known = ", ".join(mode.value for mode in AutoresetMode)
             raise ValueError(f"autoreset_mode must be one of {known}, got {shown(autoreset_mode)}") from None
         task = self.task if task is None else task
-        if not (isinstance(task, type) and issubclass(task, SwimmerEnv)):
+        if not callable(task) or (isinstance(task, type) and not issubclass(task, SwimmerEnv)):
             raise ValueError(f"task must be a class of SwimmerEnv, got {shown(task)}")
         if max_episode_steps is not None:
             checked_count("max_episode_steps", max_episode_steps)

@@ -21,7 +21,7 @@ class InitialState(NamedTuple):
 
     def in_water(self, current: np.ndarray) -> np.ndarray:
         """Twist (6,) of the head relative to water that flows with the `current` (3,) [m/s]."""
-        return self.against_water(-current).twist
+        return self.against_water(-current).twist.copy()
 
     def against_water(self, current: np.ndarray) -> "InitialState":
         """The same in the world, of a state whose twist is relative to water that flows with the `current` (3,)."""

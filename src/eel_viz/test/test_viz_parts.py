@@ -98,7 +98,7 @@ def message_of_parts(fins=FINS, joints=JOINTS, **changes):
 def record(path, *, parts, motors=MOTORS, early=0):
     """The made-up swimmer with or without parts, through the dispatcher; what was said.
 
-    early: how many samples come before the body.
+    early: how many samples come before the body; after three a law is adopted.
     """
     said = []
     destination = FileDestination(Settings(recording=str(path)), said.append, said.append)
@@ -109,6 +109,8 @@ def record(path, *, parts, motors=MOTORS, early=0):
         if k == early:
             dispatcher.poll()
             dispatcher.dispatch("body", message_of_parts() if parts else NS(**made_up.body()))
+        if k == 3:
+            dispatcher.dispatch("curvature_law", NS(name="in between"))
         header = NS(stamp=NS(sec=0, nanosec=stamp))
         line = swimmer.backbone(1e-9 * stamp)
         line |= {name: line[name].ravel() for name in ("position", "orientation")}
@@ -145,6 +147,8 @@ def test_parts_are_recorded_at_every_sample(tmp_path, early):
     numbers = read(path, entities.JOINT_NUMBERS)
     assert numbers["name"][0].tolist() == ["a", "b"] and numbers["effort"][-1].tolist() == [-1.0, 0.5]
     assert read(path, entities.MOTOR_NUMBERS)["limit"][-1].tolist() == [1.0, 2.0]
+    log = read(path, entities.LOG)
+    assert "in between" in str(log["text"][-1]) and log.stamps_of["text"][-1] == STAMPS[2]
     words = read(path, entities.LOOK, static=True)["text"][-1]
     assert "fins" in str(words) and "joints" in str(words)
 

@@ -47,7 +47,7 @@ def peaks(
     fine = np.interp(between, np.arange(len(inside)), inside)
     wanted = slice(None) if near is None else np.interp(between, np.arange(len(inside)), near) > 0.0
     if inside is x and len(x) <= FEW and np.ptp(np.diff(x)) <= EQUIDISTANT * (x[1] - x[0]):
-        rows = _table(len(x))[wanted] @ values.reshape(len(x), -1)
+        rows = _table(len(x))[wanted] @ np.asarray_chkfinite(values).reshape(len(x), -1)
         return _greatest(fine[wanted], size(rows.reshape(-1, *values.shape[1:])))
     curve, fine = _spline(x, values), fine[wanted]
     parts = [fine[max(0, begin - 1) : begin + AT_ONCE + 1] for begin in range(0, max(1, len(fine) - 1), AT_ONCE)]

@@ -33,6 +33,8 @@ from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
 from eel_dynamics.simulation.time_budget import affordable
 
+ROUNDING = 1e-12  # of a time, s at least: how far the first one to record may lie before the present
+
 
 class Simulation(Present):
     """One swimmer, from its initial state on. Adopt a law (or add samples), advance, observe.
@@ -290,7 +292,7 @@ class Simulation(Present):
         instant the simulation must be reset. `ValueError` for times that are not finite, or fall.
         """
         times = checked_row("times", times, None)
-        if np.any(np.diff(times, prepend=self.time) < 0.0):
+        if np.any(np.diff(times, prepend=self.time) < -ROUNDING * max(1.0, abs(self.time))):
             raise ValueError(f"times must not fall, from the present {self.time} s on, got {shown(times.tolist())}")
         self._started = True
         recorded = self._march.record(times, wrench, load, look)

@@ -12,11 +12,12 @@ is right and the errors are small: an error of the model is in no interval.
 """
 
 import warnings
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from eel_base.command.progress import progress_of
-from eel_base.quantity import checked_instance, number, positive
+from eel_base.quantity import number, positive
 from eel_base.wording import shown
 
 from eel_dynamics import Body, Robot, Scene
@@ -70,8 +71,9 @@ def identify(
     if level >= 1.0:
         raise ValueError(f"level must be below 1, got {level:g}")
     base = base_point(body, scene, fixed_steps(accuracy), friction="blended", robot=robot, gait=gait)
-    own = {} if numbers is None else dict(checked_instance("numbers", numbers, dict))
-    swims = Swims(gait, own, base, threads)
+    if not (numbers is None or isinstance(numbers, Mapping)):
+        raise ValueError(f"numbers must be a dict, got {shown(numbers)}")
+    swims = Swims(gait, dict(numbers or {}), base, threads)
     for each in measurements:
         try:
             point_at(first, gait, {**swims.numbers, **each.numbers}, base)

@@ -3,7 +3,7 @@
 
 While a run stands at its start, the dynamics node repeats sample 0. So a sample of stamp 0 is held back until the next
 one of its topic comes, and of several only the last is logged and counted. What is drawn takes its size from the body,
-whose message may come after the first samples: these wait for it a while.
+whose message may come after the first samples: these, and what comes after them, wait for it a while.
 A message is any object with the fields of its type. A message that cannot be shown is reported once and left out.
 """
 
@@ -23,7 +23,7 @@ from eel_viz.recording.recordings import Recordings
 
 COARSE = 4  # stations, below which a backbone says little about the shape
 BODY_LIMIT = 2.0  # s after the first sample within which the body is expected
-MAXIMUM_EARLY = 10_000  # samples that wait for the body
+MOST_WAITING = 3000  # messages that wait for the body
 
 READERS: dict[str, Callable[[Any], Any]] = {  # what is shown: what methods of the topic's name are given of a message
     "body": readers.read_body,
@@ -65,7 +65,7 @@ class Dispatcher:
         self._start: dict[str, tuple[Any, bool, float]] = {}  # topic: sample 0, whether from another publisher, sent
         self._stations: dict[str, int] = {}  # number of stations by topic
         self._first_sample: float | None = None  # s
-        self._early: deque[tuple[str, Any, bool, float]] = deque()  # what waits for the body, as `_dispatch` takes it
+        self._waiting: deque[tuple[str, Any, bool, float]] = deque()  # for the body; as `_dispatch` takes them
 
     def dispatch(self, topic: str, message: Any, *, new_publisher: bool = False, sent: float = math.inf) -> None:
         """Log one message of `topic`, a name in `READERS`.
@@ -74,14 +74,11 @@ class Dispatcher:
         """
         if topic in SAMPLED:
             self._first_sample = self._first_sample or time.monotonic()
-            if self._awaits_body():
-                self._early.append((topic, message, new_publisher, sent))
-                self._dispatch_early(but=MAXIMUM_EARLY)
-                return
-            self._dispatch_early()
-        self._dispatch(topic, message, new_publisher, sent)
         if topic == "body":
-            self._dispatch_early()
+            self._dispatch(topic, message, new_publisher, sent)
+        else:
+            self._waiting.append((topic, message, new_publisher, sent))
+        self._dispatch_waiting(MOST_WAITING if self._awaits_body() else 0)
 
     def _dispatch(self, topic: str, message: Any, new_publisher: bool, sent: float) -> None:
         if topic in SAMPLED and readers.is_at_start(message):
@@ -94,27 +91,27 @@ class Dispatcher:
     def poll(self) -> None:
         """If the body has not come in time, log what waits for it, and warn."""
         if not self._awaits_body():
-            self._dispatch_early()
+            self._dispatch_waiting()
             self._check_body()
 
     def finish(self) -> str:
         """Log what is held back; returns the received topics with their numbers of messages as text."""
-        self._dispatch_early()
+        self._dispatch_waiting()
         for topic in list(self._start):
             self._log_start(topic)
         self._check_body()
         return ", ".join(f"{topic} {count}" for topic, count in self.received.items()) or "nothing"
 
     def _awaits_body(self) -> bool:
-        """Whether samples wait for the body."""
+        """Whether messages wait for the body: from the first sample on, for a while."""
         if self.received["body"] or self._first_sample is None:
             return False
         return time.monotonic() - self._first_sample < BODY_LIMIT
 
-    def _dispatch_early(self, but: int = 0) -> None:
-        """Dispatch what waits for the body, but for the newest so many."""
-        while len(self._early) > but:
-            self._dispatch(*self._early.popleft())
+    def _dispatch_waiting(self, but: int = 0) -> None:
+        """Dispatch what waits, in its order, but for the newest so many."""
+        while len(self._waiting) > but:
+            self._dispatch(*self._waiting.popleft())
 
     def _log_start(self, topic: str) -> None:
         """Log the sample 0 of `topic` that is held back."""

@@ -45,15 +45,17 @@ def record_messages(
             )
         )
     try:  # a signal completes the recordings, an error discards them
-        for k, (index, topic, message) in enumerate(merged_by_time(sources)):
-            dispatchers[index].dispatch(topic, message)
-            if k % MESSAGES_PER_POLL == 0:
-                recordings.poll()
+        try:
+            for k, (index, topic, message) in enumerate(merged_by_time(sources)):
+                dispatchers[index].dispatch(topic, message)
+                if k % MESSAGES_PER_POLL == 0:
+                    recordings.poll()
+        finally:
+            received = [dispatcher.finish() for dispatcher in dispatchers]
     except Exception:
         recordings.discard()
         raise
     finally:
-        received = [dispatcher.finish() for dispatcher in dispatchers]
         recordings.close()
     return received[0]
 

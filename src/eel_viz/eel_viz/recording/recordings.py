@@ -2,8 +2,9 @@
 """The recordings of one visualiser: a stamp that goes back begins the next recording.
 
 A reset reaches the topics one by one, in any order. So each topic has its own current recording, and a recording is
-closed once no topic uses it any more. The first message of a topic may come later than the others' reset; when it was
-sent tells its recording. Each new recording gets the body, the law, the goal and the last diagnostics.
+closed once no topic uses it any more, and a while after the next one began: the first message of a topic may come later
+than the others' reset, and when it was sent tells its recording. Each new recording gets the body, the law, the goal
+and the last diagnostics.
 """
 
 import math

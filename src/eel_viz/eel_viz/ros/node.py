@@ -80,8 +80,10 @@ class Visualiser(ParameterNode):
 
     def close(self) -> None:
         """Close the recordings, and log what was received."""
-        received = [dispatcher.finish() for dispatcher in self._dispatchers.values()]
-        self._recordings.close()
+        try:
+            received = [dispatcher.finish() for dispatcher in self._dispatchers.values()]
+        finally:
+            self._recordings.close()
         self._log_info(f"received: {received[0]}")
 
     @property

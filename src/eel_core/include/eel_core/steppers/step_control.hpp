@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What sets the time step. `error_by_tolerance` judges the error of the last one, `growth_factor` or `shrink_factor`
-// propose the next one by it (called by `Pace`, for `Stepper` and, for robots, `BentStepper`), and `time_step_size`
-// fits the proposal to `StepBounds` and to what lies ahead. The bounds come from the accuracy and the law:
-// `step_bounds_of` in eel_dynamics/accuracy/step_bounds.py.
+// propose the next one by it (called by `Stepper`, for robots by `BentStepper`, and by `Pace`, which both have), and
+// `time_step_size` fits the proposal to `StepBounds` and to what lies ahead. The bounds come from the accuracy and the
+// law: `step_bounds_of` in eel_dynamics/accuracy/step_bounds.py.
 #pragma once
 
 #include <algorithm>
