@@ -103,8 +103,13 @@ def least_torque(law, mass: float, length: float, duration: float) -> float:
     law: the `Law`, or None. mass [kg], length [m]: of the body. duration [s]: of the run.
     """
     periods = [term.period for term in law.waves] if law is not None else []
-    fast = length / min(periods, default=max(duration, 1.0))
-    return TORQUE_FLOOR * mass * (fast * fast)  # infinite where a power would overflow
+    return torque_floor(mass, length, min(periods, default=max(duration, 1.0)))
+
+
+def torque_floor(mass: float, length: float, time: float) -> float:
+    """[N m], of a `mass` [kg] that moves by `length` [m] in a `time` [s]; infinite where a power would overflow."""
+    fast = length / time
+    return TORQUE_FLOOR * mass * (fast * fast)
 
 
 def growth_rate_of(time: np.ndarray, distance: np.ndarray, small: float) -> float:

@@ -12,7 +12,7 @@ from eel_gaits.laws.law import Law
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import LONGEST_STEP
-from eel_dynamics.accuracy.error_estimate import TORQUE_FLOOR
+from eel_dynamics.accuracy.error_estimate import torque_floor
 
 # A run takes at most so many evaluations per simulated second. They take seconds of wall time. The most exact runs need
 # a tenth of them.
@@ -63,7 +63,6 @@ def step_bounds_of(
     longest = accuracy.longest_step * min(scale, 10.0)
     fixed = accuracy.step or (accuracy.fixed and min(scale, 1.0) / accuracy.fixed)
     part_of_span = PART_OF_RAMP if setup.scene.ledger else PART_OF_SPAN
-    fast = length / min(law_scale, 1.0)
     slowest = max(SLOWEST * length / min(scale, 10.0), PART_OF_SPEED * speed)
     return eel_core.StepBounds(
         tolerance=math.inf if accuracy.method == "classical" else accuracy.tolerance,  # infinite: steps of one length
@@ -74,5 +73,5 @@ def step_bounds_of(
         part_of_span=1.0 if between_samples else min(1.0, part_of_span * accuracy.longest_step / LONGEST_STEP),
         most_steps=setup.most_evaluations / EVALUATIONS[accuracy.method],
         spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / len(here.grid.x))),
-        torque_floor=TORQUE_FLOOR * mass * (fast * fast),  # infinite where a power would overflow
+        torque_floor=torque_floor(mass, length, min(law_scale, 1.0)),
     )

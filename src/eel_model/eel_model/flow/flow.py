@@ -121,12 +121,6 @@ def parts_of(flow: Flow) -> tuple[Flow, ...]:
     return flow.parts if isinstance(flow, FlowSum) else (flow,)
 
 
-def spline_source(spline: Any) -> list[tuple[Any, ...]]:
-    """The source of water that moves alike everywhere, by a cubic `spline` of SciPy in time: coefficients from the
-    constant one on."""
-    return [("spline", spline.x, np.ascontiguousarray(spline.c[::-1].transpose(1, 0, 2)))]
-
-
 @lru_cache(maxsize=64)
 def core_flow(flow: Flow, planar: bool) -> eel_core.Flow:
     """`flow` for the compiled mechanics. planar: of a planar scene."""

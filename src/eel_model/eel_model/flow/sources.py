@@ -10,7 +10,7 @@ import numpy as np
 from eel_base.quantity import Quantities, checked_row, documented, numbers, quantity
 from eel_base.wording import shown
 
-from eel_model.flow.flow import Flow, FlowTraits, spline_source
+from eel_model.flow.flow import Flow, FlowTraits
 
 GRAVITY = 9.80665  # m/s^2, standard
 TURN = 2.0 * math.pi
@@ -48,7 +48,9 @@ class Uniform(Flow):
             return [("ramped", np.array(self.velocity), [])]
         from scipy.interpolate import CubicSpline
 
-        return spline_source(CubicSpline(self.time, self.velocity, bc_type="clamped"))
+        spline = CubicSpline(self.time, self.velocity, bc_type="clamped")
+        coefficients = np.ascontiguousarray(spline.c[::-1].transpose(1, 0, 2))  # from the constant one on
+        return [("spline", np.array(self.time), coefficients)]
 
     @cached_property
     def traits(self) -> FlowTraits:
