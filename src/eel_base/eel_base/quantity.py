@@ -37,11 +37,12 @@ def quantity(
     description: str,
     minimum: float | None = None,
     maximum: float | None = None,
+    compare: bool = True,
     **more: Any,
 ) -> Value:
-    """A dataclass field with these metadata, and what is `more`."""
+    """A dataclass field with these metadata, and what is `more`. compare: whether it counts where two are compared."""
     metadata = {"unit": unit, "description": description, "minimum": minimum, "maximum": maximum}
-    return field(default=default, metadata=metadata | more)
+    return field(default=default, compare=compare, metadata=metadata | more)
 
 
 def required(unit: str, description: str, minimum: float | None = None, **more: Any) -> Any:

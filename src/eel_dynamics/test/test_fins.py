@@ -10,6 +10,7 @@ import pytest
 from cases import falling_law, random_law, random_twist
 from draws import few, numbers, quaternions, scenes, swimmers, twists
 from eel_model.axes import turn_quaternion, turn_vector
+from eel_model.fins.text import fins_from_text, text_of_fins
 from eel_model.inertia import straight_inertia
 from eel_model.section_data import nose_of
 from flows import FLOWS, formula
@@ -341,3 +342,26 @@ def test_a_run_with_fins_is_saved_copied_and_simulated_again(tmp_path):
 def test_bad_input_names_the_argument(make, message):
     with pytest.raises(ValueError, match=message):
         make()
+
+
+@pytest.mark.fault(
+    "parameters", "two fins within a millimetre, or one that moves", "each has a name of its own, which stays"
+)
+def test_each_fin_has_a_name_of_its_own_that_stays_where_it_moves():
+    def names(*stations, **others):
+        fins = [Fin(station, "left", 1e-3, 2.5, **others) for station in stations]
+        return [fin.name for fin in Simulation(law=STRAIGHT, fins=[*fins, Fin.pair(0.2, 1e-3, 2.5)]).fins]
+
+    assert names(0.5001, 0.5004) == ["left", "left_2", "left_3", "right"] == names(0.3, 0.8)
+    assert names(0.5, name="left_2") == ["left_2", "left", "right"]
+    simulation = Simulation(law=STRAIGHT, fins=[Fin.pair(0.2, 1e-3, 2.5, name="rudder"), Fin(0.3, "left", 1e-3, 2.5)])
+    assert [fin.name for fin in simulation.fins] == ["left_rudder", "right_rudder", "left"]
+    assert [fin.name for fin in fins_from_text(text_of_fins(simulation.fins))] == [
+        "left_rudder",
+        "right_rudder",
+        "left",
+    ]
+    with pytest.raises(ValueError, match="fins must have different names, got 'rudder' twice"):
+        names(0.3, 0.4, name="rudder")
+    with pytest.raises(ValueError, match="fin name must be a text of at most 100 characters without spaces"):
+        names(0.3, name="a rudder")

@@ -35,8 +35,8 @@ def test_commands_reach_the_fins_between_two_samples_as_in_the_library(start, cl
     swim.until(lambda: commands.get_subscription_count() > 0, "subscription")
     swim.until_time(0.1)
     paused = swim.stop_the_clock("head_pose")
-    commands.publish(JointState(name=["left_500"], position=[0.3]))
-    commands.publish(JointState(name=["right_900"], position=[0.3]))
+    commands.publish(JointState(name=["left_2"], position=[0.3]))
+    commands.publish(JointState(name=["right_2"], position=[0.3]))
     assert commands.wait_for_all_acked(Duration(seconds=LIMIT))
     node.wait_for_output("fin_command refused", LIMIT)
     assert swim.pause(False).success
@@ -45,14 +45,14 @@ def test_commands_reach_the_fins_between_two_samples_as_in_the_library(start, cl
     flow, robot = robot and flow_from_text(FLOW), robot_of(robot or "")
     library = Simulation(law=straight(), fins=fins_from_text(f"{PAIR} + {RUDDER}"), robot=robot, flow=flow)
     library.advance(paused)
-    library.command_fins({"left_500": 0.3})
+    library.command_fins({"left_2": 0.3})
     poses, states = (
         {nanoseconds(m.header.stamp): m for m in swim.received[topic]} for topic in ("head_pose", "fin_states")
     )
     for stamp in samples:
         library.advance(round(stamp / 1e7) / 100.0)
         assert np.array_equal(place(poses[stamp]), library.head.position)
-        assert list(states[stamp].name) == ["left_200", "right_200", "left_500"]
+        assert list(states[stamp].name) == ["left", "right", "left_2"]
         assert np.array_equal(states[stamp].position, library.observe(False, False).fin_angle)
     assert states[stamp].position[2] > 0.1
 
@@ -80,7 +80,7 @@ def test_the_text_of_fins_is_read_again(tmp_path):
 
 @pytest.mark.parametrize(
     ("commands", "message"),
-    [({"left_1": 0.1}, "fin must be one of left_500"), ({"left_500": np.nan}, "angle of fin left_500 must be")],
+    [({"left_1": 0.1}, "fin must be one of left,"), ({"left": np.nan}, "angle of fin left must be")],
 )
 def test_a_command_that_does_not_fit_is_refused(commands, message):
     simulation = Simulation(law=straight(), fins=fins_from_text(RUDDER))

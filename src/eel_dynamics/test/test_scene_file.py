@@ -124,7 +124,7 @@ def test_cross_flow_is_a_switch_of_the_scene():
         ("flow: {a: 3}", "flow must be a str, got {'a': 3}"),
         ("fins: up station=0.3", "fins must be one of pair, right, left, got 'up'"),
         ("fins: left station=0.3 area=1", "fin aspect_ratio must be given"),
-        ("fins: left stations=0.3", "fins left must have fields NAME=NUMBER of station, area"),
+        ("fins: left stations=0.3", "fins left must have fields FIELD=VALUE of station, area"),
         ("robot: nine_servos", "robot must be one of eight_servos"),
         ("initial_position: [1, 2]", "initial position must be 3 numbers, got 2"),
         ("- a list", "its content must be a Mapping"),

@@ -32,6 +32,7 @@ from eel_model.scene import Scene
 COMMANDED = "commanded"  # angle of a fin that follows commands
 SIDES = {"right": 1.0, "left": -1.0}  # along axis 2 of the sections
 APART = 1e-9  # of the body's length: stations that are closer count as one place
+LONGEST_NAME = 100  # characters
 
 
 @dataclass(frozen=True)
@@ -78,10 +79,17 @@ class Fin(Quantities):
     friction_drag: float = quantity(0.01, "", "coefficient of a plate along the stream", 0.0)
     efficiency: float = quantity(0.9, "", "of its lift, in the induced drag", 0.0, exclusive=True)
     added_mass: float = quantity(1.0, "", "by that of a flat plate; 0: none", 0.0)
+    name: str = quantity(
+        "", "", "in topics and commands; empty: in a run its side, such as left, left_2", plain=True, compare=False
+    )
 
     def __post_init__(self) -> None:
         if self.side not in SIDES:
             raise ValueError(not_one_of("fin side", self.side, tuple(SIDES)))
+        known = isinstance(self.name, str) and len(self.name) <= LONGEST_NAME and self.name.isprintable()
+        if not known or " " in self.name:
+            rule = f"a text of at most {LONGEST_NAME} characters without spaces"
+            raise ValueError(f"fin name must be {rule}, got {shown(self.name)}")
         super().__post_init__()
         object.__setattr__(self, "angle", _checked_angle(self.angle))
         if self.time_constant is not None:
@@ -93,15 +101,14 @@ class Fin(Quantities):
             raise ValueError(f"fin initial_angle needs a time_constant, in s, got {shown(self.initial_angle)} and none")
 
     @staticmethod
-    def pair(station: float, area: float, aspect_ratio: float, **others: Any) -> tuple["Fin", "Fin"]:
-        """A fin on the left and one on the right, each of this area; the arguments are those of `Fin`."""
-        left = Fin(station, "left", area, aspect_ratio, **others)
-        return left, replace(left, side="right")
+    def pair(station: float, area: float, aspect_ratio: float, name: str = "", **others: Any) -> tuple["Fin", "Fin"]:
+        """A fin on the left and one on the right, each of this area; the arguments are those of `Fin`.
 
-    @property
-    def name(self) -> str:
-        """Side and station [mm], as topics name it."""
-        return f"{self.side}_{round(1e3 * self.station)}"
+        name: of the pair, that of a fin begins with its side.
+        """
+        names = {side: f"{side}_{name}" if name else "" for side in ("left", "right")}
+        left = Fin(station, "left", area, aspect_ratio, name=names["left"], **others)
+        return left, replace(left, side="right", name=names["right"])
 
     @property
     def span(self) -> float:
@@ -171,13 +178,16 @@ def _checked_angle(angle: Any) -> Any:
 
 
 def checked_fins(fins: Any, body: Body, scene: Scene) -> tuple[Fin, ...]:
-    """The fins of a run, pairs among them taken apart. `ValueError` names one that `body` or `scene` does not allow."""
+    """The fins of a run, pairs among them taken apart, each with a name of its own.
+
+    `ValueError` names one that `body` or `scene` does not allow.
+    """
     if fins is None:
         return ()
     if isinstance(fins, Fin) or not np.iterable(fins):
         raise ValueError(f"fins must be a list of Fin, got {shown(fins)}")
     flat = [each for item in fins for each in (item if isinstance(item, (tuple, list)) else (item,))]
-    found = tuple(checked_instance("fin", each, Fin) for each in flat)
+    found = _named([checked_instance("fin", each, Fin) for each in flat])
     if found and scene.planar:
         raise ValueError(f"fins need a scene in space, got planar and {len(found)} fins")
     for place, fin in enumerate(found):
@@ -192,6 +202,20 @@ def checked_fins(fins: Any, body: Body, scene: Scene) -> tuple[Fin, ...]:
     if states > eel_core.MOST_SERVOS:
         raise ValueError(f"fins must have {eel_core.MOST_SERVOS} servos with a time constant at most, got {states}")
     return found
+
+
+def _named(fins: list[Fin]) -> tuple[Fin, ...]:
+    """The `fins`, of which those without a name get one by side and order: it stays where a fin moves."""
+    taken = [fin.name for fin in fins if fin.name]
+    for name in taken:
+        if taken.count(name) > 1:
+            raise ValueError(f"fins must have different names, got {shown(name)} twice")
+    found = []
+    for fin in fins:
+        free = (name for name in (fin.side, *(f"{fin.side}_{k}" for k in range(2, len(fins) + 2))) if name not in taken)
+        found.append(fin if fin.name else replace(fin, name=next(free)))
+        taken.append(found[-1].name)
+    return tuple(found)
 
 
 def servos_of(fins: tuple[Fin, ...]) -> list[tuple[Any, ...]]:

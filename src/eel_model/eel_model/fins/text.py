@@ -4,7 +4,7 @@
 pair station=0.5 area=0.0015 aspect_ratio=2.5 k_p=4 k_d=0.5 time_constant=0.05
 left station=0.5 area=0.0005 aspect_ratio=3 angle=commanded time_constant=0.1
 
-k_p and k_d make a `RollHold` of the angle. angle=commanded: the topic fin_command gives it.
+k_p and k_d make a `RollHold` of the angle. angle=commanded: the topic fin_command gives it. name=NAME: in topics.
 """
 
 from dataclasses import fields
@@ -16,7 +16,8 @@ from eel_base.wording import not_one_of, shown
 from eel_model.fins.fins import COMMANDED, SIDES, Fin, RollHold
 
 JOINED, PAIR = " + ", "pair"
-NUMBERS = tuple(item.name for item in fields(Fin) if item.name != "side")
+NAME = "name"
+NUMBERS = tuple(item.name for item in fields(Fin) if item.name not in ("side", NAME))
 GAINS = "k_p", "k_d"
 
 
@@ -32,10 +33,10 @@ def _part(text: str) -> tuple[Fin, ...]:
     fields: dict[str, Any] = {}
     for each in given:
         field, _, value = each.partition("=")
-        if field not in (*NUMBERS, *GAINS) or field in fields:
-            known = ", ".join((*NUMBERS, *GAINS))
-            raise ValueError(f"fins {name} must have fields NAME=NUMBER of {known}, each once, got {shown(each)}")
-        fields[field] = value if value == COMMANDED else _number(f"fin {field}", value)
+        if field not in (*NUMBERS, *GAINS, NAME) or field in fields:
+            known = ", ".join((*NUMBERS, *GAINS, NAME))
+            raise ValueError(f"fins {name} must have fields FIELD=VALUE of {known}, each once, got {shown(each)}")
+        fields[field] = value if field == NAME or value == COMMANDED else _number(f"fin {field}", value)
     gains = {field: fields.pop(field) for field in GAINS if field in fields}
     if gains:
         fields["angle"] = RollHold(**gains)
@@ -64,6 +65,7 @@ def text_of_fins(fins: tuple[Fin, ...]) -> str:
         held = isinstance(fin.angle, RollHold)
         values = {name: getattr(fin, name) for name in NUMBERS if not (held and name == "angle")}
         values |= {name: getattr(fin.angle, name) for name in GAINS} if held else {}
-        written = (f"{name}={value}" for name, value in values.items() if value is not None)
-        parts.append(" ".join((fin.side, *written)))
+        written = [f"{name}={value}" for name, value in values.items() if value is not None]
+        named = [f"{NAME}={fin.name}"] if fin.name else []
+        parts.append(" ".join((fin.side, *written, *named)))
     return JOINED.join(parts)
