@@ -6,6 +6,7 @@
 
 import contextlib
 import math
+import re
 import sys
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import MISSING, Field, fields
@@ -14,7 +15,7 @@ from typing import Any
 
 from eel_base.files.yaml_tree import read_yaml
 from eel_base.quantity import AT_RESET, Quantities, limits
-from eel_base.wording import did_you_mean
+from eel_base.wording import did_you_mean, shown
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.node import Node
 
@@ -26,7 +27,7 @@ ROS_PREFIXES = (
     "qos_overrides.",
 )  # of ROS's own parameters
 ALIKE = 0.8  # of two names, from 0 to 1: a parameter of another node is no slip
-OPTION, VALUES = "--params-file", "ros__parameters"
+FILE, VALUE, VALUES = "--params-file", ("-p", "--param"), "ros__parameters"
 MAXIMUM_INTEGER = 2**63 - 1  # of a ROS parameter
 
 
@@ -34,9 +35,10 @@ def take_overrides(node: Node) -> dict[str, Any]:
     """The user's parameter overrides, by name.
 
     `node` has declared them. All but ROS's own parameters are undeclared, so that `declare` can declare them with type
-    and range.
+    and range. A parameter file that is for other nodes alone is warned of.
     """
     given: dict[str, Any] = node.get_parameters_by_prefix("")  # of `Parameter`s, not of values as rclpy says
+    warn_of_other_nodes(node)
     overrides = {name: parameter.value for name, parameter in given.items()}
     for name in overrides:
         if not name.startswith(ROS_PREFIXES):
@@ -125,20 +127,46 @@ def _descriptor(item: Field[Any], changeable: bool | str | None) -> ParameterDes
 
 def shared_names(words: Sequence[str]) -> set[str]:
     """The names that the files in the command line `words` set for all nodes. A file that cannot be read has none."""
-    names: set[str] = set()
-    for option, path in pairwise(words):
-        if option == OPTION:
+    nodes = (each for _, found in _given_in(words) for each in found)
+    return {name for node, values in nodes if "*" in node for name in _names_in(values)}
+
+
+def warn_of_other_nodes(node: Node) -> None:
+    """Warn of each parameter file in the command line, and of each parameter, that is for other nodes alone."""
+    own = node.get_fully_qualified_name()
+    for option, nodes in _given_in(sys.argv):
+        known = dict.fromkeys(name for name, _ in nodes)
+        if known and not any(re.fullmatch(_pattern(name), own) for name in known):
+            node.get_logger().warning(f"{option} is for {', '.join(known)}, not for this node, {own}: ignored")
+
+
+def _pattern(node: str) -> str:
+    """The names of nodes that a `node` of a parameter file means, as a regular expression: as rclpy makes it."""
+    return re.escape(node).replace(r"/\*\*", r"(/\w+)*").replace(r"/\*", r"(/\w+)")
+
+
+def _given_in(words: Sequence[str]) -> Iterator[tuple[str, list[tuple[str, Any]]]]:
+    """The options in the command line `words` that name nodes, with what they have of which nodes."""
+    for option, word in pairwise(words):
+        node, colon, name = word.partition(":=")[0].rpartition(":")
+        if option == FILE:
             with contextlib.suppress(ValueError, OSError):  # ROS has read it before
-                names |= set(_names_in(read_yaml(path), "", ""))
-    return names
+                yield f"{option} {shown(word)}", list(_nodes_in(read_yaml(word)))
+        elif option in VALUE and colon:
+            yield f"{option} {shown(word)}", [("/" + node.strip("/"), {name: ""})]
 
 
-def _names_in(content: Any, node: str, prefix: str) -> Iterator[str]:
-    """The names below a namespace or `node`, or below its parameters that begin with the `prefix`."""
+def _nodes_in(content: Any, above: str = "") -> Iterator[tuple[str, Any]]:
+    """The nodes of a parameter file, with the namespaces `above` them, and their parameters."""
     for key, value in content.items() if isinstance(content, dict) else ():
-        if prefix and not isinstance(value, dict):
-            yield f"{prefix}{key}"[1:]
-        elif prefix or (key == VALUES and "*" in node):
-            yield from _names_in(value, node, f"{prefix}{key}." if prefix else ".")
+        if key == VALUES:
+            yield above, value
         else:
-            yield from _names_in(value, str(key), "")
+            own = str(key).strip("/")
+            yield from _nodes_in(value, f"{above}/{own}" if own else above)
+
+
+def _names_in(values: Any, above: str = "") -> Iterator[str]:
+    """The names of the parameters with these `values`, below the names `above` them."""
+    for key, value in values.items() if isinstance(values, dict) else ():
+        yield from _names_in(value, f"{above}{key}.") if isinstance(value, dict) else (f"{above}{key}",)

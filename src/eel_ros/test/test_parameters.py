@@ -127,6 +127,43 @@ def test_unknown_overrides_are_named_in_one_warning(make_node, monkeypatch):
     assert len(lines) == 1
 
 
+@pytest.mark.parametrize(
+    ("file", "words", "told"),
+    [
+        ("tank: {ros__parameters: {depth: 1.0}}", (), ""),
+        ("/**: {ros__parameters: {depth: 1.0}}", ("-r", "__ns:=/a/b"), ""),
+        ("/*/tank: {ros__parameters: {depth: 1.0}}", ("-r", "__ns:=/a"), ""),
+        ("a: {tank: {ros__parameters: {depth: 1.0}}}", ("-r", "__ns:=/a"), ""),
+        ("/: {tank: {ros__parameters: {depth: 1.0}}}", (), ""),
+        ("pump: {ros__parameters: {}}\ntank: {ros__parameters: {depth: 1.0}}", (), ""),
+        ("/**: {ros__parameters: {depth: 1.0}}\npump: {ros__parameters: {rate: 1}}", (), ""),
+        ("pool: {ros__parameters: {depth: 1.0}}", ("-r", "__node:=pool"), ""),
+        ("pump: {ros__parameters: {depth: 1.0}}\n/a/tank: {ros__parameters: {depth: 1.0}}", (), "/pump, /a/tank"),
+        ("tank: {ros__parameters: {depth: 1.0}}", ("-r", "__ns:=/a"), "/tank"),
+        ("/*/tank: {ros__parameters: {depth: 1.0}}", (), "/*/tank"),
+        ("tank: {ros__parameters: {depth: 1.0}}", ("-r", "__node:=pool"), "/tank"),
+        (None, ("-p", "pump:depth:=1.0"), "/pump"),
+        (None, ("-p", "tank:depth:=1.0"), ""),
+    ],
+)
+@pytest.mark.fault(
+    "parameters", "a parameter file, or a parameter, keyed to the name of another node", "WARN with both names"
+)
+def test_parameters_of_another_node_are_told_at_the_start(make_node, monkeypatch, tmp_path, file, words, told):
+    """Just where rclpy takes none of them."""
+    path, lines = tmp_path / "tank.yaml", []
+    if file is not None:
+        path.write_text(file)
+        words = ("--params-file", str(path), *words)
+    monkeypatch.setattr("sys.argv", ["tank", "--ros-args", *words])
+    node = make_node(*words)
+    monkeypatch.setattr(type(node.get_logger()), "warning", lambda logger, text: lines.append(text))
+    overrides = take_overrides(node)
+    own = node.get_fully_qualified_name()
+    assert overrides.get("depth") == (None if told else 1.0)
+    assert lines == ([f"{words[0]} {words[1]!r} is for {told}, not for this node, {own}: ignored"] if told else [])
+
+
 def test_help_rows_are_the_fields_with_units_and_defaults():
     assert next(help_rows(Tank, "tank.")) == ("tank.depth", "of the water [m]", 2.0)
     assert [default for _, _, default in help_rows(Tank)] == [2.0, 1, "glass", "", [4.0, 3.0], 0.0]
