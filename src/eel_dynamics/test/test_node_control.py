@@ -194,17 +194,17 @@ def test_law_that_cannot_be_begun_is_refused(start, client):
 @pytest.mark.fault(
     "load",
     "a pace that the machine cannot keep",
-    "WARN with the lost time, once a second at most; accuracy is kept, not the pace; a tenth above it regains the time",
+    "WARN with the lost time, once while it lasts; accuracy is kept, not the pace; a tenth above it regains the time",
 )
-def test_late_run_says_so_seldom(start, client):
+def test_late_run_says_so_once_and_once_more_when_it_is_over(start, client):
     swim = client(topics=("head_pose",))
     swim.laws.publish(law_to_message(falling()))
     node = start("dynamics", "--ros-args", "-p", "real_time_factor:=100000")
     swim.until(
         lambda: swim.received["/diagnostics"] and float(swim.diagnosis()[2]["late"]) > 0.0, "late in the diagnostics"
     )
-    began = time.monotonic()
-    said = node.output().count("late by")
-    swim.until(lambda: node.output().count("late by") > said + 2, "more of it in the log")
-    assert node.output().count("late by") - said <= time.monotonic() - began + 1.0
-    assert swim.diagnosis()[0] == 1 and "late by" in swim.diagnosis()[1]
+    first = swim.diagnosis()[1]
+    swim.until(lambda: "late by" in swim.diagnosis()[1] and swim.diagnosis()[1] != first, "a later figure")
+    assert node.output().count("late by") == 1 and swim.diagnosis()[0] == 1
+    assert swim.reset().success
+    node.wait_for_output("no longer late at t = ", LIMIT)

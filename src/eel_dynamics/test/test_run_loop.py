@@ -284,15 +284,16 @@ def test_a_run_that_stood_still_for_half_a_second_regains_it_within_five_and_a_h
 
     simulation = Simulation(accuracy=1e-2, law=falling())
     report = Report(log, now=lambda: time.now)
-    run = run_loop(simulation, fake_publishers(publish), report, time, duration=8.0)
+    run = run_loop(simulation, fake_publishers(publish), report, time, duration=10.0)
     run.run()
-    punctual = 0.01 * np.arange(801)
+    punctual = 0.01 * np.arange(1001)
     late = np.array(shown) - punctual
     assert np.allclose(late[:50], 0.0) and late[50] == pytest.approx(0.5) and np.allclose(late[601:], 0.0, atol=1e-9)
     assert np.allclose(np.diff(shown)[50:599], 0.01 / 1.1)
     warnings = [text for level, text in log.lines if level == "warning"]
     assert warnings == ["late by 0.5 s at t = 0.5 s: accuracy is kept, not the pace"]
-    assert run.pace.lost(801) == 0.0
+    assert ("info", "no longer late at t = 9 s: it was for 4.99 s, by 0.5 s at most") in log.lines
+    assert run.pace.lost(1001) == 0.0
 
 
 def test_repeated_answers_to_sample_0_change_nothing_though_they_come_late():

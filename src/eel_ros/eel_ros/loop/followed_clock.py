@@ -57,10 +57,13 @@ class FollowedClock(Pace):
         """Time [s] by which `sample` is behind /clock; below 0 where it lies ahead."""
         return self._shown - sample * self.period + 1e-9
 
+    def is_late(self, sample: int) -> bool:
+        """Whether `sample` is more than a little behind /clock, which goes by steps."""
+        return self.lost(sample) > LITTLE
+
     def give_up_delay(self, sample: int, now: float) -> float:
-        """The time [s] by which `sample` is behind /clock, or 0 if that is little: /clock goes by steps."""
-        behind = self.lost(sample)
-        return behind if behind > LITTLE else 0.0
+        """The time [s] by which `sample` is behind /clock, or 0 if that is little."""
+        return self.lost(sample) if self.is_late(sample) else 0.0
 
     def held_by(self, sample: int) -> str:
         """Why `sample` is not due, as text, where that is not only a matter of moments."""

@@ -44,6 +44,10 @@ class Pace:
         """Time [s] that the schedule has lost and not regained by `sample`."""
         return max(0.0, self._lost - self._steps(sample) * CATCH_UP / (1.0 + CATCH_UP))
 
+    def is_late(self, sample: int) -> bool:
+        """Whether the schedule has lost time that it has not regained by `sample`."""
+        return self.lost(sample) > 0.0
+
     def give_up_delay(self, sample: int, now: float) -> float:
         """If `sample` is late at `now` [s, steady clock], make later samples due later.
 

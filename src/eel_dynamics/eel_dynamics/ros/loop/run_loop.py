@@ -21,6 +21,7 @@ from eel_gaits.laws.law import Law
 from eel_ros.loop.clock_ticks import TICK
 from eel_ros.loop.diagnostics import ERROR, Report
 from eel_ros.loop.followed_clock import FollowedClock
+from eel_ros.loop.lateness import Lateness
 from eel_ros.loop.pacing import Pace
 from eel_ros.loop.requests import Answer, RequestQueue
 
@@ -73,6 +74,7 @@ class RunLoop:
         self.requests = RequestQueue(inbox)
         self.gate = RunGate(simulation, publishers, values.wait_for_subscribers)
         self.pace = (FollowedClock if values.follow_clock else Pace)(1.0 / values.rate, values.real_time_factor)
+        self._lateness = Lateness(report)
         self.laws, self._current = LawAdopter(simulation, report), CurrentTaker(report)
         self.commands, self.servo_limit = JointCommander(simulation, report), ServoLimit(simulation, report)
         self.output = SampleOutput(simulation, parameters, publishers, report)
@@ -110,6 +112,7 @@ class RunLoop:
             elif self._wait_for_turn():
                 self._next_sample()
         self.output.end()
+        self._lateness.end(self.time)
         if self.samples_published > self._last_sample:
             self._report.info(f"finished at t = {self.time:g} s")
         self.gate.end_steps(self.time, "the run has ended")
@@ -184,13 +187,7 @@ class RunLoop:
         self.laws.report_samples(self.time)
         self.commands.check(self._parameters.values.command_timeout)
         self._current.look(self._simulation)
-        delay = self.pace.give_up_delay(self.samples_published, now)
-        if delay > 0.0:
-            lost, given_up = self.pace.lost(self.samples_published), self.pace.given_up
-            more = f"; {given_up:.3g} s more are given up" if given_up > 0.0 else ""
-            self._report.event(
-                "late", f"late by {lost:.3g} s at t = {self.time:g} s: accuracy is kept, not the pace{more}"
-            )
+        self._lateness.check(self.pace, self.samples_published, self.time, now)
         if self.samples_published > 0:
             self.gate.count_step(self.time)
         self.samples_published += 1
@@ -302,6 +299,7 @@ class RunLoop:
             self.laws.simulation = self.commands.simulation = simulation
             self.servo_limit.begin(simulation)
             self.pace.period = 1.0 / values.rate
+        self._lateness.end(self.time)
         now = time.monotonic()
         self.time, self.samples_published = 0.0, 0
         self.gate.failed, self._sample_begun = False, None
