@@ -139,3 +139,27 @@ TEST(DragKinks, PanelsPolynomialHasValueAndSlopeOfAPolynomialOfItsDegree)
         }
     }
 }
+
+TEST(DragKinks, EachSpeedMayChangeItsSignBetweenAnyTwoNodes)
+{
+    Swimmer swimmer;
+    swimmer.grid = two_panels(33, 16);
+    swimmer.grid.weight = Row(swimmer.grid.blocks);
+    swimmer.grid.series.assign(swimmer.grid.widest + 1, Row(swimmer.grid.blocks));
+    Workspace<Space> work(swimmer);
+    const std::array watched{lateral, vertical, roll, above_critical};
+    for (int instant = 0; instant < 2; ++instant) {
+        work.kink_count = 0;
+        for (const Speed speed : watched) {
+            for (std::size_t i = 0; i < swimmer.grid.nodes; ++i) work.speed[speed].row(0)[i] = i % 2 == 0 ? -1.0 : 1.0;
+            find_kinks_of(swimmer, speed, 1.0, 1e-7, work);
+        }
+        ASSERT_EQ(work.kink_count, watched.size() * swimmer.grid.nodes);
+    }
+    for (std::size_t j = 0; j < work.kink_count; ++j) {
+        const std::size_t i = j % swimmer.grid.nodes;
+        EXPECT_EQ(work.kinks[j].speed, watched[j / swimmer.grid.nodes]);
+        EXPECT_EQ(work.kinks[j].first, swimmer.grid.first[i]);
+        EXPECT_EQ(std::signbit(work.kinks[j].jump), i % 2 == 0);
+    }
+}

@@ -124,9 +124,10 @@ void add_kink(const Swimmer& swimmer, Speed speed, std::size_t i, double at_nose
     const Grid& grid = swimmer.grid;
     const Row& values = work.speed[speed];
     const double value = values.node(i), before = i > 0 ? values.node(i - 1) : at_nose;
-    if (!(std::abs(value - before) > noise) || work.kink_count == work.most_kinks) return;
+    if (!(std::abs(value - before) > noise)) return;
     const bool of_friction = speed == above_critical;
     const std::size_t first = grid.first[i], count = grid.count[i];
+    if (work.kink_count == work.kinks.size()) work.kinks.emplace_back().weights.resize(grid.widest + width);
     Kink& kink = work.kinks[work.kink_count++];
     kink.speed = speed;
     kink.first = first;

@@ -47,7 +47,6 @@ struct Workspace {
         for (const Speed each : {lateral, vertical, roll}) load_weight[each] = Row(n);
         fins.resize(swimmer.fins.size());
         if (!fins.empty()) fin_places = Field<Vector3<double>>(blocks_of(fins.size()));
-        for (Kink& kink : kinks) kink.weights.resize(swimmer.grid.widest + width);
     }
 
     std::vector<Jet> factor;  // of the law's rows
@@ -89,8 +88,7 @@ struct Workspace {
     Row turbulent_share;                    // of the friction, 0 to 1
     Row turbulent_weight;                   // [m], integration weights of the excess
     std::array<Row, 4> load_weight;         // [m], of the other loads, with their signs; none for `axial`
-    static constexpr std::size_t most_kinks = 24;  // beyond, signs change too often to be integrated apart
-    std::array<Kink, most_kinks> kinks;
+    std::vector<Kink> kinks;                // the first `kink_count`; the others are room
     std::size_t kink_count = 0;
 
     // Of the whole body:
