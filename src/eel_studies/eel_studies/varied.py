@@ -15,14 +15,19 @@ Where the period changes, so does the duration: a map shows as many periods ever
 """
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
 from eel_base.quantity import number
 from eel_base.wording import shown
+from eel_gaits.gaits.numbers import Periodic
+from eel_model.fins.fins import Fin, RollHold
+from eel_model.robot.actuators import Servo
+from eel_model.robot.continuous import Muscle, PassiveTail
+from eel_model.robot.joint import Joint
 
-from eel_dynamics import Accuracy, Swim
+from eel_dynamics import Accuracy, Scene, Swim
 from eel_studies.points import point_at
 
 RESOLUTION = 36.0  # points per body length where a setting in time is given: the error in space stays below 1e-3
@@ -38,6 +43,14 @@ def varied(swim: Swim, values: dict[str, Any]) -> Swim:
     if period and isinstance(swim.duration, float) and (now := _longest_period(swim)) != period:
         swim = swim._replace(duration=swim.duration * now / period)
     return swim
+
+
+def labelled(name: str) -> str:
+    """The `name` of a number with its unit in brackets, for an axis; as it is where its unit depends on the part."""
+    kinds, field = (Scene, Fin, RollHold, Joint, Servo, PassiveTail, Muscle, Periodic), name.rpartition(".")[2]
+    units = {item.metadata.get("unit") for kind in kinds for item in fields(kind) if item.name == field}
+    unit = units.pop() if len(units) == 1 else ""
+    return f"{name} [{unit}]" if unit else name
 
 
 def _longest_period(swim: Swim) -> float:

@@ -28,6 +28,7 @@ from eel_studies.motors.motor_figures import Comparison, MotorFigures, compariso
 from eel_studies.options import add_scene_options, chosen
 from eel_studies.outputs import Table, checked_outs, write_files
 from eel_studies.pictures import LOOKS, Figure, legend_above
+from eel_studies.varied import labelled
 
 NAME = "eel motors"
 RECORDED = ".nc", ".mcap", ".db3"
@@ -149,7 +150,7 @@ def draw(figure: Figure, comparisons: Sequence[Comparison], panels: Panels) -> N
             x, y = zip(*((x, y) for x, y in zip(each.values, row, strict=True) if x is not None), strict=True)
             style = {"color": colour, "linestyle": dash, "marker": mark, "markersize": 3.5, "linewidth": 1.2}
             axes.plot(x, y, label=each.named or None, **style)
-        axes.set(xlabel=comparisons[0].field, ylabel=label)
+        axes.set(xlabel=labelled(comparisons[0].field), ylabel=label)
         known = sorted({value for each in comparisons for value in each.values if value is not None})
         if known[0] > 0.0 and known[-1] > WIDE * known[0]:
             axes.set_xscale("log")

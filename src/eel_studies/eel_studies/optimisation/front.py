@@ -103,7 +103,7 @@ def draw_front(figure: Figure, front: Front) -> None:
     for axes, index in zip(panels, shown, strict=True):
         _draw_gait(axes, front.runs[index], front.speed[index])
     panels[0].set_ylabel("across [m]")
-    lower.supxlabel("midlines over one period [m], seen from above; the head on the left", fontsize="medium")
+    lower.supxlabel("midlines over one period [m], seen from above; ahead is to the right", fontsize="medium")
 
 
 def _draw_cost(axes: Axes, front: Front) -> None:

@@ -22,6 +22,7 @@ from eel_gaits import Law
 from eel_studies.points import base_point, law_of_terms
 from eel_studies.stability.maps import Axis, Map
 from eel_studies.steering.linearisation import PeriodicLinearisation, periodic_linearisation
+from eel_studies.varied import labelled
 
 STEPS, RESOLUTION = 80, 26.0  # of the marches of a map: multipliers to 1e-3
 PAIR = "pair station=0.5 area=0.0015 aspect_ratio=2.5 k_p=4 k_d=0.5 time_constant=0.05"  # holds the paper's robot
@@ -64,7 +65,7 @@ def roll_window(
         raise ValueError(f"fins must hold the roll (k_p, k_d) in a window of it, got {len(swim.fins)} fins that do not")
     if len(over) != 2:
         raise ValueError(f"over must be two numbers of the swim, got {len(over)}")
-    across, up = (Axis(name, name, *bounds) for name, bounds in over.items())
+    across, up = (Axis(labelled(name), name, *bounds) for name, bounds in over.items())
     item = Map("roll_hold", title or f"{swim.law.name}: growth in a period", across, up, points, swim)
     return RollWindow(item, item.values(_growth))
 

@@ -20,7 +20,7 @@ from eel_studies.options import add_scene_options, check_least, chosen, ranges_o
 from eel_studies.outputs import Outputs, add_output_options
 from eel_studies.stability.maps import OUTCOMES, Axis, Map, measure
 from eel_studies.stability.report import STUDIES, counts, report
-from eel_studies.varied import NAMES, varied
+from eel_studies.varied import NAMES, labelled, varied
 
 NAME = "eel stability"
 
@@ -82,4 +82,4 @@ def axes_from(texts: list[str]) -> list[Axis]:
     for name, (low, high) in found.items():
         if not 0.0 < low < high < float("inf"):
             raise ValueError(f"--over must be NAME=LOW:HIGH, 0 < LOW < HIGH, got {shown(f'{name}={low:g}:{high:g}')}")
-    return [Axis(name, name, *ends) for name, ends in found.items()]
+    return [Axis(labelled(name), name, *ends) for name, ends in found.items()]

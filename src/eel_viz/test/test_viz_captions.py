@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What views say of colours is what they draw: names of plots, the words of the run, the legend."""
+
+import colorsys
+
+import pytest
+from eel_viz.plots import series
+from eel_viz.recording.run_text import look_text
+from eel_viz.robots import motor_plots
+from eel_viz.scene3d import colours
+from eel_viz.settings import Settings
+from eel_viz.views import blueprint
+from eel_viz.views.views import Look
+
+HUES = {  # degrees, of colours that are neither grey nor white
+    "red": (345, 375),
+    "orange": (20, 40),
+    "brown": (20, 40),
+    "yellow": (45, 65),
+    "lime": (65, 110),
+    "green": (140, 180),
+    "blue": (180, 250),
+    "violet": (250, 285),
+    "magenta": (310, 345),
+}
+SERIES = series.SERIES | motor_plots.SERIES
+COMPARED = {"this": colours.PLAIN, "other": colours.OTHER}  # curves of two runs: plots/comparison.py
+
+
+def word_of(colour: colours.Colour) -> set[str]:
+    """The words that a colour may be called by."""
+    hue, saturation, value = colorsys.rgb_to_hsv(*(channel / 255.0 for channel in colour))
+    if saturation < 0.2:
+        return {"white"} if value > 0.9 else {"grey"}
+    fitting = {word for word, (low, high) in HUES.items() if low <= (360.0 * hue - low) % 360.0 + low <= high}
+    return fitting - ({"brown"} if value > 0.75 else {"orange"})
+
+
+def plots(look: Look):
+    """(name, entities) of each plot over time that says colours."""
+    found = []
+    containers = [make(look) for make in blueprint.ARRANGEMENTS.values()]
+    while containers:
+        each = containers.pop()
+        if type(each).__name__ == "TimeSeriesView":
+            found.append((each.name, each.contents))
+        elif hasattr(each, "contents") and not hasattr(each, "origin"):
+            containers += each.contents
+    return [(name, paths) for name, paths in found if ": " in name]
+
+
+@pytest.mark.parametrize("parts", [{}, {"fins": True}, {"joints": True}, {"fins": True, "joints": True}])
+def test_names_of_plots_say_the_colours_of_their_curves(parts):
+    named = plots(Look(**parts))
+    assert len(named) >= 5
+    for name, paths in named:
+        drawn = dict(line for path in paths if path in SERIES for line in SERIES[path]) | COMPARED
+        for words in name.partition(": ")[2].split(", "):
+            curve, _, colour = words.rpartition(" ")
+            assert colour in word_of(drawn[curve]), (name, curve)
+
+
+def test_the_words_beside_the_swimmer_say_the_colours_of_the_scene():
+    said = look_text(Settings()).lower()
+    for words, colour in (
+        ("red and blue on its flanks: the torque **c3**", colours.DIVERGING[-64]),
+        ("blue on its flanks: the torque **c3**", colours.DIVERGING[64]),
+        ("magenta at nose and tail", colours.ENDS),
+        ("violet ribbon: what the tail leaves in the **wake**", colours.WAKE),
+        ("white arrow", colours.NOTE),
+    ):
+        assert words in said and words.split()[0] in word_of(colour)
+    assert word_of(colours.FIN) == {"lime"} and word_of(colours.LOADS[-1]) == {"red"}
