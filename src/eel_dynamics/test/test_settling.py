@@ -2,11 +2,13 @@
 """Swims until the gait has settled, and what is told of means of a gait that has not."""
 
 import pickle
+import re
 import warnings
 
 import numpy as np
 import pytest
-from eel_dynamics.analysis.settling import SETTLED, change_of
+from eel_dynamics.analysis.measures import measures_of
+from eel_dynamics.analysis.settling import FEWEST, SETTLED, Settling, settling_of
 from eel_dynamics.commands import simulate as command
 from eel_dynamics.runs.settled_duration import MOST_PERIODS
 from eel_studies.sweeps import command as sweep_command
@@ -23,15 +25,15 @@ def test_what_is_left_of_a_geometric_change_is_its_sum():
     count = np.arange(3)
     for ratio in (0.5, 0.9, 0.99):
         means = 1.0 - 0.5 * ratio ** (count + 30)
-        assert change_of(means) == pytest.approx(max(np.ptp(means), 1.0 - means[-1]) / means[-1], rel=1e-6)
+        assert settling_of(means).change == pytest.approx(max(np.ptp(means), 1.0 - means[-1]) / means[-1], rel=1e-6)
     slow = 1.0 - 0.1 * 0.99**count
-    assert np.ptp(slow) < SETTLED < change_of(slow)
+    assert np.ptp(slow) < SETTLED < settling_of(slow).change
 
 
 def test_a_coast_down_never_settles():
     """A speed U / (1 + k t) falls by ever less a period, and to nothing."""
     for begin in (10, 100, 1000):
-        assert change_of(1.0 / (begin + np.arange(6.0))) > 0.4
+        assert settling_of(1.0 / (begin + np.arange(6.0))).change > 0.4
 
 
 @pytest.mark.parametrize(
@@ -40,12 +42,47 @@ def test_a_coast_down_never_settles():
         ([1.0, 1.002, 1.0], 0.002),  # back again
         ([1.0, 1.002, 1.004], np.inf),  # on and on
         ([1.0, 1.00002, 1.00004], 0.00004),  # below its own error
+        ([0.9985, 0.9999, 1.0, 1.00002, 1.00004], 0.00154),  # likewise, after greater changes
         ([0.0, 0.0, 0.0], np.inf),
         ([1.0, 1.0], np.inf),  # two do not tell how the changes fall
     ],
 )
 def test_changes_that_do_not_fall(means, wanted):
-    assert change_of(np.array(means)) == pytest.approx(wanted, rel=1e-2)
+    assert settling_of(means).change == pytest.approx(wanted, rel=1e-2)
+
+
+def test_the_figures_told_agree_with_the_judgement():
+    """Whatever the change: rounded, it stays on its own side of the bound."""
+    for within in (0.0, 0.99 * SETTLED, SETTLED, SETTLED * (1.0 + 1e-6), 0.01004, np.nextafter(SETTLED, 1.0), 3.0):
+        found = Settling(FEWEST, within, 0.0)
+        told = re.match(
+            r"the mean speed changes by (?:less than )?([\d.]+)% over 3 periods, and less than 0.01% is", str(found)
+        )
+        assert found.settled == (within <= SETTLED) == (float(told.group(1)) <= 100.0 * SETTLED)
+    assert (
+        str(Settling(4, 0.002, np.inf)) == "the mean speed changes by 0.20% over 4 periods, and its changes do not fall"
+    )
+    assert str(settling_of([1.0, 1.0])) == "it takes 3 periods to tell, got 2"
+
+
+def test_summary_warning_and_measure_tell_one_judgement():
+    """Of any periods: the summary's line has the figures of the warning, and the verdict of the measure."""
+    swum = simulate(straight(), 12.0, **COARSE)
+    for periods in (None, 1, 2, 5, 11):
+        run = pickle.loads(pickle.dumps(swum))
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            found = run.analysis(periods)
+        verdict, _, figures = line_of(run.summary(periods)).partition(": ")
+        assert verdict == ("settled" if found.settled else "NOT settled")
+        assert measures_of(run, ("settled",), periods)["settled"] == found.settled == (not told)
+        assert not told or f": {figures};" in str(told[0].message)
+    assert line_of(simulate(straight(), 2.0, **COARSE).summary()).startswith("NOT settled: it takes 3 periods to tell")
+
+
+def line_of(summary: str) -> str:
+    """What a summary says of the gait."""
+    return next(line.partition(" ")[2].strip() for line in summary.splitlines() if line.startswith("gait "))
 
 
 @pytest.mark.parametrize("name, numbers", [("straight", {"period": 0.7}), ("turning", {}), ("c_start", {})])
@@ -88,7 +125,9 @@ def test_what_does_not_settle_ends_at_the_limit():
     )
     run = simulate(Law(ends, name="coasting"), "settled", scene=Scene(ledger=False), **COARSE)
     assert run.time[-1] == pytest.approx(MOST_PERIODS)
-    with pytest.warns(Unsettled, match=r"coasting: the mean speed has not settled \(it changes by [\d.]+% a period\)"):
+    with pytest.warns(
+        Unsettled, match=r"coasting: the gait has not settled: the mean speed changes by [\d.]+% over 50 p"
+    ):
         run.analysis()
 
 
@@ -110,7 +149,7 @@ def test_a_law_without_a_period_is_refused(law, said):
 
 def test_a_reader_of_a_mean_is_told_once():
     run = simulate(straight(), 3.0, **COARSE)
-    with pytest.warns(Unsettled, match="straight: the mean speed has not settled") as told:
+    with pytest.warns(Unsettled, match="straight: the gait has not settled") as told:
         assert run.mean_speed == run.analysis().mean_speed == run.mean_speed
     assert len(told) == 1 and told[0].filename == __file__
     with warnings.catch_warnings():

@@ -16,7 +16,7 @@ from eel_dynamics.analysis.averaged_path import AveragedPath
 from eel_dynamics.analysis.averaging_window import AveragingWindow
 from eel_dynamics.analysis.peaks import peaks, torque_size
 from eel_dynamics.analysis.powers import area, drag_powers, power_density, torque_of
-from eel_dynamics.analysis.settling import FEWEST, SETTLED, change_of
+from eel_dynamics.analysis.settling import FEWEST, Settling, settling_of
 
 STILL = 1e-9  # of the body's length in a period: slower is round-off, and no motion
 
@@ -50,20 +50,15 @@ class Analysis:
         return change / self.mean_speed if change is not None and self.moves else None
 
     @cached_property
-    def settled(self) -> bool:
-        """Whether the gait has settled: the mean speed of a period changes by at most 1 % within the window, and by at
-        most 1 % more from there on (`settling.change_of`). The window counts for three periods at least. At rest: yes.
-        """
-        return not self.moves or change_of(self._path.speeds(self.window.edges(FEWEST))) <= SETTLED
+    def settling(self) -> Settling:
+        """How the mean speed of a period changes in the window, which counts for three periods at least."""
+        return settling_of(self._path.speeds(self.window.edges(FEWEST)))
 
     @property
-    def change_per_period(self) -> float | None:
-        """Change of the mean speed from the last period but one of the run to the last, relative to the latter.
-
-        Undefined in a run of one period, and at rest.
-        """
-        speeds = self._path.speeds(self.window.edges(2))
-        return float(abs(speeds[-1] - speeds[-2]) / speeds[-1]) if len(speeds) > 1 and self.moves else None
+    def settled(self) -> bool:
+        """Whether the gait has settled: the mean speed of a period changes by at most 1 % within the window, and by at
+        most 1 % more from there on (`settling`). At rest: yes."""
+        return not self.moves or self.settling.settled
 
     @property
     def moves(self) -> bool:

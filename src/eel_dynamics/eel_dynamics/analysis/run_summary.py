@@ -84,10 +84,9 @@ def _of_the_gait(run, periods: int | None) -> list[str]:
 
 
 def _of_settling(a: Analysis) -> str:
-    if a.speed_change is None:
-        return "one period alone does not tell whether it has settled" if a.moves else "at rest"
-    settled = "settled" if a.settled else "NOT settled"
-    return f"{settled}: the speed changes by {a.speed_change:.2%} within these periods"
+    if not a.moves:
+        return "at rest"
+    return f"{'settled' if a.settled else 'NOT settled'}: {a.settling}"
 
 
 def _of_the_power(a: Analysis) -> list[str]:

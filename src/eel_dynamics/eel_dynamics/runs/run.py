@@ -85,18 +85,11 @@ class Run(RunData):
         return self._warned(Analysis(self, periods))
 
     def _warned(self, found: Analysis) -> Analysis:
-        if not found.settled:
-            _ = self._warned_unsettled
+        """The analysis; the first one of a gait that has not settled gives a warning."""
+        if not found.settled and self.__dict__.setdefault("_told_unsettled", found) is found:
+            line = f"{self.law.name}: the gait has not settled: {found.settling}"
+            warnings.warn(f"{line}; swim longer, or with duration='settled'", Unsettled, stacklevel=3)
         return found
-
-    @cached_property
-    def _warned_unsettled(self) -> bool:
-        """Whether a warning was given that the means are of a gait that has not settled: from the first access."""
-        change = Analysis(self).change_per_period
-        by = "one period does not tell its change" if change is None else f"it changes by {change:.1%} a period"
-        line = f"{self.law.name}: the mean speed has not settled ({by}); swim longer, or with duration='settled'"
-        warnings.warn(line, Unsettled, stacklevel=5)
-        return True
 
     def actuators(self, joints: int) -> Actuators:
         """Angles, speeds, torques and powers of a robot with `joints` motors in pitch and as many in yaw."""

@@ -13,7 +13,7 @@ from eel_gaits.laws.law import Law
 from eel_dynamics.accuracy.accuracy import PRESETS, Accuracy
 from eel_dynamics.analysis.analysis import STILL
 from eel_dynamics.analysis.averaging_window import PLACES, common_period
-from eel_dynamics.analysis.settling import FEWEST, SETTLED, change_of
+from eel_dynamics.analysis.settling import FEWEST, SETTLED, settling_of
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Observations
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
@@ -42,7 +42,7 @@ def settling_time(law: Any, setup: SimulationSetup) -> float:
     """Time [s], in whole periods, after which the gait of a swimmer by `law` has settled.
 
     The later half of that time lies after the law's last ramp. Over its periods the mean speed and the mean power of
-    the actuators change by `SETTLED` at most, and as much at most is left to come (`analysis.settling.change_of`).
+    the actuators change by `SETTLED` at most, and as much at most is left to come (`analysis.settling.settling_of`).
     Both are exact means of a swim whose error is that of the preset draft, or the swimmer's own if that is greater.
     A body at rest has settled. `MOST_PERIODS` where the gait does not settle within them, or the swim stops.
     `ValueError` for a law without a period.
@@ -61,11 +61,11 @@ def settling_time(law: Any, setup: SimulationSetup) -> float:
         centre, work = seen.center_of_mass[lately], done[lately, 0]
         steps = centre[1:] - centre[:-1] - drift
         ways = [math.hypot(*step) for step in steps.tolist()]  # m, of the centre of mass in each period
-        if max(ways) > STILL * setup.body.length and change_of(ways) > MARGIN * SETTLED:
+        if max(ways) > STILL * setup.body.length and settling_of(ways).change > MARGIN * SETTLED:
             return False
         works = (work[1:] - work[:-1]).tolist()  # J, of the actuators
         little = max(map(abs, works)) <= NO_WORK * sum(seen.energies[count, :2].tolist())
-        return not setup.scene.ledger or little or change_of(works) <= MARGIN * SETTLED
+        return not setup.scene.ledger or little or settling_of(works).change <= MARGIN * SETTLED
 
     times = period * np.arange(MOST_PERIODS + 1)
     _, _, done, stopped = March(coarse, law).record(times, False, False, enough=settled)
