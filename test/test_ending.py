@@ -66,7 +66,7 @@ def test_a_second_signal_spoils_nothing(start, tmp_path, monkeypatch, executable
         assert "Traceback" not in node.output()
 
 
-@pytest.mark.fault("ending", "Ctrl-C in `simulate` while it marches", "it ends at once, without a traceback")
+@pytest.mark.fault("ending", "Ctrl-C in `eel simulate` while it marches", "it ends at once, without a traceback")
 def test_interrupted_simulate(start):
     tool = start("simulate", "straight", "--duration", "2000", "--accuracy", "reference")
     deadline = time.monotonic() + 90.0

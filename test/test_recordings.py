@@ -20,7 +20,9 @@ from eel_viz import entities
 
 
 @pytest.mark.fault(
-    "ending", "SIGINT of `record` as soon as a run as fast as possible has ended", "the bag has every sample; status 0"
+    "ending",
+    "SIGINT of `eel record` as soon as a run as fast as possible has ended",
+    "the bag has every sample; status 0",
 )
 @pytest.mark.parametrize("times", [1, pytest.param(10, marks=pytest.mark.soak)])
 def test_a_recorder_that_is_ended_with_the_run_has_every_sample(start, fresh_domain, tmp_path, times):
@@ -83,7 +85,7 @@ def test_a_disk_that_is_full(start, fresh_domain, tmp_path):
 
 @pytest.mark.fault(
     "ending",
-    "SIGKILL while the visualiser and `record` record",
+    "SIGKILL while the visualiser and `eel record` record",
     "what was recorded up to about a second before opens, the recording as `run.part.rrd`; the run goes on",
 )
 def test_what_is_killed_leaves_what_it_had(start_to_kill, fresh_domain, tmp_path):

@@ -6,9 +6,11 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from eel_base.command.suite import commands
+from test_packages import EXECUTABLES
 
 ROOT = Path(__file__).resolve().parents[1]
-NODES = ("gait_generator", "dynamics", "visualiser", "record", "eel_echo", "replay", "render", "simulate")
+NODES = ("gait_generator", "heading_controller", "pilot", "dynamics", "visualiser", "markers")
 
 
 def shell(script: str, **environment: str) -> subprocess.CompletedProcess:
@@ -21,21 +23,30 @@ def test_brings_python_and_nodes():
     done = shell(
         f"source '{ROOT}/setup.bash' && "
         "python -c 'import eel_core, eel_dynamics, eel_gaits, eel_msgs.msg, eel_viz, rclpy' && "
-        "command -v " + " ".join(NODES)
+        "command -v eel " + " ".join(NODES)
     )
     assert done.returncode == 0, done.stderr
     found = done.stdout.splitlines()
-    assert [Path(path).name for path in found] == list(NODES)
+    assert [Path(path).name for path in found] == ["eel", *NODES]
     assert all(Path(path).is_relative_to(ROOT / "install") for path in found)
 
 
-def test_shadows_no_command_of_the_system():
-    done = shell(f"source '{ROOT}/setup.bash'; ls '{ROOT}/install/bin'")
-    ours = done.stdout.split()
-    assert ours
-    assert [
-        name for name in ours if any(Path(folder, name).exists() for folder in ("/usr/bin", "/bin", "/usr/sbin"))
-    ] == []
+def test_puts_eel_and_the_nodes_alone_on_the_path():
+    """`eel NAME` and `ros2 run` reach the others, whose names may be those of a program, such as `identify`."""
+    assert sorted(path.name for path in (ROOT / "install/bin").iterdir()) == sorted(["eel", *NODES])
+    for package, names in EXECUTABLES.items():
+        assert {path.name for path in (ROOT / "install" / package / "lib" / package).iterdir()} == names
+        assert {name.removeprefix("eel_") for name in names} - {"eel", *NODES} <= set(commands())
+
+
+def test_a_program_of_the_system_stays_in_its_place(tmp_path):
+    others = {*(name for names in EXECUTABLES.values() for name in names), *commands()} - {"eel", *NODES}
+    for name in others:
+        (tmp_path / name).write_text("#!/bin/sh\n")
+        (tmp_path / name).chmod(0o755)
+    script = f"source '{ROOT}/setup.bash'; type -P {' '.join(sorted(others))}"
+    found = shell(script, PATH=f"{tmp_path}:/usr/bin:/bin").stdout.splitlines()
+    assert found == [str(tmp_path / name) for name in sorted(others)]
 
 
 def test_twice_is_as_good_as_once():

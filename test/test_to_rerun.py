@@ -211,7 +211,7 @@ def test_what_cannot_be_is_said(run, tmp_path):
 
 @pytest.mark.fault(
     "ending",
-    "the disk is full while `simulate` or `replay` write, or `Run.to_rerun` does",
+    "the disk is full while `eel simulate` or `eel replay` write, or `Run.to_rerun` does",
     "one line with the reason, status 1 (`OSError`); an older file stays as it was, nothing else is left",
 )
 @pytest.mark.parametrize("form", ["rrd", "npz", "csv"])

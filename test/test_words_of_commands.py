@@ -87,7 +87,7 @@ def test_a_terminal_without_the_characters_breaks_nothing(encoding, tmp_path):
     assert done.returncode == 2 and len(done.stderr.splitlines()) == 1 and b"\\u03b4" in done.stderr
 
 
-@pytest.mark.parametrize("name", ["eel", "simulate", "render", "gait_generator", "visualiser"])
+@pytest.mark.parametrize("name", ["eel", "eel simulate", "eel render", "gait_generator", "visualiser"])
 def test_help_on_a_terminal_of_ascii(name, tmp_path):
     done = said_by([*name.split(), "--help"], tmp_path, PYTHONIOENCODING="ascii:strict")
     assert done.returncode == 0 and done.stdout.startswith(b"usage: ") and not done.stderr

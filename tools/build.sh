@@ -82,15 +82,16 @@ build_packages() {
     printf '%s' "$key" > install/stamp
 }
 
-# One folder for setup.bash to put on the PATH. What this build has not made bears the name of an earlier one.
+# One folder for setup.bash to put on the PATH: `eel`, which has the other commands, and the nodes. No system has programs
+# of these names. What this build has not made bears the name of an earlier one.
 link_executables() {
-    local executable
+    local executable on_path=" eel gait_generator heading_controller pilot dynamics visualiser markers "
     rm -rf install/bin
     mkdir install/bin
     for executable in install/eel_*/lib/eel_*/*; do
         [ "$executable" -nt install/begun ] || { rm "$executable"; continue; }
         begin_with_sh "$executable"
-        ln -s "../../$executable" "install/bin/${executable##*/}"
+        [[ "$on_path" != *" ${executable##*/} "* ]] || ln -s "../../$executable" "install/bin/${executable##*/}"
     done
 }
 

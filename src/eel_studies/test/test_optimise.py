@@ -124,7 +124,9 @@ def test_the_scene_of_a_file_is_optimised(tmp_path, capsys):
 
 
 @pytest.mark.fault(
-    "parameters", "`optimise --method cma` without the package cma", "one line that names it and its extra, status 2"
+    "parameters",
+    "`eel optimise --method cma` without the package cma",
+    "one line that names it and its extra, status 2",
 )
 def test_a_missing_package_is_named(monkeypatch, capsys):
     def without(name):

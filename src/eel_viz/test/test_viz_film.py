@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`render` as a command: one picture, many, and a film, by one viewer; what cannot be is said in one line."""
+"""`eel render` as a command: one picture, many, and a film, by one viewer; what cannot be is said in one line."""
 
 import contextlib
 import io
@@ -72,7 +72,9 @@ def test_one_viewer_draws_many_pictures_and_each_is_right(can_draw, recording, t
             drawing.arrange("mine")
 
 
-@pytest.mark.fault("names", "`render` of a recording that was cut short", "repaired in a copy, drawn as far as it goes")
+@pytest.mark.fault(
+    "names", "`eel render` of a recording that was cut short", "repaired in a copy, drawn as far as it goes"
+)
 def test_a_recording_that_was_cut_short_is_drawn(can_draw, tmp_path):
     record(tmp_path / "long.rrd", 3.0, 50.0)
     whole = (tmp_path / "long.rrd").read_bytes()
@@ -106,7 +108,7 @@ def test_films_by_ffmpeg_or_without(tmp_path, monkeypatch, fake_ffmpeg):
 
 @pytest.mark.fault(
     "ending",
-    "the disk is full while `render`, `figures` or another study draw",
+    "the disk is full while `eel render`, `eel figures` or another study draw",
     "one line with the reason, status 1; an older picture or film stays as it was",
 )
 def test_a_film_that_does_not_fit_leaves_the_older_one(tmp_path, small_disk):
@@ -186,7 +188,7 @@ def test_the_times_of_a_film():
         times(TenSeconds, fps=1e6, start=None, end=None, speed=1.0)
 
 
-@pytest.mark.fault("names", "`render` where no driver draws", "one line that names the package, status 3")
+@pytest.mark.fault("names", "`eel render` where no driver draws", "one line that names the package, status 3")
 def test_where_no_driver_draws_one_line_names_the_package(recording, tmp_path, monkeypatch, capsys):
     for name in ("VK_DRIVER_FILES", "VK_ICD_FILENAMES"):
         monkeypatch.setenv(name, str(tmp_path / "no_driver.json"))
@@ -214,7 +216,7 @@ def test_without_a_time_the_picture_is_of_seven_tenths_of_the_recording(tmp_path
 
 @pytest.mark.fault(
     "names",
-    "`render` of what is no recording, to where nothing can be written, in a size that cannot be",
+    "`eel render` of what is no recording, to where nothing can be written, in a size that cannot be",
     "one line, status 2",
 )
 def test_what_cannot_be_is_said_in_one_line(recording, tmp_path, capsys, monkeypatch):

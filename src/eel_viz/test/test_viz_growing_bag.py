@@ -107,7 +107,7 @@ def contents(folder):
 
 
 @pytest.mark.fault(
-    "names", "one flipped bit in a bag of `record`", "said in one line, with the place; or the content is the same"
+    "names", "one flipped bit in a bag of `eel record`", "said in one line, with the place; or the content is the same"
 )
 @pytest.mark.parametrize("count", [60, pytest.param(600, marks=pytest.mark.soak)])
 def test_no_flipped_bit_of_a_bag_is_silent(tmp_path, count):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`record` and `echo` as processes, over DDS: nothing is lost, the bag is what other tools expect, both end well."""
+"""`eel record` and `eel echo` over DDS: nothing is lost, the bag is what other tools expect, both end well."""
 
 import math
 import signal
@@ -139,7 +139,9 @@ def test_types_that_are_not_installed_are_named():
             call("no_msgs/msg/None")
 
 
-@pytest.mark.fault("ending", "SIGINT or SIGTERM while `record` records", "prompt exit, status 0; the bag is complete")
+@pytest.mark.fault(
+    "ending", "SIGINT or SIGTERM while `eel record` records", "prompt exit, status 0; the bag is complete"
+)
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_closes_the_bag_well(start, network, tmp_path, sent):
     recorder = start("record", "-o", str(tmp_path / "bag"))
@@ -157,7 +159,7 @@ def test_a_signal_closes_the_bag_well(start, network, tmp_path, sent):
 
 @pytest.mark.fault(
     "ending",
-    "SIGKILL of `record`",
+    "SIGKILL of `eel record`",
     "the bag opens everywhere, with all but the last 0.7 s (measured; 2.5 s with twenty busy processes on two cores)",
 )
 def test_a_recorder_that_is_killed_leaves_a_bag_with_all_that_it_had_saved(start_to_kill, network, tmp_path):
@@ -188,7 +190,9 @@ def test_a_recorder_that_is_killed_leaves_a_bag_with_all_that_it_had_saved(start
 
 
 @pytest.mark.fault(
-    "ending", "no room for the bag of `record`", "one line that says how many messages it has, status 1; the bag opens"
+    "ending",
+    "no room for the bag of `eel record`",
+    "one line that says how many messages it has, status 1; the bag opens",
 )
 def test_a_full_disk_is_said_in_one_line_and_what_was_written_opens(start, network, tmp_path):
     limited = f"ulimit -f 600; exec record -o {tmp_path / 'bag'}"  # KiB

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`replay`: a bag becomes the recording that the visualiser makes of the same messages, whatever the bag's form."""
+"""`eel replay`: a bag becomes the recording that the visualiser makes of the same messages, whatever the bag's form."""
 
 import shutil
 import sqlite3
@@ -39,7 +39,7 @@ def logged(tmp_path_factory):
 
 
 def said_in_one_line(capsys, *arguments) -> str:
-    """What `replay` says when it refuses, with status 2."""
+    """What `eel replay` says when it refuses, with status 2."""
     assert main([str(word) for word in arguments]) == 2
     said = capsys.readouterr().err
     assert len(said.splitlines()) == 1, said
@@ -123,7 +123,7 @@ def long_bag(tmp_path_factory):
 
 @pytest.mark.fault(
     "names",
-    "`replay` of a bag without metadata, without its end, of half a file",
+    "`eel replay` of a bag without metadata, without its end, of half a file",
     "one warning; shown as far as it goes",
 )
 @pytest.mark.parametrize("cut", ["no metadata", "half a file", "no end"])
@@ -144,7 +144,7 @@ def test_a_bag_that_was_not_finished_is_shown_as_far_as_it_goes(tmp_path, capsys
     assert 30 < len(stamps) < 150 if cut == "half a file" else len(stamps) == 151
 
 
-@pytest.mark.fault("names", "`replay` of a bag that is torn in the middle", "one warning; shown until there")
+@pytest.mark.fault("names", "`eel replay` of a bag that is torn in the middle", "one warning; shown until there")
 def test_a_bag_that_is_torn_in_the_middle_is_shown_until_there(tmp_path, capsys):
     folder = write_bag(tmp_path / "bag", 1.5, stations=51, compression=CompressionMode.STORAGE)
     file = folder / "bag.mcap"
@@ -218,7 +218,7 @@ def test_the_course_of_a_goal_is_shown(tmp_path):
     np.testing.assert_array_equal(legs, [(0.0, 0.0, 0.0), (4.0, 0.0, 0.0)])
 
 
-@pytest.mark.fault("names", "`replay` of messages of another version", "said once, left out; the rest is shown")
+@pytest.mark.fault("names", "`eel replay` of messages of another version", "said once, left out; the rest is shown")
 def test_messages_of_another_version_are_said_once_and_left_out(tmp_path, capsys):
     folder = write_bag(tmp_path / "bag", 0.1)
     for file in folder.iterdir():  # as if the field had another name then; as long, so that the file's index holds
@@ -235,7 +235,7 @@ def test_messages_of_another_version_are_said_once_and_left_out(tmp_path, capsys
     np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.POSITION).stamps, STAMPS[:11])
 
 
-@pytest.mark.fault("names", "`replay` of what is no bag, or has no swimmer", "one line, status 2")
+@pytest.mark.fault("names", "`eel replay` of what is no bag, or has no swimmer", "one line, status 2")
 def test_what_is_no_bag_is_said_in_one_line(tmp_path, capsys, bag, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("DISPLAY", raising=False)

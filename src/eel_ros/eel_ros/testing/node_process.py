@@ -17,10 +17,10 @@ MIDDLEWARE = "RTPS_TRANSPORT_SHM"  # Fast DDS: shared memory that is held by a p
 
 
 def found_executable(name: str) -> str:
-    """Path of a program on the PATH, or of a node's executable where `ros2 run` looks; `name` if it is nowhere."""
+    """Path of an executable of ours where `ros2 run` looks, or of a program on the PATH; `name` if it is nowhere."""
     prefixes = [Path(prefix) for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(":") if prefix]
-    nodes = (str(path) for prefix in prefixes for path in prefix.glob(f"lib/*/{name}"))
-    return shutil.which(name) or next(nodes, name)
+    ours = (str(path) for prefix in prefixes for path in prefix.glob(f"lib/eel_*/{name}"))
+    return next(ours, None) or shutil.which(name) or name
 
 
 class NodeProcess:
