@@ -2,6 +2,7 @@
 """Filmed swimmers swim: with a motion that is known, and a lamprey as its data were published."""
 
 import re
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 from eel_dynamics.commands.filmed import speeds_of
 from eel_dynamics.commands.simulate import main as simulate_command
 from eel_gaits.film.beat import beat_of
-from eel_gaits.film.film import Film
+from eel_gaits.film.film import Film, read_film
 from eel_studies.life.command import main as life
 from filmed import TIMES, WAVE, swimming, write_long
 
@@ -45,13 +46,32 @@ def test_the_lamprey_swims_from_its_file_as_it_was_published(capsys):
 
 
 def test_options_of_films_need_a_film_and_a_body_its_length(tmp_path, capsys):
-    assert simulate_command(["straight", "--units", "mm"]) == 2
+    for option, value in (("--units", "mm"), ("--points", "snout,tail")):
+        assert simulate_command(["straight", option, value]) == 2
     assert "belong to --midlines, which is not given" in capsys.readouterr().err
     path = str(write_long(tmp_path / "fish.csv", 0.2 * swimming()))
     assert simulate_command(["--midlines", path, "--body", "boyer2010"]) == 2
     assert "is 1 m long, the swimmer in the film 0.1999 m" in capsys.readouterr().err
     assert simulate_command(["--midlines", path, "--file", path]) == 2
     assert "--midlines takes the place of a gait" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", sorted(each.name for each in LAMPREY.parent.glob("tendon_fish_?.??Hz.csv")))
+def test_the_films_of_a_robot_with_close_markers_are_read(name):
+    found = read_film(LAMPREY.with_name(name))
+    assert found.names[:2] == ("0", "1") and len(found.names) >= 6
+
+
+def test_a_film_without_measurements_in_thick_water_has_none_beside_it(tmp_path, capsys):
+    film, widths = tmp_path / "own_fish.csv", LAMPREY.with_name("widths.csv")
+    shutil.copy(LAMPREY, film)
+    arguments = ["lamprey", str(film), "--widths", str(widths), "--out", str(tmp_path / "own_fish.png")]
+    assert life(arguments) == 0
+    told = capsys.readouterr().out
+    assert "viscosity" not in told and "own_fish.csv: points 1, 2, 3" in told
+    (tmp_path / "own_fish_thick_water.csv").write_text("times_viscosity,speed_mm_s\n1,221\n")
+    assert life(arguments) == 2
+    assert "own_fish_thick_water.csv': speeds in thick water must have the columns" in capsys.readouterr().err
 
 
 def test_the_lamprey_is_held_against_its_measured_speed_as_a_band(tmp_path, capsys):

@@ -19,7 +19,7 @@ from eel_gaits.film.beat import Beat
 from eel_model.body.body import body_of
 
 from eel_dynamics import Run
-from eel_studies.life.lamprey import HEIGHTS, MEASURED, LampreySwim, in_thick_water, lamprey, swims
+from eel_studies.life.lamprey import HEIGHTS, LampreySwim, Thickened, in_thick_water, lamprey, swims, thickened
 from eel_studies.life.lamprey import PLANAR as WATER_OF_FILM
 from eel_studies.life.leave_out import PLANAR, Choice, choices, computed, swum
 from eel_studies.outputs import Table, checked_outs, write_files
@@ -54,6 +54,8 @@ def _add_options(parser: Parser) -> None:
 def main(options: argparse.Namespace) -> None:
     outs = checked_outs(NAME, options)
     beats = [beat_from(file, options) for file in options.files]
+    for beat in beats:
+        print(f"{beat.film.name}: points {', '.join(beat.film.names)}")
     table, draw, size = (_lamprey if options.swimmer == "lamprey" else _robot)(beats, options)
     print(table.text())
     write_files(outs, table.write_csv, draw, size)
@@ -67,12 +69,16 @@ def _lamprey(beats: list[Beat], options: argparse.Namespace) -> Drawn:
     scene, numbers = scene_of(options.scene, WATER_OF_FILM), set_numbers(options.set)
     found = swims(beat, widths, scene, **numbers)
     bodies = [lamprey(beat.film.length, height, widths, **numbers) for height in HEIGHTS]
-    thick = [in_thick_water(beat, body, scene) for body in bodies]
-    return table_of_lamprey(beat, found, thick), lambda figure: draw_lamprey(figure, beat, found, thick), (6.8, 6.4)
+    measured = thickened(Path(options.files[0]))
+    thick = [in_thick_water(beat, body, measured, scene) for body in bodies]
+    table = table_of_lamprey(beat, found, measured, thick)
+    return table, lambda figure: draw_lamprey(figure, beat, found, measured, thick), (6.8, 6.4)
 
 
-def table_of_lamprey(beat: Beat, found: list[LampreySwim], thick: list[list[float]]) -> Table:
-    """Measured, ours as a band over the bodies, and the difference."""
+def table_of_lamprey(
+    beat: Beat, found: list[LampreySwim], measured: list[Thickened], thick: list[list[float]]
+) -> Table:
+    """Measured, ours as a band over the bodies, and the difference; with what was `measured` in thick water."""
     seen, ours = beat.measured, [swim.figures for swim in found]
     speeds = [swim.speed for swim in found]
     low, high = (speeds[0] - found[0].band), (speeds[-1] + found[-1].band)
@@ -88,15 +94,13 @@ def table_of_lamprey(beat: Beat, found: list[LampreySwim], thick: list[list[floa
         _row("Strouhal number", seen.strouhal, [tail / stride for tail, stride in zip(tails, strides, strict=True)]),
         _row("head's yaw, amplitude [rad]", seen.yaw, [each.yaw for each in ours]),
     ]
-    for index, each in enumerate(MEASURED):
-        measured = f"{each.speed:g} +- {each.spread:g}"
+    for index, (times, _, _, speed, spread) in enumerate(measured):
         ours_here = [1e3 * row[index] for row in thick]
-        rows.append((f"speed at {each.times:g} x viscosity [mm/s]", measured, *_against(each.speed, ours_here)))
+        name = f"speed at {times:g} x viscosity [mm/s]"
+        rows.append((name, f"{speed:g} +- {spread:g}", *_against(speed, ours_here)))
         if index:
-            fall, falls = each.speed / MEASURED[0].speed - 1.0, [row[index] / row[0] - 1.0 for row in thick]
-            rows.append(
-                (f"fall at {each.times:g} x viscosity", f"{fall:.0%}", f"{min(falls):.0%} to {max(falls):.0%}", "")
-            )
+            fall, falls = speed / measured[0].speed_mm_s - 1.0, [row[index] / row[0] - 1.0 for row in thick]
+            rows.append((f"fall at {times:g} x viscosity", f"{fall:.0%}", f"{min(falls):.0%} to {max(falls):.0%}", ""))
     return Table(("", "measured", "ours, over fins of 0.02 to 0.04 L", "difference"), rows)
 
 
@@ -143,10 +147,15 @@ def table_of_robot(beats: list[Beat], guessed: np.ndarray, found: list[Choice]) 
     return Table(("*: fitted", *heads, "mean error"), rows)
 
 
-def draw_lamprey(figure: Figure, beat: Beat, found: list[LampreySwim], thick: list[list[float]]) -> None:
-    """Midlines of one beat, measured above and computed below; speed over the fin's height; speed over viscosity."""
-    panels = figure.subplot_mosaic([["lines", "lines"], ["speed", "water"]], height_ratios=(1.4, 1.0))
-    lines, speed, water = (panels[name] for name in ("lines", "speed", "water"))
+def draw_lamprey(
+    figure: Figure, beat: Beat, found: list[LampreySwim], measured: list[Thickened], thick: list[list[float]]
+) -> None:
+    """Midlines of one beat, measured above and computed below; speed over the fin's height, and over the viscosity
+    where that was `measured`."""
+    panels = figure.subplot_mosaic(
+        [["lines", "lines"], ["speed", "water" if measured else "speed"]], height_ratios=(1.4, 1.0)
+    )
+    lines, speed = panels["lines"], panels["speed"]
     _draw_midlines(lines, beat, found[len(found) // 2].run)
     heights, ours = [swim.height for swim in found], np.array([swim.speed for swim in found])
     bands = np.array([swim.band for swim in found])
@@ -154,16 +163,20 @@ def draw_lamprey(figure: Figure, beat: Beat, found: list[LampreySwim], thick: li
     speed.plot(heights, ours, color=BLUE, marker="o", label="computed")
     speed.axhline(beat.measured.speed, color=BLACK, linestyle=(0, (4, 2)), label="measured")
     speed.set(xlabel="half-height of the fin [L]", ylabel="speed [m/s]", ylim=(0.0, None))
-    times = [each.times for each in MEASURED]
-    speeds, spreads = zip(*((each.speed, each.spread) for each in MEASURED), strict=True)
-    water.errorbar(times, speeds, spreads, color=BLACK, marker="s", linestyle=(0, (4, 2)), capsize=3)
-    low, high = 1e3 * np.min(thick, axis=0), 1e3 * np.max(thick, axis=0)
-    water.fill_between(times, low, high, color=PALE_BLUE)
-    water.plot(times, 0.5 * (low + high), color=BLUE, marker="o")
-    water.set(xlabel="viscosity, times water's", ylabel="speed [mm/s]", ylim=(0.0, None))
     speed.margins(x=0.0)
-    water.margins(x=0.0)
+    if measured:
+        _draw_thick_water(panels["water"], measured, thick)
     legend_above(figure, 3)
+
+
+def _draw_thick_water(axes: Axes, measured: list[Thickened], thick: list[list[float]]) -> None:
+    times, _, _, speeds, spreads = zip(*measured, strict=True)
+    axes.errorbar(times, speeds, spreads, color=BLACK, marker="s", linestyle=(0, (4, 2)), capsize=3)
+    low, high = 1e3 * np.min(thick, axis=0), 1e3 * np.max(thick, axis=0)
+    axes.fill_between(times, low, high, color=PALE_BLUE)
+    axes.plot(times, 0.5 * (low + high), color=BLUE, marker="o")
+    axes.set(xlabel="viscosity, times water's", ylabel="speed [mm/s]", ylim=(0.0, None))
+    axes.margins(x=0.0)
 
 
 def _draw_midlines(axes: Axes, beat: Beat, run: Run) -> None:

@@ -2,9 +2,8 @@
 """A filmed lamprey: speed without a fitted number, as a band over what was not published, and in thicker water.
 
 The width of the body is published by the length; its height is not. The trunk's section is taken as 1.2 times as high
-as wide, and the tail fin's half-height varies. Water thickened 10 and 20 times: Tytell and colleagues' means and
-standard deviations of 212 trials, which give frequency and wavelength. The curvature's amplitude is not published for
-them: it is kept as in the film.
+as wide, and the tail fin's half-height varies. What was measured in thicker water belongs to its film: it stands in a
+file beside it, which gives frequency and wavelength too. The curvature's amplitude is kept as in the film.
 """
 
 import math
@@ -31,16 +30,13 @@ PLANAR = Scene(planar=True, friction="blended", internal_wrench=False)
 
 
 class Thickened(NamedTuple):
-    """Lampreys in water of so many times the viscosity."""
+    """Animals of a film in water of so many times the viscosity, by the columns of their file."""
 
-    times: float
-    frequency: float  # Hz
-    wavelength: float  # mm
-    speed: float  # mm/s
-    spread: float  # mm/s, standard deviation
-
-
-MEASURED = Thickened(1, 2.88, 109, 221, 58), Thickened(10, 2.83, 106, 129, 45), Thickened(20, 2.13, 102, 53, 37)
+    times_viscosity: float
+    frequency_hz: float
+    wavelength_mm: float
+    speed_mm_s: float
+    spread_mm_s: float  # standard deviation of the speed
 
 
 @dataclass(frozen=True)
@@ -89,12 +85,34 @@ def swims(beat: Beat, widths: Path, scene: Scene = PLANAR, **numbers: float) -> 
     return found
 
 
-def in_thick_water(beat: Beat, body: Body, scene: Scene = PLANAR) -> list[float]:
-    """Speed [m/s] at each of `MEASURED`'s viscosities, with its frequency, and its wavelength by that in water."""
+def thickened(film: Path) -> list[Thickened]:
+    """What was measured on the animals of this `film` in thicker water: FILM_thick_water.csv beside it, or nothing.
+
+    The first row is of the film's own water. `ValueError` for a file that does not fit.
+    """
+    path = film.with_name(f"{film.stem}_thick_water.csv")
+    if not path.exists():
+        return []
+    table, names = read_table(path), Thickened._fields
+    if missing := [name for name in names if name not in table.columns]:
+        raise table.error(
+            f"speeds in thick water must have the columns {', '.join(names)}; {', '.join(missing)} missing"
+        )
+    table.check_finite(names)
+    rows = np.column_stack([table.columns[name] for name in names])
+    if len(bad := np.flatnonzero(np.any(rows <= 0.0, axis=1))):
+        raise table.error("all numbers must be > 0", bad[0])
+    if rows[0, 0] != 1.0:
+        raise table.error(f"the first row must be of 1 times the viscosity, got {rows[0, 0]:g}", 0)
+    return [Thickened(*row) for row in rows.tolist()]
+
+
+def in_thick_water(beat: Beat, body: Body, measured: list[Thickened], scene: Scene = PLANAR) -> list[float]:
+    """Speed [m/s] at each viscosity that was `measured`, with its frequency, and its wavelength by that in water."""
     found = []
-    for each in MEASURED:
-        law = wave_of(beat, body.length, 1.0 / each.frequency, MEASURED[0].wavelength / each.wavelength)
-        thick = replace(scene, viscosity=each.times * WATER)
+    for each in measured:
+        law = wave_of(beat, body.length, 1.0 / each.frequency_hz, measured[0].wavelength_mm / each.wavelength_mm)
+        thick = replace(scene, viscosity=each.times_viscosity * WATER)
         found.append(simulate(law, "settled", body=body, scene=thick, accuracy=1e-2).mean_speed)
     return found
 
