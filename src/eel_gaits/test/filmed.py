@@ -61,12 +61,26 @@ def write_deeplabcut(path, animals):
     return write(path, heads[0], [*heads[1:], *rows])
 
 
-def write_sleap(path, animals):
-    count = next(iter(animals.values())).shape[1]
-    names = [f"part{place}.{what}" for place in range(count) for what in ("x", "y", "score")]
+def write_sleap(path, animals, parts=None):
+    parts = parts or [f"part{place}" for place in range(next(iter(animals.values())).shape[1])]
+    names = [f"{part}.{what}" for part in parts for what in ("x", "y", "score")]
     rows = []
     for frame in range(len(TIMES)):
         for name, points in animals.items():
-            cells = [each for x, y in points[frame].tolist() for each in (x, y, 0.9)]
+            cells = ["" if np.isnan(each) else each for x, y in points[frame].tolist() for each in (x, y, 0.9)]
             rows.append((name, frame, 0.9, *cells))
     return write(path, ("track", "frame_idx", "instance.score", *names), rows)
+
+
+def with_eyes_and_fins(points, arc, reach=1.0):
+    """Parts of a skeleton {name: (N, 2)} of a swimmer's points (N, n, 2): with eyes and fin tips beside its body, which
+    is `reach` long."""
+    along = dict(
+        zip(["snout", *(f"p{each}" for each in range(1, len(arc) - 1)), "tail"], points.swapaxes(0, 1), strict=True)
+    )
+    aside = {}
+    for name, place, width in (("eye", 1, 0.08), ("fin", len(arc) // 2, 0.12)):
+        step = points[:, place + 1] - points[:, place - 1]
+        side = reach * width * np.stack((-step[:, 1], step[:, 0]), axis=1) / np.linalg.norm(step, axis=1)[:, None]
+        aside |= {f"left_{name}": points[:, place] + side, f"right_{name}": points[:, place] - side}
+    return along | aside

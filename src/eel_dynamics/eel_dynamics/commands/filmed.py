@@ -24,6 +24,8 @@ def add_film_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--units", metavar="UNIT", help="of the midlines: m, cm, mm, or px with a --scale")
     parser.add_argument("--rate", type=float, metavar="FPS", help="frames per second, where a file counts frames")
     parser.add_argument("--animal", metavar="NAME", help="which of several animals in the file")
+    parser.add_argument("--points", metavar="NAME,...", help="those along the body, from head to tail: names, or "
+                        "patterns such as spine* (all, in the file's order)")  # fmt: skip
     parser.add_argument(
         "--rigid", type=float, default=0.0, metavar="PART", help="of the length from the head on that does not bend (0)"
     )
@@ -33,7 +35,8 @@ def add_film_options(parser: argparse.ArgumentParser) -> None:
 def film_of(path: str, options: argparse.Namespace) -> Film:
     """The film in the file at `path`, read as the `options` say."""
     scale = None if options.scale == 1.0 else options.scale
-    return read_film(path, units=options.units, scale=scale, rate=options.rate, animal=options.animal)
+    points = None if options.points is None else [name.strip() for name in options.points.split(",")]
+    return read_film(path, units=options.units, scale=scale, rate=options.rate, animal=options.animal, points=points)
 
 
 def beat_from(path: str, options: argparse.Namespace) -> Beat:

@@ -122,7 +122,7 @@ def main(options: argparse.Namespace) -> int:
             load=options.load or Path(options.out or "").suffix == ".rrd",
             estimate=not options.bare,
             most_evaluations=options.most_evaluations,
-            progress=lambda reached, left: progress(float(f"{reached:.5g}"), end),
+            progress=lambda reached, left: progress(float(f"{reached:.3g}"), end),
         )
     except SimulationStopped as stopped:
         print_to_stderr(NAME, stopped)
@@ -171,8 +171,10 @@ def _law(options: argparse.Namespace, body: Body, beat: Beat | None) -> Law | Sa
     """The law of the gait, of the sequence, of the motion in a file, or of the `beat` of a film."""
     if options.file is None and (options.unsmoothed or (options.scale != 1.0 and beat is None)):
         raise ValueError("--unsmoothed and --scale belong to --file, which is not given")
-    if beat is None and (options.units or options.rate or options.animal or options.rigid or options.harmonics):
-        raise ValueError("--units, --rate, --animal, --rigid and --harmonics belong to --midlines, which is not given")
+    of_film = options.units, options.rate, options.animal, options.points, options.rigid, options.harmonics
+    if beat is None and any(of_film):
+        rule = "--units, --rate, --animal, --points, --rigid and --harmonics belong to --midlines"
+        raise ValueError(f"{rule}, which is not given")
     given = [name for name in ("midlines", "file", "sequence") if getattr(options, name) is not None]
     if not given:
         return gait(options.gait or "falling", **set_numbers(options.set))

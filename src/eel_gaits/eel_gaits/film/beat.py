@@ -90,6 +90,7 @@ class Beat:
         periods = jackknife([each.period for each in self.others])
         return [
             ("film", f"{film.name}: {film.points.shape[1]} points, {len(film.time)} frames, {film.length:.4g} m long"),
+            *([("points", ", ".join(film.names))] if film.names else []),
             *(("repaired", note) for note in film.notes),
             ("beat", f"period {self.period:.4g} +- {float(periods):.2g} s (95 %), {kept}"),
             ("along the body", f"splines through {self.knots} knots{rigid}"),
@@ -120,7 +121,7 @@ def beat_of(film: Film, *, harmonics: int | None = None, rigid: float = 0.0) -> 
                 "stand from head to tail; a swimmer that swims backward is read by --file"
             )
         note = "points reversed: the wave ran from the last to the first, and the first moved most"
-        turned = film._replace(points=film.points[:, ::-1], notes=(*film.notes, note))
+        turned = film._replace(points=film.points[:, ::-1], names=film.names[::-1], notes=(*film.notes, note))
         return beat_of(turned, harmonics=harmonics, rigid=rigid)
     return found
 

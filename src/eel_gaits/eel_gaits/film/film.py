@@ -3,10 +3,13 @@
 
 Empty frames are left out. Where a point is missing, or has jumped, a cubic along the body through the others of its
 frame takes its place; a frame without an end point, or without a quarter of its points, is left out. Drift and turns
-of the swimmer need no repair: the body's bending does not contain them.
+of the swimmer need no repair: the body's bending does not contain them. Points that do not stand along the body in
+their order are refused.
 """
 
 import os
+from collections.abc import Sequence
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,6 +20,7 @@ from eel_base.wording import shown
 
 from eel_gaits.film.forms import UNITS, Tracks, read_tracks
 from eel_gaits.film.kinematics import arc_of
+from eel_gaits.sources.order import check_order
 
 FEWEST_POINTS, FEWEST_FRAMES = 5, 16
 MISSING = 0.25  # part of a frame's points that may be missing
@@ -34,6 +38,7 @@ class Film(NamedTuple):
     time: np.ndarray  # (N,) s
     points: np.ndarray  # (N, n, 2) m
     notes: tuple[str, ...]  # what was done to the data, in words
+    names: tuple[str, ...] = ()  # of the points (n,)
 
     @property
     def arc(self) -> np.ndarray:
@@ -53,12 +58,14 @@ def read_film(
     scale: float | None = None,
     rate: float | None = None,
     animal: str | None = None,
+    points: Sequence[str] | None = None,
 ) -> Film:
     """The swimmer in a file of tracked points, in a form of `eel_gaits.film.forms`.
 
     units: of length: m, cm, mm or px; None: those that the columns tell. scale: metres in the file's unit, for pixels.
-    rate: frames per second, where the file counts frames. animal: which of several. `ValueError` in one line for what
-    does not fit.
+    rate: frames per second, where the file counts frames. animal: which of several. points: names of those along the
+    body, from head to tail, or patterns such as spine*, whose points come in the file's order; None: all. `ValueError`
+    in one line for what does not fit, and for points that do not stand along the body in their order.
     """
     path = Path(path)
     with reading(shown(str(path))):
@@ -68,9 +75,12 @@ def read_film(
             raise ValueError("it counts frames: give the rate of the film, frames per second")
         if not tracks.frames and rate is not None:
             raise ValueError("it has times: a rate of the film has no place")
-        points, chosen = _of_one(tracks, animal)
+        name, notes = _of_one(tracks, animal)
+        places, out = _chosen(tracks.names[name], points)
+        named = [tracks.names[name][place] for place in places]
         time = tracks.time / positive("rate", rate, "1/s") if rate is not None else tracks.time
-        found = _repaired(path.name, time, metres * points, [*tracks.notes, *chosen])
+        along = metres * tracks.animals[name][:, places]
+        found = _repaired(path.name, time, along, named, [*tracks.notes, *notes, *out], tracks.frames)
         if found.length > LONGEST:
             raise ValueError(f"its swimmer is {found.length:.4g} m long: give its units, or a scale")
         _check_whole(found)
@@ -95,22 +105,41 @@ def _metres(tracks: Tracks, units: str | None, scale: float | None) -> float:
     return UNITS[unit]
 
 
-def _of_one(tracks: Tracks, animal: str | None) -> tuple[np.ndarray, list[str]]:
-    """The points of the one animal, and a note where another was left out."""
+def _of_one(tracks: Tracks, animal: str | None) -> tuple[str, list[str]]:
+    """The name of the one animal, and a note where another was left out."""
     seen = [name for name, points in tracks.animals.items() if np.any(np.isfinite(points))]
     if animal is not None:
         if animal not in tracks.animals:
             raise ValueError(f"there is no animal {shown(animal)}, there are: {', '.join(map(shown, seen))}")
         others = [name for name in seen if name != animal]
-        return tracks.animals[animal], [f"animal {animal} of {len(seen)}"] if others else []
+        return animal, [f"animal {animal} of {len(seen)}"] if others else []
     if len(seen) > 1:
         raise ValueError(f"it has {len(seen)} animals, {', '.join(map(shown, seen))}: say which one")
     if not seen:
         raise ValueError("all its points are missing")
-    return tracks.animals[seen[0]], []
+    return seen[0], []
 
 
-def _repaired(name: str, time: np.ndarray, points: np.ndarray, notes: list[str]) -> Film:
+def _chosen(names: list[str], points: Sequence[str] | None) -> tuple[list[int], list[str]]:
+    """The places in the file of the points that are chosen from these `names`, and a note of those left out."""
+    if points is None:
+        return list(range(len(names))), []
+    if isinstance(points, str):
+        raise ValueError(f"points must be a row of names, got {shown(points)}")
+    places: list[int] = []
+    for point in points:
+        found = [names.index(point)] if point in names else []
+        found = found or [place for place, name in enumerate(names) if fnmatchcase(name, point)]
+        if not found:
+            raise ValueError(f"there is no point {shown(point)}, there are: {', '.join(names)}")
+        if twice := [names[place] for place in found if place in places]:
+            raise ValueError(f"points must be named once, got {twice[0]} twice")
+        places += found
+    out = [name for place, name in enumerate(names) if place not in places]
+    return places, [f"points left out, as they are not among those given: {', '.join(out)}"] if out else []
+
+
+def _repaired(name: str, time: np.ndarray, points: np.ndarray, names: list[str], notes: list[str], parts: bool) -> Film:
     def keep(frames: np.ndarray, why: str) -> None:
         nonlocal time, points
         if not np.all(frames):
@@ -124,12 +153,16 @@ def _repaired(name: str, time: np.ndarray, points: np.ndarray, notes: list[str])
     there = np.all(np.isfinite(points), axis=2)
     rare = np.flatnonzero(there.mean(axis=0) < OFTEN)
     if len(rare):
-        notes.append(f"points left out, missing in most frames: {', '.join(str(each + 1) for each in rare)}")
-        points = np.delete(points, rare, axis=1)
-    points = _apart(points, notes)
-    if points.shape[1] < FEWEST_POINTS or len(time) < FEWEST_FRAMES:
+        notes.append(f"points left out, missing in most frames: {', '.join(names[each] for each in rare)}")
+        points, names = np.delete(points, rare, axis=1), np.delete(names, rare).tolist()
+    apart = _apart(points)
+    if out := [name for place, name in enumerate(names) if place not in apart]:
+        notes.append(f"points left out, as they lie on the one ahead: {', '.join(out)}")
+    if len(apart) < FEWEST_POINTS or len(time) < FEWEST_FRAMES:
         rule = f"{FEWEST_POINTS} points in {FEWEST_FRAMES} frames or more"
-        raise ValueError(f"there must be {rule}, got {points.shape[1]} in {len(time)}{in_brackets()}")
+        raise ValueError(f"there must be {rule}, got {len(apart)} in {len(time)}{in_brackets()}")
+    check_order(points, names, apart, parts)
+    points, names = points[:, apart], [names[place] for place in apart]
     jumped = _jumps(points)
     points = np.where(jumped[..., None], np.nan, points)
     missing = ~np.all(np.isfinite(points), axis=2)
@@ -143,20 +176,17 @@ def _repaired(name: str, time: np.ndarray, points: np.ndarray, notes: list[str])
     if np.any(missing):
         notes.append(f"{np.sum(missing)} of {missing.size} points filled by a cubic along the body")
         points = _filled(points, missing)
-    return Film(name, time, points, tuple(notes))
+    return Film(name, time, points, tuple(notes), tuple(names))
 
 
-def _apart(points: np.ndarray, notes: list[str]) -> np.ndarray:
-    """The points without those that lie on the one ahead: two marks that were mixed up have no direction."""
+def _apart(points: np.ndarray) -> list[int]:
+    """The places without those that lie on the one ahead: two marks that were mixed up have no direction."""
     usual = float(np.nanmedian(np.nanmedian(np.linalg.norm(np.diff(points, axis=1), axis=2), axis=0)))
     kept = [0]
     for place in range(1, points.shape[1]):
         if np.nanmedian(np.linalg.norm(points[:, place] - points[:, kept[-1]], axis=1)) > CLOSE * usual:
             kept.append(place)
-    out = [str(each + 1) for each in range(points.shape[1]) if each not in kept]
-    if out:
-        notes.append(f"points left out, as they lie on the one ahead: {', '.join(out)}")
-    return points[:, kept]
+    return kept
 
 
 def _jumps(points: np.ndarray) -> np.ndarray:

@@ -33,8 +33,9 @@ class Tracks(NamedTuple):
 
     time: np.ndarray  # (N,) s; frame numbers where `frames`
     animals: dict[str, np.ndarray]  # (N, n, 2) of each, NaN where missing
+    names: dict[str, list[str]]  # of its points, in the file's order
     unit: str  # of length; "" where the file does not tell
-    frames: bool  # whether time is a number of frames
+    frames: bool  # whether time is a number of frames, and the points are parts of a tracker's skeleton
     notes: tuple[str, ...]  # what was done, in words
 
 
@@ -116,22 +117,27 @@ def _of_columns(cells: Cells) -> Tracks:
         starts = np.concatenate(([0], np.flatnonzero(np.diff(time)) + 1))
     cells.check_rising(time, starts)
     if marks == [""]:
-        _check_frames(cells, starts)
-    return Tracks(time[starts], {"": points.reshape(len(starts), -1, 2)}, units.pop(), False, ())
+        marks = _names_in_frames(cells, starts)
+    return Tracks(time[starts], {"": points.reshape(len(starts), -1, 2)}, {"": marks}, units.pop(), False, ())
 
 
-def _check_frames(cells: Cells, starts: np.ndarray) -> None:
-    """`ValueError` where the frames that begin at the rows `starts` do not have the same points in the same order."""
+def _names_in_frames(cells: Cells, starts: np.ndarray) -> list[str]:
+    """The names of the points, as the column `point` has them, or their numbers.
+
+    `ValueError` where the frames that begin at the rows `starts` do not have the same points in the same order.
+    """
     sizes = np.diff(np.append(starts, len(cells.rows)))
     if len(other := np.flatnonzero(sizes != sizes[0])):
         raise cells.error(starts[other[0]], f"a frame of {sizes[other[0]]} points, the first has {sizes[0]}")
-    if "point" in cells.head:
-        order = cells.numbers([cells.head.index("point")]).reshape(len(starts), -1)
-        if len(np.unique(order[0])) < sizes[0]:
-            raise cells.error(0, "a point stands twice in one frame: two animals? Give the rows of one")
-        if np.any(order != order[0]):
-            frame = int(np.argmax(np.any(order != order[0], axis=1)))
-            raise cells.error(starts[frame], "its points are in another order than in the first frame")
+    if "point" not in cells.head:
+        return [str(place + 1) for place in range(sizes[0])]
+    order = cells.numbers([cells.head.index("point")]).reshape(len(starts), -1)
+    if len(np.unique(order[0])) < sizes[0]:
+        raise cells.error(0, "a point stands twice in one frame: two animals? Give the rows of one")
+    if np.any(order != order[0]):
+        frame = int(np.argmax(np.any(order != order[0], axis=1)))
+        raise cells.error(starts[frame], "its points are in another order than in the first frame")
+    return [f"{each:g}" for each in order[0]]
 
 
 def _of_deeplabcut(cells: Cells) -> Tracks:
@@ -151,7 +157,7 @@ def _of_deeplabcut(cells: Cells) -> Tracks:
 def _of_parts(frames: np.ndarray, names: list[tuple[str, str, str]], values: np.ndarray) -> Tracks:
     """Tracks of DeepLabCut's columns, each with the names of (animal, body part, x, y or likelihood)."""
     column = {name: index for index, name in enumerate(names)}
-    animals, unlikely = {}, 0
+    animals, parts_of, unlikely = {}, {}, 0
     for animal in dict.fromkeys(name[0] for name in names):
         parts = list(dict.fromkeys(name[1] for name in names if name[0] == animal))
         points = np.full((len(frames), len(parts), 2), np.nan)
@@ -163,11 +169,11 @@ def _of_parts(frames: np.ndarray, names: list[tuple[str, str, str]], values: np.
                 bad = ~(values[:, index] >= LIKELY) & np.isfinite(points[:, place, 0])
                 points[bad, place] = np.nan
                 unlikely += int(bad.sum())
-        animals[animal] = points
+        animals[animal], parts_of[animal] = points, parts
     if fall := _fall_of(frames):
         raise ValueError(fall[1])
     notes = (f"{unlikely} points of a likelihood below {LIKELY} count as missing",) if unlikely else ()
-    return Tracks(frames, animals, "px", True, notes)
+    return Tracks(frames, animals, parts_of, "px", True, notes)
 
 
 def _of_hdf(path: Path) -> Tracks:
@@ -211,4 +217,4 @@ def _of_sleap(cells: Cells) -> Tracks:
             raise cells.error(twice, "a track has two instances in one frame: two animals? Track them")
         animals[track] = np.full((len(frames), len(parts), 2), np.nan)
         animals[track][np.searchsorted(frames, frame[mine])] = points[mine].reshape(len(mine), len(parts), 2)
-    return Tracks(frames, animals, "px", True, ())
+    return Tracks(frames, animals, dict.fromkeys(animals, parts), "px", True, ())

@@ -16,6 +16,7 @@ from eel_base.command.progress import Progress
 from eel_base.files.output_file import written_as
 from eel_dynamics.commands.options import add_options
 from eel_gaits.sources.midlines import Midlines
+from eel_gaits.sources.order import laid_on
 from eel_model.body.body import body_of
 
 from eel_dynamics import Run, simulate
@@ -77,7 +78,7 @@ def main(options: argparse.Namespace) -> None:
         sample_period=period,
         stations=stations,
         estimate=False,
-        progress=lambda reached, left: progress(float(f"{reached:.5g}"), law.duration),
+        progress=lambda reached, left: progress(float(f"{reached:.3g}"), law.duration),
     )
     found = compared(run, midlines)
     print(f"motion              {law.about}")
@@ -122,15 +123,3 @@ def compared(run: Run, midlines: Midlines) -> MidlineComparison:
     assert run.backbone is not None  # it has stations
     found = run.backbone[..., : measured.shape[2]]
     return MidlineComparison(run.time, measured, laid_on(found, measured), run.body.length)
-
-
-def laid_on(points: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """The `points` (T, n, d) after the rotation and shift of each instant that brings them closest to the `others`.
-
-    Kabsch, Acta Cryst. A32 (1976), doi:10.1107/S0567739476001873.
-    """
-    centre, other = points.mean(axis=1, keepdims=True), others.mean(axis=1, keepdims=True)
-    left, _, right = np.linalg.svd((points - centre).swapaxes(1, 2) @ (others - other))
-    sign = np.sign(np.linalg.det(left @ right))
-    left[..., -1] *= sign[:, None]
-    return np.asarray((points - centre) @ (left @ right) + other)

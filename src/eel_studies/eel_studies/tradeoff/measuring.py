@@ -13,6 +13,7 @@ from operator import attrgetter
 from typing import Any
 
 from eel_dynamics.accuracy.accuracy import PRESETS, Accuracy
+from eel_dynamics.accuracy.budget import Budget
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.runs.companion import relative_errors
 
@@ -93,16 +94,16 @@ class Trade:
         """The Pareto front of an `error` against the time."""
         return front(self.rows, error, SECONDS)
 
-    def within(self, pace: float) -> tuple[Measured, Measured | None]:
-        """The setting with the least error within `pace` [s] a simulated second, and the like among those `asked` for.
+    def within(self, budget: Budget) -> tuple[Measured, Measured | None]:
+        """The setting with the least error within the `budget`, and the like among those `asked` for, or None.
 
-        None: of these none is as fast. `ValueError` where nothing is.
+        `ValueError` where nothing is as fast.
         """
-        most = pace * self.duration
+        most = budget.seconds_per_second * self.duration
         rows, asked = ([row for row in rows if row.seconds <= most] for rows in (self.rows, self.asked))
         if not rows:
             fastest = 1e3 / max(row.times_real_time for row in self.rows)
-            raise ValueError(f"{1e3 * pace:g} ms per second cannot be met here: the fastest run takes {fastest:.3g} ms")
+            raise ValueError(f"{budget.name!r} cannot be met here: the fastest run takes {fastest:.3g} ms per second")
         return min(rows, key=ERROR), min(asked, key=ERROR, default=None)
 
 
