@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Dynamics of an elongated swimmer in three dimensions, after Boyer, Porez and Leroyer (2010).
 
-`sweep`, `optimise`, `identify`, `gradient` and the other studies are those of `eel_studies`, imported when first used.
+Studies of many swims (`sweep`, `optimise`, `identify`, `gradient` and others) are in `eel_studies`.
 """
-
-from importlib import import_module
 
 import eel_command  # noqa: F401  first: Ctrl-C ends a command during the other imports
 
@@ -47,26 +45,3 @@ __all__ = [
     "trim_of",
 ]
 __all__ += eel_model.__all__
-
-STUDIES = (
-    "Front",
-    "Gradient",
-    "Identified",
-    "MeasuredAngles",
-    "MeasuredPath",
-    "MeasuredSpeed",
-    "PeriodicLinearisation",
-    "Terms",
-    "gradient",
-    "identify",
-    "optimise",
-    "periodic_linearisation",
-    "sweep",
-    "terms",
-)
-
-
-def __getattr__(name: str):
-    if name in STUDIES:
-        return getattr(import_module("eel_studies"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

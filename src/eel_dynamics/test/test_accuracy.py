@@ -1,33 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an accuracy gives: settings by one rule from the target and the scene, budgets of time, bad input."""
-
-from dataclasses import replace
+"""What an accuracy gives: settings by one rule from the target and the scene, bad input."""
 
 import numpy as np
 import pytest
-from eel_dynamics.accuracy.accuracy import BUDGET_TARGETS
 from eel_dynamics.runs.companion import relative_errors
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
-from eel_dynamics.simulation.time_budget import swim_time
+from eel_dynamics.runs.storage.plain import READERS
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.term import Term
 
 from eel_dynamics import (
     Accuracy,
-    Body,
-    Fin,
-    FlowField,
-    GriddedFlow,
-    Robot,
-    RollHold,
     Scene,
-    Shear,
     Simulation,
     SimulationStopped,
     simulate,
-    simulate_batch,
 )
-from eel_gaits import falling, gait, straight
+from eel_gaits import falling, straight
 
 REFERENCE = Accuracy(name="reference", resolution=150.0, tolerance=1e-12)
 ALONE = Scene(internal_wrench=False, ledger=False)
@@ -64,84 +52,11 @@ def test_an_order_that_does_not_exist():
         Accuracy(name="x", resolution=20.0, method="euler")
 
 
-def test_a_budget_buys_the_finest_target_that_keeps_within_it(monkeypatch):
-    """The timings are given here, so that no machine decides: 1 ms at 1e-2, ten times that for each hundredth."""
-    monkeypatch.setattr(
-        "eel_dynamics.simulation.time_budget.swim_time",
-        lambda setup: 1e-3 * (1e-2 / float(setup.accuracy.name)) ** 0.5,
-    )
-    bought = Simulation(accuracy="fastest within 5 ms per second").accuracy
-    affordable = [target for target in BUDGET_TARGETS if 1e-3 * (1e-2 / target) ** 0.5 <= 5e-3]
-    assert bought == replace(Accuracy.of(min(affordable)).in_scene(Scene()), name=bought.name, target=None)
-    with pytest.raises(ValueError, match="cannot be met"):
-        Simulation(accuracy="fastest within 1 us per second")
-
-
-def test_a_budget_is_measured_for_the_body_scene_and_stations_at_hand(monkeypatch):
-    """A body of many panels takes longer, so the same time affords less. The timings are given here."""
-    asked = []
-
-    def swim_time(setup):
-        asked.append((setup.body, setup.scene, setup.x.tobytes()))
-        return 1e-3 * (len(setup.body.panel_ends) / 3.0) ** 4 * (1e-2 / float(setup.accuracy.name)) ** 0.5
-
-    monkeypatch.setattr("eel_dynamics.simulation.time_budget.swim_time", swim_time)
-    body, scene, x = Body.kern2006(0.3), Scene(density=700.0), np.array([0.0, 0.1])
-    few = Simulation(body, scene, "fastest within 5 ms per second", x).accuracy
-    assert set(asked) == {(body, scene, x.tobytes())}
-    many = Simulation(accuracy="fastest within 5 ms per second").accuracy
-    assert few.tolerance < many.tolerance and few.target is many.target is None
-
-
-def test_the_time_of_a_swim_is_of_that_body():
-    coarse = Accuracy(name="coarse", resolution=8.0, tolerance=1e-4)
-    setup = SimulationSetup.of(body=Body.kern2006(0.3), scene=Scene(planar=True), stations=[0.0], accuracy=coarse)
-    assert swim_time(setup) > 0.0
-
-
-def test_a_budget_is_measured_in_the_water_and_with_the_fins_and_the_robot_at_hand(monkeypatch):
-    asked, places = [], []
-
-    def water(x, t):
-        places.append(len(x))
-        return 0.0 * x
-
-    fast, coarse = "fastest within 900 s per second", Accuracy(name="coarse", resolution=8.0, tolerance=1e-4)
-    swim_time(SimulationSetup.of(scene=Scene(planar=True), flow=FlowField(water), stations=[0.0], accuracy=coarse))
-    assert len(places) > 4 * 40  # four swims of two seconds
-    monkeypatch.setattr("eel_dynamics.simulation.time_budget.swim_time", lambda setup: asked.append(setup) or 1e-3)
-    fins, robot = Fin.pair(0.2, 1e-3, 2.5, angle=RollHold(2.0, 0.15), time_constant=0.05), Robot.named("eight_servos")
-    Simulation(accuracy=fast, fins=[fins], flow=Shear(), position=(1.0, 0.0, 0.0))
-    Simulation(accuracy=fast, robot=robot)
-    assert {(each.flow, each.robot, each.fins, *each.initial_state.position.tolist()) for each in asked} == {
-        (Shear(), None, fins, 1.0, 0.0, 0.0),
-        (None, robot, (), 0.0, 0.0, 0.0),
-    }
-
-
-def test_a_budget_is_refused_where_the_swim_that_is_timed_stops():
-    still = GriddedFlow(np.zeros((4, 4, 3)), x=np.linspace(-1.2, 0.3, 4), y=np.linspace(-0.6, 0.6, 4))
-    with pytest.raises(ValueError, match=r"accuracy cannot be a budget of time here: 2 s of the gait falling.*grid"):
-        Simulation(accuracy="fastest within 5 ms per second", flow=still, twist=(0, 0, 0, 1.0, 0, 0))
-
-
-def test_a_budget_is_measured_on_this_machine():
-    run = simulate(gait("straight"), 0.2, accuracy="fastest within 900 s per second", scene=Scene(planar=True))
-    finest = Accuracy.of(BUDGET_TARGETS[-1]).in_scene(run.scene)
-    assert run.accuracy.tolerance == finest.tolerance  # so much time affords the finest
-    assert run.accuracy.target is None and 0.0 < run.error_estimate.worst < 100.0 * BUDGET_TARGETS[-1]
-    assert not any("target" in each for each in run.warnings)
-    batch = simulate_batch(
-        [gait("straight")] * 2, 0.2, accuracy="fastest within 900 s per second", scenes=Scene(planar=True)
-    )
-    assert list(batch.accuracies) == [run.accuracy] * 2 and not batch.above_target.any()
-    np.testing.assert_array_equal(batch.position, [run.position] * 2)
-
-
-@pytest.mark.parametrize("text", ["fastest", "fastest within five ms", "fastest within -3 ms per second"])
-def test_a_budget_that_cannot_be_read(text):
-    with pytest.raises(ValueError, match="fastest within 5 ms per second"):
-        Accuracy.of(text)
+def test_a_budget_of_time_is_no_accuracy():
+    """What it buys depends on the machine: `eel tradeoff --within` tells."""
+    with pytest.raises(ValueError, match=r"accuracy must be one of draft, .* or a target relative error"):
+        Accuracy.of("fastest within 5 ms per second")
+    assert READERS["accuracy"]({"budget": "fastest within 5 ms per second"}).target is None  # of an older file
 
 
 def test_a_run_that_diverges_tells_the_step_that_would_have_been_stable():

@@ -6,6 +6,7 @@ import pickle
 
 import numpy as np
 import pytest
+from eel_dynamics.accuracy.law_waves import waves_of_rows
 from eel_dynamics.commands.simulate import main
 from eel_gaits.sources.lateral import LateralMidline
 from midline_files import ARC, kern_midline, write_midlines
@@ -54,6 +55,32 @@ def test_a_function_swims_as_its_rows_do(run):
 
     again = simulate(rows, 3.0, scene=PLANE, accuracy=1e-2)
     assert np.array_equal(again.position, run.position) and again.law.name == "rows"
+
+
+def test_a_startle_in_a_long_rest_has_the_torque_of_one_in_a_short_rest():
+    """The same bend of 0.2 s at 2.06 s and at 10.3 s."""
+
+    def startle(at):
+        return lambda t, x: (1.0 - min(((t - at) / 0.1) ** 2, 1.0)) ** 4 * 2.0 * np.sin(math.pi * x)
+
+    early, late = (
+        simulate(startle(at), end, scene=PLANE, accuracy=1e-2, sample_period=0.01)
+        for at, end in ((2.06, 3.0), (10.3, 12.0))
+    )
+    assert np.abs(late.torque).max() == pytest.approx(np.abs(early.torque).max(), rel=1e-2)
+    first, then = (run.position[int(100 * at + 50)] for run, at in ((early, 2.06), (late, 10.3)))
+    assert np.linalg.norm(early.position[-1]) > 0.01 and np.allclose(then, first, atol=2e-3)
+
+
+def test_a_bend_that_is_short_and_local_makes_the_grid_finer():
+    def flick(t, x):
+        return np.sin(2.0 * math.pi * (x - t)) + bend_at(t) * np.exp(-(((x - 0.62) / 0.03) ** 2))
+
+    def bend_at(t):
+        return 5.0 * (1.0 - min(((t - 3.21) / 0.02) ** 2, 1.0)) ** 4
+
+    plain = waves_of_rows(sampled(lambda t, x: np.sin(2.0 * math.pi * (x - t)), 8.0))
+    assert waves_of_rows(sampled(flick, 8.0)) > 3.0 * plain
 
 
 def test_rows_that_are_far_apart_are_seen_in_the_error(law):

@@ -143,7 +143,6 @@ def test_functions_of_the_user_and_two_swims_per_parameter():
             {"accuracy": Accuracy(name="mine", resolution=20.0)},
             "accuracy of a gradient must be a target, or .* got 'mine'",
         ),
-        ({"accuracy": "fastest within 5 ms per second"}, "accuracy of a gradient must be a target"),
         (
             {"gait": lambda period: sampled(straight(period=period).curvature, 2.5)},
             "gradient gait must return a Law, whose terms are known, got SampledLaw",

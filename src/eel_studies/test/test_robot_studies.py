@@ -6,22 +6,9 @@ import pytest
 from eel_studies.identification.command import main as identify_main
 from eel_studies.sweeps.command import main as sweep_main
 
-from eel_dynamics import (
-    Accuracy,
-    Joint,
-    MeasuredAngles,
-    MeasuredPath,
-    PassiveTail,
-    Robot,
-    Scene,
-    Servo,
-    gradient,
-    identify,
-    optimise,
-    simulate,
-    sweep,
-)
+from eel_dynamics import Accuracy, Joint, PassiveTail, Robot, Scene, Servo, simulate
 from eel_gaits import straight
+from eel_studies import MeasuredAngles, MeasuredPath, gradient, identify, optimise, sweep
 
 PLANE = Scene(planar=True, friction="blended")
 SERVO = Servo(kp=6.0, kd=0.15, gear=200.0, rotor_inertia=4e-7)

@@ -433,7 +433,7 @@ def test_missing_extra_is_one_clear_error(name, extra, given, monkeypatch):
 def test_threads_serve_a_script_without_a_main_guard(tmp_path):
     script = tmp_path / "script.py"
     script.write_text(
-        "import sys\nfrom eel_dynamics import sweep\n"
+        "import sys\nfrom eel_studies import sweep\n"
         "data = sweep({'period': [0.5 + 0.1 * k for k in range(15)]}, accuracy=1e-2, duration=2.0,\n"
         "             measure=lambda run: {'way': run.path_length})\n"
         "print(float(data.way.min()) > 0.0, data.sizes['period'], 'distributed' in sys.modules)\n"

@@ -7,7 +7,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from eel_dynamics.accuracy.budget import Budget
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.swim import AT_REST, Swim
@@ -114,12 +113,12 @@ def test_a_robot_has_settings_of_its_one_method():
 
 def test_a_budget_of_time_takes_the_most_exact_that_keeps_to_it(trade):
     seconds = [row.seconds for row in trade.rows]
-    best, asked = trade.within(Budget("made up", 1.001 * max(seconds) / 2.5))
+    best, asked = trade.within(1.001 * max(seconds) / 2.5)
     assert best.error == min(row.error for row in trade.rows) and asked is None
-    best, _ = trade.within(Budget("made up", 1.001 * min(seconds) / 2.5))
+    best, _ = trade.within(1.001 * min(seconds) / 2.5)
     assert best.seconds == min(seconds)
-    with pytest.raises(ValueError, match="'made up' cannot be met here: the fastest run takes"):
-        trade.within(Budget("made up", 1e-12))
+    with pytest.raises(ValueError, match="1e-09 ms per second cannot be met here: the fastest run takes"):
+        trade.within(1e-12)
 
 
 def test_a_scene_that_is_too_sensitive_for_its_reference_is_said(monkeypatch):
@@ -169,7 +168,7 @@ def test_command_leaves_pictures_a_page_and_a_table(tmp_path, capsys):
         ("--duration 0.01 --quick", "--duration must be >= 0.05 s, got 0.01"),
         ("--duration nan --quick", "duration must be"),
         ("--duration -1 --quick", "duration must be > 0 s, got -1.0"),
-        ("--within 5 --quick", "accuracy must give its budget as in"),
+        ("--within 5 --quick", "--within must be a time above 0 such as '5 ms' (us, ms or s), got '5'"),
         ("--out /nowhere/at/all", "/nowhere/at/all"),
     ],
 )

@@ -84,8 +84,6 @@ def test_a_signal_in_mid_run_leaves_a_complete_file(start, network, tmp_path, se
             publishers[topic].publish(message)
         if k == 100:
             arrived(*publishers.values())
-    libraries = Path(f"/proc/{node.process.pid}/maps").read_text()
-    assert "pyarrow" in libraries and "pandas" not in libraries  # its import would double the start
     assert node.interrupt(sent) == 0, node.output()
     assert "Traceback" not in node.output()
     assert "received: " in node.output()

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What decides grid and steps of a run: a target or a budget of time, the needs of its law, bounds of the steps."""
+"""What decides grid and steps of a run: a target, the needs of its law, bounds of the steps."""

@@ -26,8 +26,6 @@ from eel_base.wording import did_you_mean, not_one_of, shown
 from eel_model.scene import ROUGH_FRICTION, Scene
 from eel_model.section_data import WATCHED
 
-from eel_dynamics.accuracy.budget import Budget
-
 PRESETS = {"draft": 1e-2, "standard": 1e-4, "fine": 1e-6, "reference": 1e-8}
 COARSEST, FINEST = 0.1, 1e-10
 # Errors of steps that add up in a swim: of one that measures its error, and is made finer where that is too great; and
@@ -48,7 +46,6 @@ COARSE_POINTS = 7.0, -3.0  # per decade, and at a target of one, where these are
 CUBIC_TARGET = 5e-4
 LEAST_POINTS = 4.0  # per body length
 FIXED_STEPS = 12.0  # per period, of the classical method at a target of 1e-2
-BUDGET_TARGETS = tuple(10.0 ** (-0.5 * k) for k in range(2, 19))  # 0.1 to 1e-9, among which a budget of time chooses
 FIXED = "fixed steps"
 ROBOTS = "rosenbrock"  # the method of robots, whatever was asked for
 KINKS = tuple(WATCHED)
@@ -257,28 +254,22 @@ class Accuracy:
         )
 
     @staticmethod
-    def of(value: "str | float | Accuracy | Budget") -> "Accuracy":
-        """The settings, or the `Budget`, that `value` asks for.
+    def of(value: "str | float | Accuracy") -> "Accuracy":
+        """The settings that `value` asks for.
 
-        value: a preset's name or a target relative error, either with ", fixed steps" behind it; or a budget of time
-        such as "fastest within 5 ms per second". Settings and budgets are returned as they are. `ValueError` says what
-        is possible.
+        value: a preset's name or a target relative error, either with ", fixed steps" behind it. Settings are returned
+        as they are. `ValueError` says what is possible.
         """
         if isinstance(value, Accuracy):
             return value
-        made: Accuracy = _of_number(value) if type(value) is float else _settings_of(value)
-        return made
+        return _of_number(value) if type(value) is float else _settings_of(value)
 
 
-def _settings_of(value: Any) -> Any:  # a Budget too
-    if isinstance(value, Budget):
-        return value
+def _settings_of(value: Any) -> Accuracy:
     if isinstance(value, str):
         name = value.strip()
         if name in PRESETS:
             return Accuracy(name=name, target=PRESETS[name], resolution=ANY)
-        if name.startswith("fastest"):
-            return Budget.of(name)
         if name.endswith(FIXED):
             wanted = Accuracy.of(name.removesuffix(FIXED).rstrip(" ,"))
             return variant(wanted, name=name, method="classical", order=4, fixed=0.0)
@@ -288,8 +279,8 @@ def _settings_of(value: Any) -> Any:  # a Budget too
         target = np.nan
     if np.isnan(target):
         raise ValueError(
-            f"accuracy must be one of {', '.join(PRESETS)}, a target relative error, or a budget such as 'fastest "
-            f"within 5 ms per second' (a name or number may have ', {FIXED}' behind it), got {shown(value)}"
+            f"accuracy must be one of {', '.join(PRESETS)}, or a target relative error "
+            f"(either may have ', {FIXED}' behind it), got {shown(value)}"
             f"{did_you_mean(value, PRESETS) if isinstance(value, str) else ''}"
         )
     if not FINEST <= target <= COARSEST:

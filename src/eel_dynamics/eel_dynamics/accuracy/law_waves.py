@@ -97,10 +97,10 @@ def waves_of_rows(law: SampledLaw) -> float:
     carry all but `LEFT_OUT` of them. A wave of w wavelengths needs about the degree pi w + 3."""
     points, weights = np.polynomial.legendre.leggauss(MODES)
     x = 0.5 * law.length * (points + 1.0)
-    rows = law.values[:: max(1, len(law.time) // MODES), :, 0].reshape(-1, len(law.x))
     modes = np.polynomial.legendre.legvander(points, MODES - 1) * np.sqrt(np.arange(MODES) + 0.5)
-    power = np.sum((natural_spline(law.x, rows, x) @ (weights[:, None] * modes)) ** 2, axis=0)
-    left = np.cumsum(power[::-1])[::-1]  # of each mode and those above it
+    of_rows = natural_spline(law.x, np.eye(len(law.x)), x) @ (weights[:, None] * modes)
+    power = (law.values[:, :, 0].reshape(-1, len(law.x)) @ of_rows) ** 2
+    left = np.max(np.cumsum(power[:, ::-1], axis=1), axis=0)[::-1]  # of each mode and those above it, of any row
     return max(1.0, (int(np.count_nonzero(left > LEFT_OUT**2 * left[0])) - 4) / np.pi)
 
 

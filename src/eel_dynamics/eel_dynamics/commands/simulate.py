@@ -122,7 +122,7 @@ def main(options: argparse.Namespace) -> int:
             load=options.load or Path(options.out or "").suffix == ".rrd",
             estimate=not options.bare,
             most_evaluations=options.most_evaluations,
-            progress=lambda reached, left: progress(float(f"{reached:.3g}"), end),
+            progress=lambda reached, left: progress(float(f"{reached:.5g}"), end),
         )
     except SimulationStopped as stopped:
         print_to_stderr(NAME, stopped)

@@ -60,7 +60,7 @@ def with_error_estimate(swim: Any, request: Any) -> Any:
     Nothing is estimated for a run that stopped before its end. Without a target nothing is made finer.
     """
     others = []
-    target = getattr(request.setup.accuracy, "target", None)  # a budget of time has none
+    target = request.setup.accuracy.target
     if swim.stopped is not None or len(request.times) < 2:
         return swim
     marching = _for_comparison(request)

@@ -129,7 +129,7 @@ def _plain_scene(swim: Swim) -> dict[str, Any]:
 def _plain_accuracy(swim: Swim) -> Any:
     name = swim.accuracy.name
     if Accuracy.of(name) != swim.accuracy:
-        raise ValueError(f"accuracy {shown(name)} cannot be written: it must be a preset, a target or a budget")
+        raise ValueError(f"accuracy {shown(name)} cannot be written: it must be a preset or a target")
     return float(name) if name[0].isdigit() and "," not in name else name
 
 

@@ -17,7 +17,6 @@ from eel_dynamics.analysis.settling import FEWEST, SETTLED, settling_of
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Observations
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
-from eel_dynamics.simulation.time_budget import affordable
 
 UNTIL_SETTLED = "settled"  # as a duration
 MOST_PERIODS = 100  # of a swim that does not settle
@@ -48,7 +47,7 @@ def settling_time(law: Any, setup: SimulationSetup) -> float:
     `ValueError` for a law without a period.
     """
     period, last_ramp = period_of(law, setup.body.length), _last_ramp(law)
-    coarse = affordable(replace(setup, accuracy=_coarse(setup.accuracy), x=setup.x[:1]))
+    coarse = replace(setup, accuracy=_coarse(setup.accuracy), x=setup.x[:1])
     drift = setup.current * period  # m
 
     def settled(seen: Observations, done: np.ndarray) -> bool:
@@ -92,7 +91,7 @@ def _last_ramp(law: Law) -> float:
     return max((ramp.end for term in law.terms for ramp in term.envelope), default=0.0)
 
 
-def _coarse(accuracy: Any) -> Any:
+def _coarse(accuracy: Accuracy) -> Accuracy:
     """The preset draft in place of a finer target; other settings as they are."""
-    target = getattr(accuracy, "target", None)
+    target = accuracy.target
     return Accuracy.of("draft") if target is not None and target < PRESETS["draft"] else accuracy

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Simulates one run of a law: `simulate`."""
 
+import math
 import time
 import warnings
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from eel_base.command.progress import Forecast
 from eel_model.body.body import Body
 from eel_model.flow.flow import Flow
 from eel_model.robot.robot import Robot
@@ -64,7 +66,8 @@ def simulate(
             returned, or a warning given if none is fine enough.
         most_evaluations: of the head's dynamics per simulated second. A law that needs more is refused, or stopped.
         progress: progress(time, left) is called once a second with the simulation time reached [s] and the remaining
-            wall time [s]. Without it, a run longer than a minute gives a warning.
+            wall time [s], by the rate of the last seconds; NaN until that is good to a factor of 2. Without it, a run
+            longer than a minute gives a warning.
         flow: how the water moves by itself, beside the scene's current (`Gust`, `Wave` ...); None: not at all.
         robot: joints, tails or muscles that bend by themselves. The law then is what its servos are asked to follow,
             and `Run.joint_angle` and the like are what they do; None: the law is imposed.
@@ -92,32 +95,31 @@ def simulate(
 
 
 class ProgressMonitor:
-    """Estimates the remaining wall time of a run of `duration` [s], once a second.
+    """Tells how far a run of `duration` [s] has come, once a second, and the wall time that is left (`Forecast`).
 
-    progress(time, left): called with the simulation time reached [s] and the remaining wall time [s]; without it, a run
-    longer than `LONG` gives one warning.
+    progress: as in `simulate`; without it, a run longer than `LONG` gives one warning.
     """
 
     def __init__(self, duration: float, progress: Callable[[float, float], None] | None):
         self._duration, self._progress = duration, progress
-        self._began = self._last_report = time.monotonic()
-        self._warned = False
+        self._began: float | None = None  # s, of the wall clock
+        self._forecast, self._last_report, self._warned = Forecast(), -math.inf, False
 
     def update(self, reached: float) -> None:
         """Report that the run has reached simulation time `reached` [s]."""
         now = time.monotonic()
+        if self._began is None:
+            self._began = self._last_report = now
+        self._forecast.add(now, reached)
         if now - self._last_report < REPORT_PERIOD:
             return
-        self._last_report = now
-        took = now - self._began
-        left = took * (self._duration - reached) / reached if reached > 0.0 else float("inf")
+        self._last_report, took, left = now, now - self._began, self._forecast.left(self._duration)
         if self._progress is not None:
-            self._progress(reached, left)
-        elif took + left > LONG and not self._warned:
+            self._progress(reached, math.nan if left is None else left)
+        elif left is not None and took + left > LONG and not self._warned:
             self._warned, minutes = True, (took + left) / 60.0
-            long = "for ever" if minutes == float("inf") else f"about {minutes:.2g} minutes"
             warnings.warn(
-                f"this swim of {self._duration:g} s is going to take {long}: it has come to "
+                f"this swim of {self._duration:g} s is going to take about {minutes:.2g} minutes: it has come to "
                 f"{reached:.3g} s in {took:.0f} s; a coarser accuracy, a slower law or a shorter duration takes less",
                 stacklevel=7,  # the caller of `simulate`, behind `swim_to_end`, `outcome`, `swim` and `record`
             )

@@ -21,7 +21,6 @@ from eel_dynamics.runs.storage.variables import arrays_of
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
-from eel_dynamics.simulation.time_budget import affordable
 
 LEAST_COMPARED = 40  # gaps between the instants at which a robot's torque is compared
 
@@ -100,7 +99,7 @@ class SwimRequest(NamedTuple, Generic[Kind]):
     def march(self, accuracy: Accuracy | None = None) -> March:
         """Its march at the start, with other settings if `accuracy` is given."""
         setup = self.setup if accuracy is None else replace(self.setup, accuracy=accuracy)
-        return March(affordable(setup), self.law)
+        return March(setup, self.law)
 
     def swim(self, march: March, look: Callable[[float], None] | None = None) -> SwimResult[Kind]:
         """Swim it by a `march` of its own, at its start. look: as in `Simulation.record`."""

@@ -15,7 +15,6 @@ from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.sampled_swimmers import LEFT_OUT, Array
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
-from eel_dynamics.simulation.time_budget import affordable
 
 MODES = {"position": "angle", "velocity": "rate", "torque": "torque"}  # kinds of `March.command`
 
@@ -36,7 +35,7 @@ class CommandedRobots:
 
     def __init__(self, count: int, names: Sequence[str], kind: str, setup: SimulationSetup, threads: int = 1):
         assert setup.robot is not None
-        self._names, self._mode, self.accuracy = tuple(names), MODES[kind], affordable(setup).settings
+        self._names, self._mode, self.accuracy = tuple(names), MODES[kind], setup.settings
         self.setup = replace(setup, accuracy=self.accuracy)
         self._swims = [March(self.setup, NO_LAW)] * count
         self.grid = self._swims[0].discretisation.grid

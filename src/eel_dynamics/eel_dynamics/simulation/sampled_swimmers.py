@@ -19,7 +19,6 @@ from eel_dynamics.simulation.march import MARCHED, SINGULAR, UNFINISHED
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped, stopped_by
-from eel_dynamics.simulation.time_budget import affordable
 
 LEFT_OUT = -1
 MOST_WAVES = 2.0  # of a flow on the body: the nodes resolve as many at the least
@@ -49,7 +48,7 @@ class SampledSwimmers:
     """
 
     def __init__(self, count: int, points: Array, waves: float | None, setup: SimulationSetup, threads: int = 1):
-        self.accuracy = affordable(setup).settings.for_control_steps()
+        self.accuracy = setup.settings.for_control_steps()
         setup = self.setup = replace(setup, accuracy=self.accuracy)
         self._points, self._waves = points, waves
         sample = self.check(np.zeros((6, len(points))))

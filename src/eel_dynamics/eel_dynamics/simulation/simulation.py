@@ -31,7 +31,6 @@ from eel_dynamics.simulation.observations import Observations
 from eel_dynamics.simulation.present import Present
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
-from eel_dynamics.simulation.time_budget import affordable
 
 ROUNDING = 1e-12  # of a time, s at least: how far the first one to record may lie before the present
 
@@ -44,7 +43,7 @@ class Simulation(Present):
     Args:
         body: the swimmer; by default that of the paper.
         scene: the physics and the water.
-        accuracy: a preset, a target relative error, a budget of time, or `Accuracy`.
+        accuracy: a preset, a target relative error, or `Accuracy`.
         stations: how many, or their X (M,) [m].
         position: (3,) [m], of the head at the start, in the world frame.
         orientation: (4,) x y z w, world from head, at the start.
@@ -76,7 +75,7 @@ class Simulation(Present):
         robot: Robot | None = None,
         fins: Iterable[Any] | None = None,
     ) -> None:
-        asked = SimulationSetup.of(
+        self._setup = setup = SimulationSetup.of(
             body=body,
             scene=scene,
             accuracy=accuracy,
@@ -90,7 +89,6 @@ class Simulation(Present):
             most_evaluations=most_evaluations,
             default_transition=default_transition,
         )
-        self._setup = setup = affordable(asked)
         self.body, self.scene, self.x, self.robot = setup.body, setup.scene, setup.x, setup.robot
         self._march = March(setup, law)
         self.ready, self._started = law is not None, False
@@ -227,7 +225,7 @@ class Simulation(Present):
         other = copy(self)
         setup = self._setup if robot is None else self._setup.with_robot(robot)
         if accuracy is not None:
-            setup = affordable(replace(setup, accuracy=Accuracy.of(accuracy)))
+            setup = replace(setup, accuracy=Accuracy.of(accuracy))
         other._setup, other.robot = setup, setup.robot
         other._march = self._march.copy_with(replace(setup, flow=self._march.setup.flow))
         other._meter = ErrorMeter(other._march, False)

@@ -21,7 +21,6 @@ from eel_model.scene import Scene, checked_scene
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.accuracy.budget import Budget
 from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
 from eel_dynamics.accuracy.law_waves import check_law, knots_of_law, waves_of_rows
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS, check_cost
@@ -37,7 +36,7 @@ class SimulationSetup(EqualByFields):
 
     body: Body
     scene: Scene
-    accuracy: Accuracy | Budget  # as it was asked for
+    accuracy: Accuracy  # as it was asked for
     x: np.ndarray  # (M,) m, stations
     initial_state: InitialState
     default_transition: float  # s
@@ -157,7 +156,6 @@ class SimulationSetup(EqualByFields):
     @cached_property
     def settings(self) -> Accuracy:
         """The settings of the accuracy in this scene."""
-        assert not isinstance(self.accuracy, Budget)  # `affordable` has replaced it
         settings = self.accuracy.in_scene(self.scene)
         if self.robot is None:
             return settings

@@ -1,24 +1,32 @@
 # SPDX-License-Identifier: Apache-2.0
 """A law from a function K(t, X): rows at instants and points so close together that they meet the function.
 
-Points and rows are added until what lies between them differs from the function by no more than a part `tolerance` of
-the greatest curvature. Derivatives that the function does not give are those of the spline of degree 5 through the
-rows.
+The function is looked at all along, at one random instant in each `step` of time, so that nothing that lasts two steps
+passes unseen, however long the motion is. Points along the body and rows are added until what lies between them differs
+from the function at all looks by no more than a part `tolerance` of the greatest curvature.
 """
 
+import math
+import warnings
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 from eel_base.quantity import numbers, positive
 from eel_base.wording import shown
 
-from eel_gaits.sources.sampled_law import SampledLaw, points_for, quintic
+from eel_gaits.laws.spline import natural_spline
+from eel_gaits.sources.refinement import refined
+from eel_gaits.sources.sampled_law import SampledLaw, points_for
 
 TOLERANCE = 1e-5
-FIRST_ROWS, MOST_ROWS = 17, 20_000
-LOOKS = 24  # instants at which the points along the body are chosen
-SMOOTH = 1e-3  # part of the accelerations' root mean square by which those that are found may still change
+STEP = 0.005  # s, in each of which the function is looked at once
+MOST_LOOKS = 1_000_000
+SEED = 1  # of the random looks
+CLOSEST = 1.0 / 64.0  # of the step, or of `STEP` if that is less: rows are no closer
+INSTANTS = 24  # at which the points along the body are chosen, and how many are added to them at once
+PLACES, SETS = 4096, 32  # random X along the body: each look has one of the sets of them, in turn
 
 
 def sampled(
@@ -27,24 +35,43 @@ def sampled(
     *,
     length: float = 1.0,
     tolerance: float = TOLERANCE,
+    step: float = STEP,
     name: str | None = None,
 ) -> SampledLaw:
     """The law of `function` from t = 0 to `duration` [s], for a body of `length` [m].
 
-    function(t, X): curvature [rad/m] at the time t [s] and the points X (n,) [m]. It returns yaw (n,), or pitch and yaw
-    (2, n); or, with rate [rad/m/s] and acceleration [rad/m/s^2] in time, (3, 2, n), or what `Law.curvature` returns,
-    (3, n, 3). name: by default the function's.
+    function(t, X): curvature [rad/m] at the time t [s] and the points X (n,) [m], which rise. It returns yaw (n,), or
+    pitch and yaw (2, n); or, with rate [rad/m/s] and acceleration [rad/m/s^2] in time, (3, 2, n), or what
+    `Law.curvature` returns, (3, n, 3). step [s]: a bend that lasts two steps or longer is seen for certain, a shorter
+    one by chance. name: by default the function's.
 
-    `ValueError` names t and X where the function returns something else, or jumps.
+    `ValueError` names t and X where the function returns something else, or jumps; a warning tells where its rate does.
     """
     duration, length = positive("duration", duration, "s"), positive("length", length, "m")
-    tolerance, curvature = positive("tolerance", tolerance), CheckedFunction(function)
-    instants = np.linspace(0.0, duration, LOOKS)
-    x = points_for(lambda x: np.array([curvature(t, x)[0] for t in instants]), length, tolerance)
-    time, values, missed = _rows(curvature, duration, x, tolerance)
-    about = f"a function in {len(time)} rows of {len(x)} points, which miss it by {missed:.1g} of its greatest value"
+    tolerance, step = positive("tolerance", tolerance), positive("step", step, "s")
+    if not duration <= MOST_LOOKS * step:
+        raise ValueError(
+            f"step must be {duration / MOST_LOOKS:g} s or more for a duration of {duration:g} s, got {step:g} s"
+        )
+    curvature = CheckedFunction(function)
+    x, looks, seen = _points(curvature, duration, length, tolerance, step)
+
+    def evaluated(instants: np.ndarray) -> np.ndarray:
+        return np.array([curvature(t, x) for t in instants]).swapaxes(1, 2)  # (N, 2, 1 or 3, n)
+
+    rows = refined(evaluated, duration, looks, seen, tolerance, CLOSEST * min(step, STEP))
     name = getattr(function, "__name__", type(function).__name__) if name is None else name
-    return SampledLaw(time, x, values, name=name, about=about)
+    if rows.jump is not None:
+        warnings.warn(
+            f"the rate of the curvature's function {shown(name)} seems to jump near t = {rows.jump:.4g} s: the torque "
+            "is infinite there",
+            stacklevel=2,
+        )
+    about = (
+        f"a function in {len(rows.time)} rows of {len(x)} points, which miss it by {rows.missed:.1g} of its greatest "
+        f"value; it was looked at every {duration / len(looks):.2g} s"
+    )
+    return SampledLaw(rows.time, x, rows.values, name=name, about=about)
 
 
 class CheckedFunction:
@@ -85,44 +112,37 @@ class CheckedFunction:
             raise ValueError(f"the curvature's function must give derivatives always or never, got another way {where}")
         return found
 
+    def over(self, instants: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """Curvature (N, 2, n) alone at `instants` (N,) [s] and `x` (n,) [m]."""
+        return np.array([self(time, x)[0] for time in instants])
 
-def _rows(
-    curvature: CheckedFunction, duration: float, x: np.ndarray, tolerance: float
-) -> tuple[np.ndarray, np.ndarray, float]:
-    """Times (N,), values (N, 2, 3, n) and the greatest distance between rows, relative to the greatest curvature."""
-    from scipy.interpolate import make_interp_spline
 
-    def evaluated(instants: np.ndarray) -> np.ndarray:
-        return np.array([curvature(t, x) for t in instants]).swapaxes(1, 2)  # (N, 2, 1 or 3, n)
+def _points(
+    curvature: CheckedFunction, duration: float, length: float, tolerance: float, step: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Points x (n,) [m], the looks (M,) [s], and the curvature (M, 2, n) that they see there.
 
-    def completed(time: np.ndarray, values: np.ndarray) -> np.ndarray:
-        if curvature.given:
-            return values
-        spline = make_interp_spline(time, values[:, :, 0], k=5)
-        return np.stack([spline(time, order) if order else values[:, :, 0] for order in range(3)], axis=2)
-
-    time = np.linspace(0.0, duration, FIRST_ROWS)
-    values = evaluated(time)
-    rows = completed(time, values)
+    Each look has further X of its own. Where the points miss the function there, it is one of the instants by which
+    they are chosen anew.
+    """
+    draw, count = np.random.default_rng(SEED), math.ceil(duration / step)
+    looks = duration / count * (np.arange(count) + draw.random(count))
+    places = length / PLACES * (np.arange(PLACES) + draw.random(PLACES))
+    sets, instants, check = places.reshape(-1, SETS).T, np.linspace(0.0, duration, INSTANTS), np.empty(0)
     while True:
-        middle = 0.5 * (time[1:] + time[:-1])
-        between = evaluated(middle)
-        step = time[1] - time[0]
-        start, end = (rows[each].transpose(2, 0, 1, 3) for each in (slice(None, -1), slice(1, None)))
-        guessed = quintic(start, end, step, 0.5).transpose(1, 2, 0, 3)
-        scale = np.max(np.abs(np.concatenate((values[:, :, 0], between[:, :, 0]))))
-        apart = np.abs(guessed[:, :, 0] - between[:, :, 0]).max(axis=(1, 2))
-        merged = np.empty((2 * len(time) - 1, *values.shape[1:]))
-        merged[::2], merged[1::2] = values, between
-        time, values, coarse = np.linspace(0.0, duration, 2 * len(time) - 1), merged, rows
-        rows = completed(time, values)
-        change = np.sqrt(np.mean((rows[::2, :, 2] - coarse[:, :, 2]) ** 2))
-        missed = float(np.max(apart) / scale) if scale > 0.0 else 0.0
-        last = 2 * len(time) > MOST_ROWS  # accelerations that jump are then found to SMOOTH almost everywhere
-        if missed <= tolerance and (last or change <= SMOOTH * np.sqrt(np.mean(rows[:, :, 2] ** 2))):
-            return time, rows, missed
-        if last:
-            raise ValueError(
-                f"the curvature's function must be smooth in time: {len(time)} rows miss it by {missed:.2g} of its "
-                f"greatest value at t = {middle[np.argmax(apart)]:g} s; the tolerance is {tolerance:g}"
-            )
+        x = points_for(partial(curvature.over, instants), length, tolerance, check)
+        seen, apart = np.empty((count, 2, len(x))), np.empty(count)
+        for index, others in enumerate(sets):
+            both = np.sort(np.concatenate((x, others)))
+            own, other = np.searchsorted(both, x), np.searchsorted(both, others)
+            weight = natural_spline(x, np.eye(len(x)), others)
+            for look in range(index, count, SETS):
+                found = curvature(looks[look], both)[0]
+                seen[look] = found[:, own]
+                apart[look] = np.max(np.abs(seen[look] @ weight - found[:, other]))
+        missed = np.flatnonzero(apart > tolerance * max(np.max(np.abs(seen)), np.max(apart)))
+        if not len(missed):
+            return x, looks, seen
+        worst = missed[np.argsort(apart[missed])[-INSTANTS:]]
+        instants = np.union1d(instants, looks[worst])
+        check = np.union1d(check, sets[np.unique(worst % SETS)])

@@ -27,14 +27,14 @@ def period_of(time: np.ndarray, values: np.ndarray) -> float:
     from scipy.interpolate import CubicSpline
     from scipy.optimize import minimize_scalar
 
-    varied = values[:, :: max(1, values.shape[1] // COLUMNS)]
-    varied = varied - varied.mean(axis=0)
-    power = float(np.mean(np.sum(varied**2, axis=1)))
-    if len(time) < 8 or power <= 1e-20 * float(np.mean(np.sum(values**2, axis=1))):
+    if len(time) < 8:
         return np.inf
-    curve, span = CubicSpline(time, varied), float(time[-1] - time[0])
+    curve, span = CubicSpline(time, values[:, :: max(1, values.shape[1] // COLUMNS)]), float(time[-1] - time[0])
     count = min(MOST, 4 * len(time))
     rows, step = curve(np.linspace(time[0], time[-1], count)), span / (count - 1)
+    power = float(np.mean(np.sum((rows - rows.mean(axis=0)) ** 2, axis=1)))
+    if power <= 1e-20 * float(np.mean(np.sum(rows**2, axis=1))):
+        return np.inf
 
     def difference(lag: float) -> float:
         t = np.linspace(time[0], time[-1] - lag, count // 2)

@@ -21,7 +21,7 @@ from eel_gaits.sources.period import first_harmonics
 
 FEWEST_ROWS = 2
 LEAST_POINTS = 2
-POINTS = 17, 25, 33, 49, 65, 97, 129, 193, 257, 385, 513  # along the body, as many as a curvature needs
+POINTS = 17, 25, 33, 49, 65, 97, 129, 193, 257, 385, 513, 769, 1025  # along the body, as many as a curvature needs
 IN_MESSAGES = 1.0 / 300.0  # part of the greatest curvature by which the points of messages may miss the rows
 
 
@@ -116,7 +116,7 @@ class SampledLaw:
 
     def with_fewer_points(self) -> "SampledLaw":
         """The law at as few points as carry its rows to 1/300 of the greatest curvature: for messages."""
-        rows = self.values[:: max(1, len(self.time) // 64), :, 0]
+        rows = self.values[:, :, 0]
         x = points_for(lambda x: natural_spline(self.x, rows, x), self.length, IN_MESSAGES)
         if len(x) >= len(self.x):
             return self
@@ -146,12 +146,13 @@ class SampledLaw:
         return found[0], found[1], found[2]
 
 
-def quintic(start: np.ndarray, end: np.ndarray, step: float | np.ndarray, s: float) -> np.ndarray:
+def quintic(start: np.ndarray, end: np.ndarray, step: float | np.ndarray, s: float | np.ndarray) -> np.ndarray:
     """Value, rate and acceleration (3, ...) at the part `s` (0 to 1) of an interval of `step` [s], from both ends.
 
-    start, end (3, ...): value, rate and acceleration there.
+    start, end (3, ...): value, rate and acceleration there. step, s: one number, or (N, 1 ...) for (3, N, ...).
     """
-    scale = np.reshape([1.0, step, step * step], (3,) + (1,) * (np.ndim(start) - 1))
+    powers = np.power.outer(np.asarray(step), np.arange(3.0))
+    scale = np.moveaxis(powers, -1, 0).reshape(3, *(np.shape(step) or (1,) * (np.ndim(start) - 1)))
     a, b = start * scale, end * scale
     change = b[0] - a[0] - a[1] - 0.5 * a[2]
     slope, bend = b[1] - a[1] - a[2], b[2] - a[2]
@@ -170,12 +171,14 @@ def crowded(count: int, length: float) -> np.ndarray:
     return 0.5 * length * (1.0 - np.cos(np.linspace(0.0, np.pi, count)))
 
 
-def points_for(value_at: Callable[[np.ndarray], np.ndarray], length: float, tolerance: float) -> np.ndarray:
+def points_for(
+    value_at: Callable[[np.ndarray], np.ndarray], length: float, tolerance: float, others: np.ndarray | tuple[()] = ()
+) -> np.ndarray:
     """X (n,) [m] with natural splines through which value_at(X) (..., n) [rad/m] is met to a part `tolerance`.
 
-    `ValueError` where no number of points meets it.
+    It is compared at even distances, and at `others` [m]. `ValueError` where no number of points meets it.
     """
-    check = np.linspace(0.0, length, 4 * POINTS[-1] // 3)
+    check = np.union1d(np.linspace(0.0, length, 4 * POINTS[-1] // 3), others)
     wanted = value_at(check)
     scale = np.max(np.abs(wanted))
     for count in POINTS:

@@ -82,7 +82,7 @@ def _swum(options: argparse.Namespace, name: str, like: Run | None) -> Run:
         scene=scene_of(options.scene) if options.scene else scene,
         accuracy=options.accuracy,
         estimate=not options.bare,
-        progress=lambda reached, left: progress(float(f"{reached:.3g}"), None if until_settled(duration) else duration),
+        progress=lambda reached, left: progress(float(f"{reached:.5g}"), None if until_settled(duration) else duration),
     )
 
 

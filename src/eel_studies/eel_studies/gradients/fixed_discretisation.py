@@ -11,7 +11,6 @@ from itertools import pairwise
 
 import numpy as np
 from eel_dynamics.accuracy.accuracy import FIXED, SPARED, WAVES_POWER, Accuracy
-from eel_dynamics.accuracy.budget import Budget
 from eel_dynamics.accuracy.law_waves import check_law
 from eel_model.initial_state import time_scale
 
@@ -24,9 +23,9 @@ TRIALS = 500
 def fixed_steps(accuracy: "str | float | Accuracy") -> Accuracy:
     """The settings for the target of `accuracy`, with fixed steps. `ValueError` for settings that have none."""
     settings = Accuracy.of(accuracy)
-    if not isinstance(settings, Budget) and (settings.step is not None or settings.fixed is not None):
+    if settings.step is not None or settings.fixed is not None:
         return settings
-    if getattr(settings, "target", None) is None:
+    if settings.target is None:
         raise ValueError(
             f"accuracy of a gradient must be a target, or settings with fixed steps, got {settings.name!r}"
         )

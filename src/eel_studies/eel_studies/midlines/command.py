@@ -78,7 +78,7 @@ def main(options: argparse.Namespace) -> None:
         sample_period=period,
         stations=stations,
         estimate=False,
-        progress=lambda reached, left: progress(float(f"{reached:.3g}"), law.duration),
+        progress=lambda reached, left: progress(float(f"{reached:.5g}"), law.duration),
     )
     found = compared(run, midlines)
     print(f"motion              {law.about}")

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The key of a sweep: a hash of everything that the results depend on."""
+"""The key of a sweep: a hash of its arguments, and of the software's version."""
 
 import hashlib
 import inspect
 import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from eel_base.wording import shown
+from eel_dynamics.runs.storage.netcdf import software
 from eel_dynamics.runs.storage.plain import plain_of, plain_robot
 from eel_dynamics.runs.storage.tables import needed
 from eel_dynamics.runs.swim import Swim
@@ -20,24 +20,17 @@ from eel_model.flow.plain import plain_of_flow
 from eel_model.robot.actuators import Torque
 from eel_model.robot.robot import Robot
 
-import eel_core
-import eel_dynamics
-import eel_gaits
-import eel_model
-import eel_studies
 from eel_studies.points import SwimSettings
-
-PACKAGES = tuple(Path(str(each.__file__)).parent for each in (eel_gaits, eel_model, eel_dynamics, eel_studies))
 
 
 def key_of(points: list[Swim], how: SwimSettings) -> str:
     """The key, 32 hexadecimal digits.
 
-    It is a hash of the points, their `SwimSettings`, the measure's code and closure, and this software, including its
-    compiled core. `ValueError` for a function that cannot be hashed.
+    It is a hash of the points, their `SwimSettings`, the measure's code and closure, and the software's version.
+    `ValueError` for a function that cannot be hashed.
     """
     content = hashlib.sha256(repr((how.estimate, how.most_evaluations)).encode())
-    content.update(_sources())
+    content.update(software().encode())
     measure = how.measure
     content.update(_content_of_function("measure", measure) if callable(measure) else repr(measure).encode())
     bodies = {}
@@ -52,15 +45,6 @@ def key_of(points: list[Swim], how: SwimSettings) -> str:
         content.update(_content_of_robot(point.robot, point.body))
         content.update(np.concatenate(point.start).tobytes())
     return content.hexdigest()[:32]
-
-
-def _sources() -> bytes:
-    content = hashlib.sha256()
-    for package in PACKAGES:
-        for path in sorted(package.rglob("*.py")):
-            content.update(path.name.encode() + path.read_bytes())
-    content.update(Path(str(eel_core._core.__file__)).read_bytes())
-    return content.digest()
 
 
 def _content_of_function(argument: str, function: Any) -> bytes:

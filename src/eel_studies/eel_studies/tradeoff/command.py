@@ -8,6 +8,8 @@ eel tradeoff --delivered --seed 7 --page docs/explanation/accuracy.md --out docs
 """
 
 import argparse
+import math
+import re
 import sys
 from functools import partial
 from pathlib import Path
@@ -16,7 +18,7 @@ from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
 from eel_base.files.output_file import written_as
-from eel_dynamics.accuracy.budget import Budget
+from eel_base.wording import shown
 
 from eel_studies.options import add_scene_options, check_least, chosen
 from eel_studies.outputs import Outputs, add_output_options
@@ -25,21 +27,22 @@ from eel_studies.tradeoff.measuring import SAMPLE_PERIOD, affordable, bare, meas
 from eel_studies.tradeoff.report import (
     PARTS,
     SIZE,
-    budget_line,
     draw_trade,
+    pace_line,
     parts_of_page,
     reference_line,
     trade_table,
 )
 
 NAME = "eel tradeoff"
+UNITS = {"us": 1e-6, "ms": 1e-3, "s": 1.0}  # of --within
 DELIVERED = "--delivered"  # as the first option: the other parser
 DELIVERED_PARTS, DELIVERED_SIZE = ("delivered", "errors"), (4.5, 3.6)  # parts of the page; inches
 
 
 def _add_options(parser: Parser) -> None:
     add_scene_options(parser, several=True)
-    parser.add_argument("--within", metavar="TIME", help="e.g. '5 ms': what is fastest within it per simulated second")
+    parser.add_argument("--within", metavar="TIME", help="what is most exact within it per simulated second: '5 ms'")
     parser.add_argument(
         "--repeats", type=int, default=5, metavar="N", help="rounds of timing, of which the median counts (5)"
     )
@@ -53,6 +56,15 @@ def _add_options(parser: Parser) -> None:
         help="instead: measure what the targets deliver over random swims, and how well runs judge their own error "
         f"(a minute or two); it has options of its own: {NAME} {DELIVERED} --help",
     )
+
+
+def _seconds(text: str) -> float:
+    """The time [s] in a text such as "5 ms"."""
+    found = re.fullmatch(r"([0-9.]+(?:e[+-]?[0-9]+)?) *(us|ms|s)", text.strip())
+    seconds = float(found[1]) * UNITS[found[2]] if found else 0.0
+    if not 0.0 < seconds < math.inf:
+        raise ValueError(f"--within must be a time above 0 such as '5 ms' (us, ms or s), got {shown(text)}")
+    return seconds
 
 
 def _add_options_of_delivered(parser: Parser) -> None:
@@ -70,7 +82,7 @@ def _add_options_of_delivered(parser: Parser) -> None:
 )
 def _trade(options: argparse.Namespace) -> None:
     progress, names = Progress(NAME, "settings"), options.swim or ["falling"]
-    budget = options.within and Budget.of(f"fastest within {options.within} per second")
+    pace = None if options.within is None else _seconds(options.within)
     swims = {Path(name).stem: chosen(name, options) for name in names}
     for swim in swims.values():
         if isinstance(swim.duration, float) and not swim.duration >= (least := swim.sample_period or SAMPLE_PERIOD):
@@ -84,8 +96,8 @@ def _trade(options: argparse.Namespace) -> None:
         found.append(trade)
         about = f"\n{trade.name}, {trade.duration:g} s. {reference_line(trade)}"
         print(about, trade_table(trade, options.all).text(), sep="\n\n")
-        if budget:
-            print(f"\n{budget_line(trade, budget)}")
+        if pace is not None:
+            print(f"\n{pace_line(trade, pace)}")
         file, title = f"tradeoff_{trade.name}", f"The trade of the scene {trade.name}"
         pictures.append(outputs.draw(file, title, partial(draw_trade, trade=trade), SIZE, ("svg", "png")))
         if options.csv:

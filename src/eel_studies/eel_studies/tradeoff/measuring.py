@@ -13,7 +13,6 @@ from operator import attrgetter
 from typing import Any
 
 from eel_dynamics.accuracy.accuracy import PRESETS, Accuracy
-from eel_dynamics.accuracy.budget import Budget
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.runs.companion import relative_errors
 
@@ -94,16 +93,16 @@ class Trade:
         """The Pareto front of an `error` against the time."""
         return front(self.rows, error, SECONDS)
 
-    def within(self, budget: Budget) -> tuple[Measured, Measured | None]:
-        """The setting with the least error within the `budget`, and the like among those `asked` for, or None.
+    def within(self, pace: float) -> tuple[Measured, Measured | None]:
+        """The setting with the least error within `pace` [s] a simulated second, and the like among those `asked` for.
 
-        `ValueError` where nothing is as fast.
+        None: of these none is as fast. `ValueError` where nothing is.
         """
-        most = budget.seconds_per_second * self.duration
+        most = pace * self.duration
         rows, asked = ([row for row in rows if row.seconds <= most] for rows in (self.rows, self.asked))
         if not rows:
             fastest = 1e3 / max(row.times_real_time for row in self.rows)
-            raise ValueError(f"{budget.name!r} cannot be met here: the fastest run takes {fastest:.3g} ms per second")
+            raise ValueError(f"{1e3 * pace:g} ms per second cannot be met here: the fastest run takes {fastest:.3g} ms")
         return min(rows, key=ERROR), min(asked, key=ERROR, default=None)
 
 

@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 from eel_dynamics.accuracy.accuracy import PRESETS
-from eel_dynamics.accuracy.budget import Budget
 
 import eel_core
 from eel_studies.outputs import Table
@@ -84,11 +83,11 @@ def reference_line(trade: Trade) -> str:
     )
 
 
-def budget_line(trade: Trade, budget: Budget) -> str:
-    """What is fastest within the `budget`, in words. `ValueError` where nothing is as fast."""
-    best, asked = trade.within(budget)
+def pace_line(trade: Trade, pace: float) -> str:
+    """What is most exact within `pace` [s] a simulated second, in words. `ValueError` where nothing is as fast."""
+    best, asked = trade.within(pace)
     also = "no preset or target is as fast" if asked is None else f"{asked.accuracy.name} delivers {asked.error:.1e}"
-    return f"{budget.name}: {best.accuracy.name} delivers {best.error:.1e}; {also}."
+    return f"within {1e3 * pace:g} ms per second: {best.accuracy.name} delivers {best.error:.1e}; {also}."
 
 
 def parts_of_page(found: list[Trade], pictures: list[str]) -> tuple[dict[str, str], dict[str, str]]:

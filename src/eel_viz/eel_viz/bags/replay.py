@@ -21,7 +21,6 @@ from eel_base.command.command_line import Parser, print_to_stderr
 from eel_base.command.progress import Progress
 from eel_base.quantity import limits
 
-from eel_viz import keep_pandas_out
 from eel_viz.bags.bag import Bag
 from eel_viz.bags.swimmer_messages import SwimmerMessages
 from eel_viz.recording.destination import LogFunction
@@ -120,7 +119,6 @@ def _add_options(parser: Parser) -> None:
     interrupted=": the recording ends there",
 )
 def main(chosen: argparse.Namespace) -> None:
-    keep_pandas_out()
     output = chosen.out or f"{name_of(chosen.bag)}.rrd"
     other = chosen.compare if chosen.compare.strip("/") and os.path.exists(chosen.compare) else None
     began = time.monotonic()

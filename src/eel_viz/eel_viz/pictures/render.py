@@ -22,7 +22,6 @@ from eel_base.command.progress import Progress
 from eel_base.files.output_file import NotWritten, check_output, replacing, written_as
 from eel_base.wording import shown
 
-from eel_viz import keep_pandas_out
 from eel_viz.pictures.drawing import SIZE, Drawing, SideBySide, check_recording, drawn_beside
 from eel_viz.pictures.film import FILMS, PICTURE_NAME, QUALITY, check_film, check_quality, ffmpeg, film
 from eel_viz.viewer import CannotRender
@@ -121,7 +120,6 @@ def _add_options(parser: Parser) -> None:
     interrupted=" ",
 )
 def main(chosen: argparse.Namespace) -> None:
-    keep_pandas_out()
     output = chosen.out or chosen.picture
     check_recording(pathlib.Path(chosen.recording))
     if output is None:

@@ -18,7 +18,6 @@ from eel_ros.process_end import exit_immediately
 from eel_ros.qos import keep_all
 from eel_ros.run_node import run_node
 
-from eel_viz import keep_pandas_out
 from eel_viz.bags.definitions import message_class
 from eel_viz.recording.dispatcher import READERS, Dispatcher
 from eel_viz.recording.recordings import Recordings
@@ -124,7 +123,6 @@ class Visualiser(ParameterNode):
 def main(arguments: list[str] | None = None) -> int:
     """Run the node. Exit status: 0 after SIGINT or SIGTERM; 1 if a file could not be written completely; 2 if a
     parameter or an argument is refused at start."""
-    keep_pandas_out()
     words, rows = sys.argv if arguments is None else [NAME, *arguments], help_rows(Settings)
     make, poll, take = Visualiser, Visualiser.poll, Visualiser.take_messages
     status = run_node(NAME, words, make, poll, take, about=ABOUT, parameters=rows, sim_time=True, complete=True)

@@ -27,7 +27,6 @@ from eel_model.robot.robot import Robot, checked_robot, robot_of
 from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.accuracy.budget import Budget
 from eel_dynamics.runs.exchange.eel_viz_functions import function_of_eel_viz
 from eel_dynamics.runs.exchange.message_fields import FIELDS, OF_JOINTS, quantities_of
 from eel_dynamics.simulation.energy import WORKS, EnergyLedger
@@ -189,7 +188,7 @@ def _accuracy(once: dict[str, Any], scene: Scene) -> Accuracy:
     except ValueError as error:
         warnings.warn(f"the accuracy is not known: {one_line(error)}", stacklevel=5)
         wanted = Accuracy.of("standard")
-    return (Accuracy.of("standard") if isinstance(wanted, Budget) else wanted).in_scene(scene)
+    return wanted.in_scene(scene)
 
 
 def _center_of_mass(body: Body, x: np.ndarray, backbone: np.ndarray) -> np.ndarray:

@@ -31,8 +31,7 @@ from eel_model.robot.robot import Robot
 from eel_model.robot.robot_file import plain_of_robot, robot_arguments
 from eel_model.scene import Scene
 
-from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.accuracy.budget import Budget
+from eel_dynamics.accuracy.accuracy import ANY, Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.simulation.stopping import SimulationStopped
 
@@ -60,8 +59,6 @@ def plain_of(value: Any) -> Any:
         return plain_of_flow(value)
     if isinstance(value, tuple):
         return [plain_of(each) for each in value]
-    if isinstance(value, Budget):
-        return {"budget": value.name}
     if isinstance(value, SimulationStopped):
         return {name: getattr(value, name) for name in (*OF_STOP, "diverged")}
     return asdict(value)
@@ -132,11 +129,16 @@ def stop_of(plain: dict[str, Any] | None) -> SimulationStopped | None:
     return error
 
 
+def _settings(plain: dict[str, Any]) -> dict[str, Any]:
+    """The settings of an accuracy; of a swimmer of an older file that did not begin, for a budget of time, its name."""
+    return {"name": plain["budget"], "resolution": ANY} if "budget" in plain else plain
+
+
 READERS: dict[str, Callable[[Any], Any]] = {  # by the fields of a run whose plain values they read
     "law": law_of,
     "body": body_of,
     "scene": lambda plain: Scene(**plain),
-    "accuracy": lambda plain: Budget.of(plain["budget"]) if "budget" in plain else Accuracy(**plain),
+    "accuracy": lambda plain: Accuracy(**_settings(plain)),
     "error_estimate": lambda plain: plain and ErrorEstimate(**plain),
     "flow": flow_of,
     "fins": fins_of,
