@@ -40,7 +40,9 @@ def test_unknown_gait_is_one_clear_error(start):
 
 
 @pytest.mark.fault(
-    "ending", "SIGINT or SIGTERM at any moment from the first log line on", "prompt exit, status 0, no traceback"
+    "ending",
+    "SIGINT or SIGTERM at any moment from the first log line on",
+    "prompt exit, status 0, no traceback; files have their names",
 )
 @pytest.mark.parametrize("executable", NODES)
 def test_signal_at_any_moment(start, fresh_domain, tmp_path, monkeypatch, executable):
@@ -51,6 +53,7 @@ def test_signal_at_any_moment(start, fresh_domain, tmp_path, monkeypatch, execut
         node.wait_for_output("[INFO]")
         time.sleep(delay)  # the moment of the signal is what is tried here
         assert ends_well(node, sent), delay
+        assert not list(tmp_path.glob("*.part*")), delay
 
 
 @pytest.mark.fault("ending", "a second SIGINT while a node ends", "status 0, no traceback")

@@ -21,8 +21,9 @@ POLL_PERIOD = 0.1  # s between two calls of `poll`
 PAUSE = 0.1  # s after a call of `take_messages` that found none: messages in bursts cost less
 QUIET = 0.2  # s at the end without a message from before it: publishers repeat what is missing every 0.05 s
 ON_THE_WAY = 5_000_000_000  # ns that a publisher waits at its end for a message to arrive
-DRAIN_LIMIT = 30.0  # s at most, at the end, to take messages from before it
+DRAIN_LIMIT = 1.5  # s at most, after a signal, to take messages from before it
 STUCK = 0.5  # s after a signal, after which a node that starts, or keeps no files, leaves in the middle of a callback
+SLOW_START = 4.0  # s likewise, of one that keeps files: its start may have begun one
 
 
 def run_node(
@@ -48,14 +49,15 @@ def run_node(
     this time [ns, as `is_from_before`]; 0: all. The executor then only serves rare callbacks, such as parameter
     services. period: between two calls of `poll` [s]. complete: a node that keeps files. It subscribes in its
     `listen()`; from then on no signal makes it leave before they are complete. At the end, it takes all that was sent
-    before. At the end the node's `close()` is called, if it has one.
+    before; after a signal for `DRAIN_LIMIT` at most, and what is left its `drop_messages(before)` counts: `(number,
+    whether that is all)`. At the end the node's `close()` is called, if it has one.
     Returns the exit status: 0; 1 if the node has a `failure` (a text), which is printed; 2 if it
     cannot start.
     """
     if about and (status := handle_arguments(name, about, parameters, words)) is not None:
         return status
     end = ProcessEnd()
-    end.leave_when_stuck(STUCK)
+    end.leave_when_stuck(SLOW_START if complete else STUCK)
 
     def made() -> Served:
         node = make()
@@ -74,7 +76,7 @@ def run_node(
         _serve(executor, node, poll, take_messages, period, end)
         end.over = True
         if complete and take_messages is not None:
-            _drain(node, take_messages)
+            _drain(node, take_messages, end)
     finally:
         executor.shutdown()
         if hasattr(node, "close"):
@@ -128,13 +130,21 @@ def is_from_before(about: Mapping[str, Any], before: int) -> bool:
     return late <= (ON_THE_WAY if about["source_timestamp"] <= before else 0)
 
 
-def _drain(node: Any, take_messages: Any) -> None:
-    """Take what was sent before now: until none of it has come for `QUIET` [s], or the node has a `failure`."""
+def _drain(node: Any, take_messages: Any, end: ProcessEnd) -> None:
+    """Take what was sent before now: until none of it has come for `QUIET` [s], or the node has a `failure`, or it is
+    time to go."""
     before, last = time.time_ns(), time.monotonic()
-    limit = last + DRAIN_LIMIT
+    limit = float("inf")
     while (now := time.monotonic()) - last < QUIET and not getattr(node, "failure", ""):
+        if end.signalled:
+            limit = min(limit, now + DRAIN_LIMIT)
         if now > limit:
-            node.get_logger().warning(f"messages that were sent before the end are left after {DRAIN_LIMIT:g} s")
+            count, is_all = node.drop_messages(before)
+            which = "" if is_all else "at least "
+            node.get_logger().warning(
+                f"left out: {which}{count} messages that had come before the signal, and were not taken "
+                f"{DRAIN_LIMIT:g} s after it"
+            )
             return
         if take_messages(node, before):
             last = time.monotonic()

@@ -33,12 +33,14 @@ class Tank(Node):
             raise KeyError("no such pump")
         while self.what == "compute":
             pass
-        return self.what in ("wait", "raise")
+        return self.what in ("wait", "raise", "flood")
+    def drop_messages(self, before):
+        return 7, "all" in sys.argv
     def close(self):
         print("closed", flush=True)
 
 what = sys.argv[1]
-work = (lambda node, before: 0) if "work" in sys.argv else None
+work = (lambda node, before: what == "flood") if "work" in sys.argv else None  # flood: there is always one more
 sys.exit(run_node("tank", ["tank"], lambda: Tank(what), Tank.poll, work, complete=what != "compute"))
 """
 
@@ -71,6 +73,24 @@ def test_a_node_that_keeps_files_completes_them_from_when_it_listens_on(start):
     node.wait_for_output("listening")
     assert node.interrupt(signal.SIGINT, LIMIT) == 0
     assert node.output() == "listening\nclosed\n"
+
+
+@pytest.mark.fault(
+    "ending",
+    "SIGINT or SIGTERM, once or twice, to `visualiser` or `record` that is behind by more than it can take",
+    "it takes what it can for 1.5 s, says how many are left out, and completes its file; status 0",
+)
+@pytest.mark.parametrize(("words", "count"), [(("all",), "7 messages"), ((), "at least 7 messages")])
+@pytest.mark.parametrize("numbers", [(signal.SIGINT,), (signal.SIGTERM,), (signal.SIGINT, signal.SIGTERM)])
+def test_what_is_left_after_a_signal_is_said_and_the_files_are_completed(start, numbers, words, count):
+    node = start(sys.executable, "-c", PROCESS, "flood", "work", *words)
+    node.wait_for_output("attended")
+    for number in numbers:
+        node.process.send_signal(number)
+    assert node.wait(LIMIT) == 0
+    output = node.output()
+    assert output.startswith("attended\n") and output.endswith("closed\n"), output
+    assert f"left out: {count} that had come before the signal" in output
 
 
 def test_a_poll_that_raises_is_logged_and_the_node_goes_on(start):

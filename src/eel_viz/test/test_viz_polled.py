@@ -6,9 +6,10 @@ import weakref
 from collections import Counter
 from contextlib import nullcontext
 
+import pytest
 from eel_base.topics import SWIMMER
 from eel_viz.ros import polled_subscriptions
-from eel_viz.ros.polled_subscriptions import GONE, TAKE_LIMIT, PolledSubscriptions, SwimmerPresence
+from eel_viz.ros.polled_subscriptions import DROP_LIMIT, GONE, TAKE_LIMIT, PolledSubscriptions, SwimmerPresence
 from eel_viz.same_stamp import UNSEEN, SameStamp
 from rclpy.qos import QoSProfile
 from rclpy.serialization import serialize_message
@@ -60,6 +61,25 @@ def test_a_turn_of_slow_messages_ends_and_all_topics_get_their_turns(monkeypatch
         polled.show(String, topic, show, QoSProfile(depth=1))
     assert [polled.take() for _ in range(4)] == [2] * 4
     assert shown == ["pose", "twist", "wrench", "pose", "twist", "wrench", "pose", "twist"]
+
+
+@pytest.mark.parametrize(("waiting", "expected"), [(3, (4, True)), (math.inf, (2, False))])
+def test_what_is_dropped_is_counted_for_a_while(monkeypatch, waiting, expected):
+    """Of two topics with so many messages each those from before 3 ns; each takes longer than there is time for."""
+    now = [0.0]
+
+    def monotonic():
+        now[0] += 0.6 * DROP_LIMIT if waiting == math.inf else 0.0
+        return now[0]
+
+    monkeypatch.setattr(polled_subscriptions.time, "monotonic", monotonic)
+    monkeypatch.setattr(
+        polled_subscriptions, "is_from_before", lambda about, before: about["source_timestamp"] < before
+    )
+    polled = PolledSubscriptions(Node(waiting))
+    for topic in ("pose", "twist"):
+        polled.show(String, topic, lambda *shown: pytest.fail("it is shown"), QoSProfile(depth=1))
+    assert polled.drop(3) == expected
 
 
 def test_no_topic_runs_ahead_of_one_that_is_slow_to_show(monkeypatch):

@@ -195,6 +195,16 @@ def test_a_file_that_is_there_is_replaced_when_the_new_one_is_complete(console, 
     assert os.listdir(tmp_path) == ["run.rrd"] and not made.incomplete
 
 
+@pytest.mark.fault("ending", "a signal before anything has come, where an older recording has the name", "it stays")
+def test_an_older_file_stays_where_nothing_comes(console, tmp_path):
+    path = tmp_path / "run.rrd"
+    path.write_bytes(b"RRF2 as it was")
+    file = FileDestination(Settings(recording=str(path)), console.said.append, console.warned.append)
+    Recordings([file], "eel", console.warned.append).close()
+    assert os.listdir(tmp_path) == ["run.rrd"] and path.read_bytes() == b"RRF2 as it was"
+    assert console.said[-1] == f"nothing has come: {path} stays as it was"
+
+
 @pytest.mark.fault(
     "names",
     "two visualisers with one `recording`",

@@ -143,6 +143,10 @@ class Delivery:
         self.destination.fit(self.stream, end)
         self.stream.flush()
 
+    def keep_older(self) -> None:
+        """Nothing has come: leave an older file as it was."""
+        return
+
     def discard(self) -> None:
         """After an error: discard what is not complete."""
         return

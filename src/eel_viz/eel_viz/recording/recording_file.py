@@ -135,6 +135,12 @@ class FileDelivery(Delivery):
         if path != self._draft.name:
             self.destination.log_warning(appeared(self._draft.name, path))
 
+    def keep_older(self) -> None:
+        if self._draft.replaces:
+            self._discarded = True
+            self._draft.discard()
+            self.destination.log_info(f"nothing has come: {self._draft.name} stays as it was")
+
     def discard(self) -> None:
         """Remove the file, unless partial ones are kept."""
         self._discarded = not self.destination.keeps_partial

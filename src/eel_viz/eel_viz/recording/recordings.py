@@ -148,6 +148,9 @@ class Recordings:
 
     def close(self) -> None:
         """Close all recordings, then the destinations."""
+        if not self._position and not self._lasting:
+            for _, delivery in self._newest.opened.values():
+                delivery.keep_older()
         try:
             self._close_before(self._newest.number + 1)
         except Exception:

@@ -28,7 +28,7 @@ from eel_viz.recording.destination import (
 )
 from eel_viz.recording.recording_file import FileDestination
 from eel_viz.settings import Settings
-from eel_viz.viewer import display, end_process, free_port, listening, open_window, serve_to_browsers
+from eel_viz.viewer import display, free_port, listening, open_window, serve_to_browsers
 
 LIVE_TICK = 0.16  # s: short enough for smooth motion in a viewer
 ANSWER_LIMIT = 1.0  # s until a listening viewer must answer
@@ -112,8 +112,9 @@ class ServerDestination(Destination):
     def close(self) -> None:
         """Close the servers, after the streams of the recordings."""
         close_stream(self._host)
-        if self._web_viewer is not None:
-            end_process(self._web_viewer)
+        if self._web_viewer is not None:  # it keeps nothing, and may have been stopped
+            self._web_viewer.kill()
+            self._web_viewer.wait()
 
     def show_in_window(self) -> None:
         """Open a viewer on this machine's display; it stays open when this process ends."""

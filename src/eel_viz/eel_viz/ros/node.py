@@ -96,6 +96,10 @@ class Visualiser(ParameterNode):
         self._presence.look(count)
         return count
 
+    def drop_messages(self, before: int) -> tuple[int, bool]:
+        """Drop what waits; how many of them are from `before` [ns], and whether that is their number, not the least."""
+        return self._polled.drop(before)
+
     def _subscribe(self, space: str, dispatcher: Dispatcher) -> None:
         """Subscribe to the topics of the swimmer in the namespace `space`; the body first, as the others need it."""
         for name in READERS:

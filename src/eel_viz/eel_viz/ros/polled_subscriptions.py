@@ -19,6 +19,7 @@ from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
 TAKE_LIMIT = 0.2  # s after which `take` returns, so that the node hears calls and signals
+DROP_LIMIT = 0.5  # s after which `drop` returns: a node ends
 PROCESS = 12  # bytes of an endpoint's identifier that all endpoints of a process share (RTPS: the GUID's prefix)
 PAUSE = 0.3  # s between two messages, after which the publishers are looked up: no node starts faster
 GONE = 0.5  # s without publishers, in which no look has found a message: then a swimmer has gone
@@ -77,8 +78,7 @@ class PolledSubscriptions:
         while empty < len(self._receivers) and time.monotonic() <= end:
             subscription = next(iter(self._receivers))
             self._receivers[subscription] = receive = self._receivers.pop(subscription)  # to the end of the row
-            with subscription.handle:  # keeps it from being destroyed meanwhile
-                taken = subscription.handle.take_message(subscription.msg_type, True)
+            taken = _take_one(subscription)
             empty += 1
             if taken is None:
                 continue
@@ -89,6 +89,16 @@ class PolledSubscriptions:
             except Exception as error:
                 log_dropped(self._node, error, f"a message of {subscription.topic_name}")
         return count
+
+    def drop(self, before: int) -> tuple[int, bool]:
+        """Drop what waits: the number of messages from `before` [ns], and whether these are all within `DROP_LIMIT`."""
+        count, end = 0, time.monotonic() + DROP_LIMIT
+        for subscription in self._receivers:
+            while (taken := _take_one(subscription)) is not None:
+                count += is_from_before(taken[1], before)
+                if time.monotonic() > end:
+                    return count, False
+        return count, True
 
     def _publishers(self, topic: str) -> set[Hashable]:
         """Identifiers of the processes that publish on `topic`. A node may replace one of its publishers."""
@@ -153,6 +163,12 @@ class SwimmerPresence:
         if self._node.count_publishers(SWIMMER):
             self._present, self._last_seen = True, time.monotonic()
         return self._present and self._looked - self._last_seen >= GONE
+
+
+def _take_one(subscription: Subscription) -> Any:
+    """The next message that waits, and its message info; None if there is none."""
+    with subscription.handle:  # keeps it from being destroyed meanwhile
+        return subscription.handle.take_message(subscription.msg_type, True)
 
 
 def unused(message: Any) -> None:

@@ -3,9 +3,9 @@
 
 Messages are written undecoded. The bag is completed twice a second (see `growing_bag`), so that it opens however the
 recorder ends. The swimmer's topics are subscribed to from the start, so that no message of a run as fast as possible is
-lost; other topics as soon as they are discovered. At the end all is taken that was sent before. Stamps in the bag are
-times of reception. Sample 0, which the dynamics node repeats while its run stands at the start, is written once for
-each run.
+lost; other topics as soon as they are discovered. At the end all is taken that was sent before (see `run_node`). Stamps
+in the bag are times of reception. Sample 0, which the dynamics node repeats while its run stands at the start, is
+written once for each run.
 """
 
 import argparse
@@ -102,6 +102,10 @@ class Recorder(Node):
         self._presence.look(count)
         self._save_if_due(time.monotonic())
         return count
+
+    def drop_messages(self, before: int) -> tuple[int, bool]:
+        """Drop what waits; how many of them are from `before` [ns], and whether that is their number, not the least."""
+        return self._polled.drop(before)
 
     def _save_if_due(self, now: float) -> bool:
         """Save the bag where it is time; False if that fails."""
@@ -201,8 +205,9 @@ def main(arguments: list[str] | None = None) -> int:
         "come, with the quality of service that their publishers offer.",
         epilog="The bag is made whole twice a second, so that it opens even if the recorder is killed or the disk is "
         "full; SIGKILL loses what came since: up to 0.7 s, and 2.5 s where twenty busy processes shared two cores. At "
-        "the end all is taken that was sent before. Exit status: 0 after Ctrl-C or the end that was asked for; 1 if it "
-        "had to stop, 2 if it cannot begin, with one line that says why. ROS arguments follow --ros-args.",
+        "the end all is taken that was sent before; after a signal for 1.5 s, and it is said how many are left out. "
+        "Exit status: 0 after Ctrl-C or the end that was asked for; 1 if it had to stop, 2 if it cannot begin, with "
+        "one line that says why. ROS arguments follow --ros-args.",
     )
     parser.add_argument(
         "topics", nargs="*", help="names; none: every topic of the namespace, /clock, /diagnostics and /tf"
