@@ -2,7 +2,7 @@
 # The two commands are `make demo` and `make test`; each does all the set-up itself, inside this folder.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: docs notebook quotes pictures help demo test sanitize aarch64 validation build bench lint soak robustness clean manoeuvres pilot
+.PHONY: docs notebook evidence help demo test sanitize aarch64 validation build bench lint soak robustness clean
 RUN := tools/run.sh
 
 help:   ## this list
@@ -31,28 +31,18 @@ bench: build   ## speed and accuracy figures (ARGS=NAME for one of them)
 	@$(RUN) python benchmarks/run.py $(ARGS)
 
 docs: build   ## the site of docs/ in out/docs, links checked
-	@$(RUN) tools/pages/docs.sh
+	@$(RUN) tools/docs.sh
 
 notebook: build   ## run docs/tutorials/swim.ipynb anew, with its outputs in out/notebook
-	@$(RUN) tools/pages/docs.sh notebook
+	@$(RUN) tools/docs.sh notebook
 
-pictures: build   ## draw the pictures of the tutorials and of the visualiser in docs/images
-	@$(RUN) python tools/pages/tutorial_pictures.py
-	@$(RUN) python tools/pages/pictures.py
-
-manoeuvres: build   ## swim every gait, and write docs/reference/manoeuvres.md with its pictures
-	@$(RUN) python tools/pages/manoeuvres.py
-
-pilot: build   ## swim random courses with the pilot, and write the figures of docs/howto/pilot.md (ARGS="--courses 10")
-	@$(RUN) python tools/pages/pilot_figures.py $(ARGS)
+evidence: build   ## write the pages, tables and pictures of docs that the scripts in evidence make (ARGS=NAME for some)
+	@$(RUN) python evidence/everything.py $(ARGS)
 
 robustness: build   ## list every fault, and the test that shows what happens, in out/robustness.md
-	@$(RUN) python tools/pages/fault_table.py
+	@$(RUN) python evidence/fault_table.py
 
-quotes: build   ## write the figures that README.md and docs quote, from the newest reports
-	@$(RUN) python tools/quoted_figures.py
-
-lint: build   ## rules, format, imports, spelling and quoted figures, Python and C++
+lint: build   ## rules, format, imports and spelling, Python and C++
 	@$(RUN) tools/lint.sh
 
 build:   ## the virtual environment and the packages (PYTHON=... chooses the Python)

@@ -83,7 +83,7 @@ def test_an_interrupt_while_python_itself_starts_is_silent(executable, start_unt
     assert (node.interrupt(timeout=LIMIT), node.output()) == (-signal.SIGINT, "")
 
 
-@pytest.mark.parametrize("module", ["eel_studies.figures.command", "eel_viz.ros.record", "eel_gaits.ros.node"])
+@pytest.mark.parametrize("module", ["eel_studies.sweeps.command", "eel_viz.ros.record", "eel_gaits.ros.node"])
 def test_an_interrupt_of_a_module_that_python_runs_is_silent(module, start_until):
     node = start_until("rclpy" if "record" in module else "numpy", "python", "-m", module)
     assert (node.interrupt(timeout=LIMIT), node.output()) == (-signal.SIGINT, "")

@@ -27,7 +27,6 @@ check "format (ruff)" ruff format --check .
 check "types (mypy)" mypy
 check "imports (import-linter)" lint-imports --no-cache --no-logo
 check "spelling (codespell)" codespell -D- -Dtools/british.txt
-check "quoted figures (make quotes)" python tools/quoted_figures.py --check
 check "C++ format (clang-format)" clang-format --dry-run -Werror "${sources[@]}" "${headers[@]}"
 check "C++ rules (clang-tidy)" tidy
 [ ${#failed[@]} = 0 ] || { printf '[lint] failed:'; printf ' %s;' "${failed[@]}"; echo; exit 1; }

@@ -5,20 +5,16 @@ COMMANDS = {  # of `eel`, in the order of its list: the folder of each
     "sweep": "sweeps",
     "optimise": "optimisation",
     "identify": "identification",
-    "steering": "steering",
     "roll-hold": "roll_hold",
     "motors": "motors",
-    "drafting": "drafting",
     "terms": "scene_terms",
     "tradeoff": "tradeoff",
     "stability": "stability",
     "midlines": "midlines",
     "life": "life",
     "replay-joints": "replay",
-    "laws": "laws",
-    "figures": "figures",
 }
-OF_EEL_ALONE = "roll-hold", "drafting", "replay-joints"  # no executables of their own
+OF_EEL_ALONE = "roll-hold", "replay-joints"  # no executables of their own
 
 setup(
     name="eel_studies",

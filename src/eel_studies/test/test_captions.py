@@ -4,8 +4,6 @@
 import numpy as np
 import pytest
 from eel_base.cell import BLUE as BLUE_OF_CELLS
-from eel_studies.drafting.command import _draw_street
-from eel_studies.drafting.study import Wake
 from eel_studies.optimisation.front import PHASES, Front, draw_front
 from eel_studies.pictures import BLUE
 from eel_studies.varied import labelled
@@ -32,16 +30,6 @@ def test_gaits_of_a_front_swim_to_the_side_that_the_caption_says(name, ahead):
     for line in gaits.lines:
         x = line.get_xdata()
         assert ahead * (x[0] - x[-1]) > 0.5  # from the nose to the tail
-
-
-def test_the_street_comes_from_a_cylinder_ahead():
-    """Between the rows the water follows the cylinder; as the caption has it, to the right."""
-    axes = Figure().subplots()
-    _draw_street(axes, Wake(1.0, 1.0))
-    assert axes.get_xlabel().endswith("the cylinder is ahead, to the right")
-    (arrows,) = [each for each in axes.collections if hasattr(each, "U")]
-    middle = np.isclose(arrows.Y, 0.0, atol=0.03)
-    assert middle.any() and np.mean(arrows.U[middle]) > 0.0
 
 
 def test_blue_is_one_colour():

@@ -15,12 +15,26 @@ import pytest
 from eel_base.wording import shown
 from eel_dynamics.analysis.measures import measures_of
 from eel_dynamics.runs.swim import Swim
-from eel_studies.points import SwimSettings
+from eel_studies.points import SwimSettings, base_point, batch_of_points, point_at
 from eel_studies.sweeps import command as sweep_command
 from eel_studies.sweeps.command import main
 from eel_studies.sweeps.sweep_key import key_of
 
-from eel_dynamics import Accuracy, Batch, Body, Fin, FlowField, Gust, RollHold, Run, Scene, Shear, load_scene, simulate
+from eel_dynamics import (
+    Accuracy,
+    Batch,
+    Body,
+    Fin,
+    FlowField,
+    Gust,
+    RollHold,
+    Run,
+    Scene,
+    Shear,
+    VortexStreet,
+    load_scene,
+    simulate,
+)
 from eel_gaits import Law, Term, sampled, straight
 from eel_studies import sweep
 
@@ -570,3 +584,17 @@ def test_a_flow_of_a_function_is_swept_and_known_by_its_code(tmp_path):
     sweep({"flow": [whole]}, out=out, **options)
     with pytest.raises(ValueError, match="is not of this sweep"):
         sweep({"flow": [FlowField(half.function, name=whole.name)]}, out=out, **options)
+
+
+def test_a_sweep_varies_the_numbers_of_a_flow():
+    base = base_point(None, None, Accuracy.of("draft"))
+    flow = "vortex_street core=0.3"
+    point = point_at({"flow.spacing": 2.0, "period": 0.9}, "straight", {"flow": flow}, base)
+    assert point.flow == VortexStreet(core=0.3, spacing=2.0)
+    with pytest.raises(ValueError, match="flow has no field 'width_'"):
+        point_at({"flow.width_": 2.0}, "straight", {"flow": flow}, base)
+    with pytest.raises(ValueError, match="flow must be one built-in flow for spacing to change, got"):
+        point_at({"flow.spacing": 2.0}, "straight", {}, base)
+    point = point._replace(duration=1.0, sample_period=0.25, stations=2)
+    swims = batch_of_points([point, point._replace(flow=None)], SwimSettings(("mean_speed",), False))
+    assert not np.allclose(swims.position[0], swims.position[1])

@@ -7,13 +7,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.swim import AT_REST, Swim
 from eel_studies.reference import front, reference_of
 from eel_studies.tradeoff import measuring, report
 from eel_studies.tradeoff.command import main
-from eel_studies.tradeoff.delivered import Trial, delivered_table
 from eel_studies.tradeoff.measuring import ASKED_FOR, REFERENCE, settings
 from eel_studies.tradeoff.report import _grouped
 
@@ -177,48 +175,11 @@ def test_bad_input_is_named(words, named, capsys):
     assert named in capsys.readouterr().err
 
 
-def test_the_counts_of_delivered_errors():
-    """Of errors and estimates given here: one swim misses its target in silence, one is reported, one unknown."""
-
-    def trial(error, estimate, reported=False, uncertainty=0.0):
-        known = None if error is None else ErrorEstimate(error, None)
-        return Trial(
-            swim_of(None)._replace(accuracy=1e-3), known, uncertainty, ErrorEstimate(estimate, None), reported, 1.5
-        )
-
-    trials = [trial(1e-5, 1e-4), trial(4e-3, 1e-3), trial(5e-3, 6e-3, reported=True), trial(None, 1e-2, reported=True)]
-    assert [each.missed for each in trials] == [False, True, False, False]
-    assert trial(3e-5, 1e-5, uncertainty=2.5e-5).underestimated == pytest.approx(0.5)  # a reference of no more worth
-    row = delivered_table(trials).markdown().splitlines()[2]
-    cells = [cell.strip() for cell in row.split("|")[1:-1]]
-    assert cells == ["position, motion alone", "4", "3", "2", "1", "1", "1", "1", "0.833", "4.00", "0", "1.50"]
-
-
-@pytest.mark.parametrize(
-    "words, named", [("--delivered --set period=0.5", "no option '--set'"), ("--count 500", "no option '--count'")]
-)
-def test_an_option_of_the_other_study_is_named(words, named, capsys):
-    with pytest.raises(SystemExit, match="2"):
-        main(words.split())
-    assert named in capsys.readouterr().err
-
-
 @pytest.mark.skipif(not DOCS.is_dir(), reason="the package is tested alone: there is no docs")
-def test_the_kept_pages_are_written_anew_and_keep_their_words(tmp_path):
-    for name in ("appendix/tradeoff", "explanation/accuracy"):
-        copyfile(DOCS / f"{name}.md", tmp_path / f"{name.split('/')[1]}.md")
-    swum = f"straight --quick --repeats 1 --duration 1 --page {tmp_path}/tradeoff.md"
-    drawn = f"--delivered --count 2 --seed 3 --page {tmp_path}/accuracy.md"
-    for words in (swum, drawn):
-        assert main([*words.split(), "--out", str(tmp_path)]) == 0
-    short, accuracy = ((tmp_path / f"{name}.md").read_text() for name in ("tradeoff", "accuracy"))
-    assert "the scene <!--gait-->straight<!--/-->" in short and "](tradeoff_straight.png)" in short
-    names = {"delivered.png", "delivered.svg"}
-    assert names <= {path.name for path in tmp_path.iterdir()}
-    assert "<!--swims-->2<!--/--> random swims" in accuracy and "no target was missed in silence" in accuracy
-
-
-@pytest.mark.parametrize("words, named", [("--count 0", "--count"), ("--seed -1", "--seed")])
-def test_bad_numbers_of_random_swims_are_named(words, named, capsys):
-    assert main(["--delivered", *words.split()]) == 2
-    assert named in capsys.readouterr().err
+def test_the_kept_page_is_written_anew_and_keeps_its_words(tmp_path):
+    page = tmp_path / "tradeoff.md"
+    copyfile(DOCS / "appendix/tradeoff.md", page)
+    words = f"straight --quick --repeats 1 --duration 1 --page {page} --out {tmp_path}"
+    assert main(words.split()) == 0
+    text = page.read_text()
+    assert "the scene <!--gait-->straight<!--/-->" in text and "](tradeoff_straight.png)" in text

@@ -4,13 +4,11 @@
 eel tradeoff scene.yaml
 eel tradeoff straight --set period=0.7 --within "5 ms"
 eel tradeoff falling docs/scenes/street.yaml --page docs/appendix/tradeoff.md --out docs/images
-eel tradeoff --delivered --seed 7 --page docs/explanation/accuracy.md --out docs/images
 """
 
 import argparse
 import math
 import re
-import sys
 from functools import partial
 from pathlib import Path
 
@@ -22,7 +20,6 @@ from eel_base.wording import shown
 
 from eel_studies.options import add_scene_options, check_least, chosen
 from eel_studies.outputs import Outputs, add_output_options
-from eel_studies.tradeoff.delivered import COUNT, SEED, deliver, delivered_table, draw_delivered
 from eel_studies.tradeoff.measuring import SAMPLE_PERIOD, affordable, bare, measure
 from eel_studies.tradeoff.report import (
     PARTS,
@@ -36,8 +33,6 @@ from eel_studies.tradeoff.report import (
 
 NAME = "eel tradeoff"
 UNITS = {"us": 1e-6, "ms": 1e-3, "s": 1.0}  # of --within
-DELIVERED = "--delivered"  # as the first option: the other parser
-DELIVERED_PARTS, DELIVERED_SIZE = ("delivered", "errors"), (4.5, 3.6)  # parts of the page; inches
 
 
 def _add_options(parser: Parser) -> None:
@@ -50,12 +45,6 @@ def _add_options(parser: Parser) -> None:
     parser.add_argument("--all", action="store_true", help="print every setting, not the front and presets alone")
     parser.add_argument("--csv", action="store_true", help="everything measured, as .csv beside the pictures")
     add_output_options(parser)
-    parser.add_argument(
-        DELIVERED,
-        action="store_true",
-        help="instead: measure what the targets deliver over random swims, and how well runs judge their own error "
-        f"(a minute or two); it has options of its own: {NAME} {DELIVERED} --help",
-    )
 
 
 def _seconds(text: str) -> float:
@@ -67,20 +56,13 @@ def _seconds(text: str) -> float:
     return seconds
 
 
-def _add_options_of_delivered(parser: Parser) -> None:
-    parser.add_argument(DELIVERED, action="store_true", help="this study")
-    parser.add_argument("--count", type=int, default=COUNT, help=f"of the random swims ({COUNT})")
-    parser.add_argument("--seed", type=int, default=SEED, help=f"of the random swims ({SEED})")
-    add_output_options(parser)
-
-
 @command(
     NAME,
     "Measure error and cost of many settings for a scene, mark the Pareto front, and compare with the error of models "
     "without one of their terms. Takes about a minute per scene.",
     add_options=_add_options,
 )
-def _trade(options: argparse.Namespace) -> None:
+def main(options: argparse.Namespace) -> None:
     progress, names = Progress(NAME, "settings"), options.swim or ["falling"]
     pace = None if options.within is None else _seconds(options.within)
     swims = {Path(name).stem: chosen(name, options) for name in names}
@@ -105,25 +87,3 @@ def _trade(options: argparse.Namespace) -> None:
             trade_table(trade, everything=True).write_csv(path)
             print(f"written to {written_as(path)}")
     outputs.write(*parts_of_page(found, pictures))
-
-
-@command(
-    f"{NAME} {DELIVERED}",
-    "Measure what the targets of accuracy deliver over random swims, and how well runs judge their own error.",
-    add_options=_add_options_of_delivered,
-)
-def _deliver(options: argparse.Namespace) -> None:
-    check_least(options, count=1, seed=0)
-    outputs, progress = Outputs(NAME, options, DELIVERED_PARTS), Progress(NAME, "swims")
-    trials = deliver(options.count, options.seed, progress.say)
-    table = delivered_table(trials)
-    print(table.text())
-    draw = partial(draw_delivered, trials=trials)
-    picture = outputs.draw("delivered", "Estimated and true errors", draw, DELIVERED_SIZE, ("svg", "png"))
-    values = {"count": str(options.count), "seed": str(options.seed), "swims": str(len(trials))}
-    outputs.write(dict(zip(DELIVERED_PARTS, (table.markdown(), picture), strict=True)), values)
-
-
-def main(arguments: list[str] | None = None) -> int:
-    words = sys.argv[1:] if arguments is None else arguments
-    return (_deliver if DELIVERED in words else _trade)(words)

@@ -10,9 +10,9 @@ import numpy as np
 from eel_gaits.pilot.goals import Path, Station, course, path, station
 from eel_gaits.pilot.pilot import Pilot
 from eel_gaits.pilot.settings import PilotSettings
+from eel_studies.pilot.closed_loop import Voyage, swim_with
 
 from eel_dynamics import Scene, Shear, VortexStreet, Wave
-from eel_studies.pilot.closed_loop import Voyage, swim_with
 
 POINTS = 5  # way points of a course
 LEG, TURN, SLOPE, SPEED = (4.0, 8.0), 1.6, 0.2, (0.3, 0.8)  # m, rad, rad, m/s: ranges of a course

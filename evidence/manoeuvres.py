@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page docs/reference/manoeuvres.md, its .csv, and pictures in docs/images/manoeuvres: `make manoeuvres`.
+"""The page docs/reference/manoeuvres.md, its .csv, and pictures in docs/images/manoeuvres.
 
 Every gait swims with its own numbers on the robot of the paper. Figures and pictures are those of that swim. The page's
 text outside the marker lines is written by hand.
@@ -22,7 +22,7 @@ from scipy.integrate import cumulative_trapezoid
 from eel_dynamics import simulate
 from eel_gaits import GAITS, straight
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 PAGE, PICTURES = ROOT / "docs/reference/manoeuvres.md", ROOT / "docs/images/manoeuvres"
 DURATION, SAMPLE = 20.0, 0.05  # s
 COLOURS = 64

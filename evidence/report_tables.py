@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the figures that README.md and docs quote: `make quotes`; `--check` says which are stale.
+"""`python evidence/report_tables.py`: write the tables of README.md and docs that come from reports.
 
 They stand between two marker lines and come from the newest report in benchmarks/reports that has them (the output of
-`make bench`), or from docs/appendix/validation.csv (`make validation`). These pages quote no other measured figure
-but what another command writes between markers of its own.
+`make bench`), or from docs/appendix/validation.csv (`make validation`).
 """
 
 import csv
@@ -18,19 +17,6 @@ ROOT = Path(__file__).resolve().parent.parent
 REPORTS = ROOT / "benchmarks" / "reports"
 VALIDATION = ROOT / "docs" / "appendix" / "validation.csv"
 LIFE = ROOT / "docs" / "explanation" / "life.md"
-WRITTEN_WHOLE = (
-    "docs/appendix/tradeoff.md",
-    "docs/explanation/accuracy.md",
-    "docs/explanation/steering.md",
-    "docs/explanation/drafting.md",
-    "docs/figures/README.md",
-    "docs/reference/commands.md",
-)  # by commands of their own
-MARKED = re.compile(r"<!-- ([a-z]+): written by `(.*?)`.*? -->\n(.*?)<!-- end of \1 -->", re.DOTALL)
-MEASURED = re.compile(  # what looks like a figure that somebody has measured
-    r"\d (?:[un]s|evaluations|times (?:real time|more|cheaper|as fast))\b|\d\.\d+e-\d|[2-9]e-\d|factor of \d"
-    r"|% of (?:a|one) core",
-)
 
 
 class Report:
@@ -222,33 +208,8 @@ def with_figures(page: str, blocks: dict[str, Callable[[], str]]) -> str:
     return page
 
 
-def quoted_by_hand(page: str) -> list[str]:
-    """Lines that quote a figure and stand outside all markers."""
-    outside = MARKED.sub(lambda block: "\n" * block[0].count("\n"), page)
-    return [f"{number}: {line}" for number, line in enumerate(outside.splitlines(), 1) if MEASURED.search(line)]
-
-
-def complaints() -> list[str]:
-    """What is wrong on any page, a line each."""
-    found = []
-    for name, blocks in BLOCKS.items():
-        page = (ROOT / name).read_text(encoding="utf-8")
-        if with_figures(page, blocks) != page:
-            found.append(f"{name}: a figure is stale, `make quotes` writes it")
-    for path in (ROOT / "README.md", *sorted((ROOT / "docs").glob("**/*.md"))):
-        if str(path.relative_to(ROOT)) not in WRITTEN_WHOLE:
-            lines = quoted_by_hand(path.read_text(encoding="utf-8"))
-            found += [f"{path.relative_to(ROOT)}:{line} (a figure that no command writes)" for line in lines]
-    return found
-
-
-def main(words: list[str]) -> int:
-    """Write the figures; with --check say what is wrong, status 1 if anything is."""
-    if words == ["--check"]:
-        found = complaints()
-        for line in found:
-            print(line)
-        return 1 if found else 0
+def main() -> int:
+    """Write the tables."""
     for name, blocks in BLOCKS.items():
         path = ROOT / name
         path.write_text(with_figures(path.read_text(encoding="utf-8"), blocks), encoding="utf-8")
@@ -257,4 +218,4 @@ def main(words: list[str]) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The pictures of the visualiser in docs/images, and films of swimmers: `make pictures`.
+"""The pictures of the visualiser in docs/images, and films of swimmers: `python evidence/pictures.py`.
 
 One picture for each arrangement, and a film: the falling gait at the standard accuracy, with the run at draft accuracy
 laid over it where two are compared; few colours keep them small. Films of a course with the pilot, of two swimmers
@@ -34,7 +34,7 @@ from PIL import Image
 from eel_dynamics import Body, Robot, Run, Scene, Simulation, ballast_for, simulate
 from eel_gaits import Law, falling, still, straight
 
-FOLDER = Path(__file__).resolve().parents[2] / "docs" / "images"
+FOLDER = Path(__file__).resolve().parents[1] / "docs" / "images"
 MOMENT = 8.3  # s: a strong bend
 SIZE, BAR = (1280, 720), 36  # pixels: window, and the empty bar at its top
 COLOURS, MOST = 256, 176

@@ -1,23 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel laws`: hold the model against laws of swimming.
+"""`python evidence/laws.py`: hold the model against laws of swimming.
 
-eel laws gazzola --out docs/images/law_gazzola.png
-eel laws gazzola --friction taylor
+python evidence/laws.py gazzola --out docs/images/law_gazzola.png
+python evidence/laws.py gazzola --friction taylor
 """
 
 import argparse
+import sys
 from functools import partial
 
 from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_dynamics.commands.options import add_options
 from eel_model.scene import FRICTION
-
-from eel_studies.laws.laws import LAWS, Result
 from eel_studies.outputs import checked_outs, write_files
 from eel_studies.pictures import BLACK, LOOKS, Figure, legend_above
+from studied.laws_of_swimming import LAWS, Result
 
-NAME = "eel laws"
+NAME = "laws.py"
 SIZE = 5.2, 3.6  # inches
 
 
@@ -49,3 +49,7 @@ def draw(figure: Figure, found: Result) -> None:
         axes.tick_params(which="minor", labelbottom=False)
     axes.set(xlabel=found.x, ylabel=found.y)
     legend_above(figure, 2)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

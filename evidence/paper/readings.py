@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 from eel_dynamics.analysis.analysis import Analysis
+from eel_studies.outputs import Table
+from eel_studies.points import AccuracyLike
 
 from eel_dynamics import Body, Run, Scene, simulate
 from eel_gaits import falling, kern_efficient, kern_fast
-from eel_studies.outputs import Table
-from eel_studies.points import AccuracyLike
 
 READINGS: dict[str, dict[str, Any]] = {  # label: what differs from the library's own reading
     "the library's own: perimeter and added mass corrected, friction as printed": {},

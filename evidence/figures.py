@@ -1,25 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel figures`: draw the paper's figures 5 to 9, and more, with the numbers of their page.
+"""`python evidence/figures.py`: draw the paper's figures 5 to 9, and more, with the numbers of their page.
 
-eel figures                   # into docs/figures
-eel figures --out out/figures --format pdf --columns 1       # for a journal
+python evidence/figures.py                   # into docs/figures
+python evidence/figures.py --out out/figures --format pdf --columns 1       # for a journal
 """
 
 import argparse
+import sys
 from collections.abc import Callable
 
 from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
 from eel_dynamics.commands.options import add_options
+from eel_studies.outputs import Outputs
+from eel_studies.pictures import Figure, letter_panels
+from paper import drawings, notes, readings
 
 from eel_dynamics import Accuracy, Run, Scene, simulate
 from eel_gaits import straight
-from eel_studies.figures import drawings, notes, readings
-from eel_studies.outputs import Outputs
-from eel_studies.pictures import Figure, letter_panels
 
-NAME = "eel figures"
+NAME = "figures.py"
 FIGURES: dict[str, tuple[Callable[[Figure, Run, Run], None], float, float]] = {  # file: drawing, width, height [inches]
     "figure5_body": (drawings.draw_body, 7.0, 3.6),
     "figure6_configurations": (drawings.draw_configurations, 5.4, 7.8),
@@ -87,3 +88,7 @@ def draw(
             wanted = COLUMN if columns == 1 and drawing is not drawings.draw_body else PAGE
             size = wanted, height * max(wanted / width, 0.7)  # curves above one another stay high enough to be read
         outputs.draw(name, name, fill, size, tuple(formats), JOURNAL if columns else None)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -7,9 +7,6 @@ from functools import cached_property
 
 import numpy as np
 from eel_model.section_data import GRAVITY, sections_of
-
-from eel_dynamics import Body, Scene, simulate
-from eel_gaits import Law, straight, turning
 from eel_studies.steering.linearisation import (
     RESOLUTION,
     STATES,
@@ -19,6 +16,9 @@ from eel_studies.steering.linearisation import (
     states_after,
 )
 from eel_studies.steering.period_map import PeriodMap, rotation, turned_by
+
+from eel_dynamics import Body, Scene, simulate
+from eel_gaits import Law, straight, turning
 
 HIGHEST = 0.05  # m, half of the robot's greatest height: no ballast hangs lower
 HALF = {"amplitude_0": 0.5, "amplitude_1": 0.25, "amplitude_2": 1.0}

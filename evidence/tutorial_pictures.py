@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A picture of each tutorial, from what its Python blocks compute: docs/images/tutorial_NAME.png (`make pictures`)."""
+"""A picture of each tutorial, from what its Python blocks compute: docs/images/tutorial_NAME.png ."""
 
 import importlib
 import os
@@ -18,7 +18,7 @@ from eel_studies.pictures import BLUE, ORANGE, Figure, write_picture
 from eel_dynamics import simulate
 from eel_gaits import straight
 
-DOCS = Path(__file__).resolve().parents[2] / "docs"
+DOCS = Path(__file__).resolve().parents[1] / "docs"
 SIZE = (7.0, 2.6)  # inches
 Values = dict[str, Any]  # the name space that a page leaves
 

@@ -6,8 +6,8 @@ from eel_dynamics.analysis.analysis import Analysis
 from eel_model.section_data import CRITICAL_REYNOLDS
 
 from eel_dynamics import Run
-from eel_studies.figures.drawings import INSTANT, PLACE, wrench_of
-from eel_studies.figures.readings import FASTEST, OWN, PRINTED
+from paper.drawings import INSTANT, PLACE, wrench_of
+from paper.readings import FASTEST, OWN, PRINTED
 
 
 def values_of(runs: dict[str, Run], control: Run, fast: Analysis) -> dict[str, str]:

@@ -1,23 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel drafting`: speed and power of the straight gait behind a cylinder, over spacing and phase of its street.
+"""`python evidence/drafting.py`: speed and power of the straight gait behind a cylinder, over its street's spacing and
+phase.
 
-eel drafting                                          # prints a line per spacing, draws out/drafting.png
-eel drafting --page docs/explanation/drafting.md --out docs/images    # the page and its picture
+python evidence/drafting.py                                          # prints a line per spacing, draws out/drafting.png
+python evidence/drafting.py --page docs/explanation/drafting.md --out docs/images    # the page and its picture
 """
 
 import argparse
+import sys
 
 import numpy as np
 from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
-
-from eel_studies.drafting.study import Study, Wake, locked_speed, study_of
 from eel_studies.options import check_least
 from eel_studies.outputs import Outputs, Table, add_output_options
 from eel_studies.pictures import BLUE, GREEN, GREY, ORANGE, Axes, Figure
+from studied.cylinder import Study, Wake, locked_speed, study_of
 
-NAME = "eel drafting"
+NAME = "drafting.py"
 PARTS = ("picture",)
 SIZE = 9.0, 6.6  # inches
 SPACINGS = (0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 1.0, 1.1, 1.25, 1.5, 2.0, 3.0)  # m
@@ -116,3 +117,7 @@ def _draw_street(axes: Axes, wake: Wake) -> None:
     axes.set_title(
         "vorticity and velocity of a street with a spacing of a body length, and the body", fontsize="medium"
     )
+
+
+if __name__ == "__main__":
+    sys.exit(main())

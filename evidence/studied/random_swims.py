@@ -16,12 +16,12 @@ import numpy as np
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.swim import AT_REST, Swim
-
-from eel_dynamics import Body, Scene, SimulationStopped
-from eel_gaits import Law, Ramp, Term
 from eel_studies.outputs import Table
 from eel_studies.reference import reference_of
 from eel_studies.workers import in_threads
+
+from eel_dynamics import Body, Scene, SimulationStopped
+from eel_gaits import Law, Ramp, Term
 
 TARGETS = 1e-2, 1e-3, 1e-4, 1e-5, 1e-6
 AGREED = 0.1  # of the target and of the estimate, to which the references are to agree

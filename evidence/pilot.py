@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How well the pilot swims: random courses, held courses and stations. `make pilot` writes the table of
+"""How well the pilot swims: random courses, held courses and stations. `python evidence/pilot.py` writes the table of
 docs/howto/pilot.md and its picture; `--courses N`, `--fins N` swim fewer than 100 of each, `--water N` other than 12.
 """
 
@@ -18,11 +18,11 @@ from eel_gaits.pilot.settings import PilotSettings
 from eel_model.fins.text import fins_from_text
 from eel_studies.outputs import Table
 from eel_studies.pictures import BLUE, ORANGE, write_picture
-from eel_studies.pilot.courses import figures_in, figures_of, random_path, swim_path
 from eel_studies.roll_hold.study import PAIR
 from matplotlib.patches import Circle
+from studied.courses import figures_in, figures_of, random_path, swim_path
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 PAGE, PICTURE = ROOT / "docs/howto/pilot.md", ROOT / "docs/images/pilot.png"
 KEELS = {  # column of the table: what `figures_of` takes
     "no keel": {},

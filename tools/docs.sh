@@ -23,6 +23,6 @@ if [ "${1-}" = notebook ]; then
     echo "[docs] out/notebook/swim.ipynb; a copy of it in docs/tutorials renews the page"
     exit
 fi
-.venv/bin/python tools/pages/reference_pages.py
+.venv/bin/python tools/reference_pages.py
 "$env/bin/python" -m sphinx --builder html --fail-on-warning --keep-going --quiet docs out/docs
 echo "[docs] out/docs/index.html"

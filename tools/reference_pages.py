@@ -26,7 +26,7 @@ from eel_viz.settings import MarkerSettings, Settings
 
 from eel_dynamics import Scene
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 REFERENCE = ROOT / "docs" / "reference"
 
 

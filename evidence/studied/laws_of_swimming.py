@@ -22,11 +22,11 @@ from typing import NamedTuple
 import numpy as np
 from eel_dynamics.analysis.analysis import Analysis
 from eel_gaits.film.kinematics import kinematics
+from eel_studies.optimisation.optimise import optimise
+from eel_studies.outputs import Table
 
 from eel_dynamics import Body, Run, Scene, simulate_batch
 from eel_gaits import Law, gait
-from eel_studies.optimisation.optimise import optimise
-from eel_studies.outputs import Table
 
 EEL, ROBOT = Body.kern2006(1.0), Body.boyer2010()
 VISCOSITIES = np.logspace(-2.5, -8.0, 12)  # m^2/s, of gazzola

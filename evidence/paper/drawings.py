@@ -2,8 +2,6 @@
 """Figures 5 to 9 of the paper, and two more. Each function draws runs of the falling gait into an empty figure."""
 
 import numpy as np
-
-from eel_dynamics import Run
 from eel_studies.pictures import (
     AS_PRINTED,
     BLACK,
@@ -19,6 +17,8 @@ from eel_studies.pictures import (
     legend_above,
     mark_pitch,
 )
+
+from eel_dynamics import Run
 
 FRAME_PERIOD = 0.5  # s, of Fig. 6: 2 frames a second
 INSTANT = 7.0  # s, of Fig. 7

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from eel_base.files import markdown
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "appendix" / "robustness.md"
 LIST = ROOT / "out" / "robustness.md"
 SOAK = ROOT / "out" / "soak.png"  # memory of the nodes over an hour

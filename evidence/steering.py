@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel steering`: linearise swims over a period: what grows, what bends do.
+"""`python evidence/steering.py`: linearise swims over a period: what grows, what bends do.
 
-eel steering                                         # prints a line per gait and height, draws out/steering.png
-eel steering --page docs/explanation/steering.md --out docs/images     # the page and its picture
+python evidence/steering.py     # prints a line per gait and height, draws out/steering.png
+python evidence/steering.py --page docs/explanation/steering.md --out docs/images     # the page and its picture
 """
 
 import argparse
+import sys
 from functools import partial
 
 import numpy as np
@@ -13,8 +14,6 @@ from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
 from eel_base.files.markdown import table
-
-from eel_gaits import Law
 from eel_studies.options import check_least
 from eel_studies.outputs import Outputs, Table, add_output_options
 from eel_studies.pictures import BLUE, GREY, LOOKS, Axes, Figure
@@ -25,7 +24,7 @@ from eel_studies.steering.linearisation import (
     PeriodicLinearisation,
     periodic_linearisation,
 )
-from eel_studies.steering.study import (
+from studied.ballast import (
     CONTROLLED,
     GAITS,
     HIGHEST,
@@ -37,7 +36,9 @@ from eel_studies.steering.study import (
     sway,
 )
 
-NAME = "eel steering"
+from eel_gaits import Law
+
+NAME = "steering.py"
 SIZE = 9.0, 4.0  # inches
 PARTS = "kicks", "recovered", "gaits", "picture"
 HEIGHTS = (0.0, 0.01)  # m, of the table of modes, of the first gait
@@ -181,3 +182,7 @@ def _draw_all(axes: Axes, scan: Scan) -> None:
     axes.set(ylabel="magnitude of the multipliers", ylim=(0.0, None))
     axes.set_title(scan.name, fontsize="medium")
     axes.legend()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

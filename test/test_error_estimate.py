@@ -11,8 +11,7 @@ from eel_dynamics.accuracy import accuracy as settings
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.runs import companion
 from eel_dynamics.runs.companion import relative_errors
-from eel_studies.tradeoff import delivered
-from eel_studies.tradeoff.delivered import deliver
+from studied import random_swims
 
 from eel_dynamics import Accuracy, Body, Scene, Simulation, simulate, simulate_batch
 from eel_gaits import falling, still, straight
@@ -179,8 +178,8 @@ def test_a_companion_with_the_same_steps_would_miss_the_error_of_the_steps(monke
 )
 def test_random_swims_keep_their_target_or_say_so(count, seed, monkeypatch):
     """docs/explanation/accuracy.md quotes the counts of another seed and other durations."""
-    monkeypatch.setattr(delivered, "DURATIONS", (1.0, 6.0) if count < 1000 else (1.0, 60.0))
-    trials = deliver(count, seed)
+    monkeypatch.setattr(random_swims, "DURATIONS", (1.0, 6.0) if count < 1000 else (1.0, 60.0))
+    trials = random_swims.deliver(count, seed)
     assert len(trials) > 0.97 * count
     assert not any(each.missed for each in trials)
     assert sum(each.error is None and not each.reported for each in trials) <= count // 200
