@@ -2,30 +2,25 @@
 """How benchmarks measure: contenders in turn, so that whatever else the machine does meets all alike, and medians.
 
 The CPU time of this process does not count what others take; it is for contenders that use one thread. Nodes run in a
-ROS domain of their own, other codes in an environment of their own with pinned packages (`.venv-peers`).
+ROS domain of their own.
 """
 
 import contextlib
-import json
 import multiprocessing
 import os
 import statistics
-import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from eel_ros.testing.fixtures import starter
 from eel_ros.testing.ros_domain import reserve_domain
 
 from eel_dynamics import Accuracy, Scene, Simulation
 from eel_gaits import Law
 
-HERE = Path(__file__).resolve().parent
 REPEATS = 9
 MOTION: dict[str, Any] = {"ledger": False, "internal_wrench": False}  # of a Scene: the motion alone
 Lines = Iterator[tuple[str, float | None, str]]  # label, value (None: there is the label alone), unit
@@ -108,43 +103,3 @@ def cpu_time(pid: int) -> float:
     """CPU time [s] that all threads of a process have used."""
     fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
-def environment(name: str) -> Path | None:
-    """Python of the environment that `peers/NAME.txt` pins, made on the first call; None where it cannot be
-    installed."""
-    folder, pins = HERE.parent / ".venv-peers" / name, HERE / "peers" / f"{name}.txt"
-    python, stamp = folder / "bin" / "python", folder / "pins.txt"
-    if stamp.is_file() and stamp.read_text() == pins.read_text():
-        return python
-    try:
-        subprocess.run([sys.executable, "-m", "venv", folder], check=True, capture_output=True)
-        (folder.parent / "COLCON_IGNORE").touch()
-        install = [
-            str(python),
-            "-m",
-            "pip",
-            "install",
-            "--quiet",
-            "--require-hashes",
-            "--only-binary",
-            ":all:",
-            "-r",
-            str(pins),
-        ]
-        subprocess.run(install, check=True, capture_output=True)
-    except (OSError, subprocess.CalledProcessError):
-        return None
-    stamp.write_text(pins.read_text())
-    return python
-
-
-def measured(python: Path, script: str, **task: Any) -> dict[str, Any]:
-    """What `script` of the folder `peers` says about the `task`."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "task.npz"
-        np.savez(path, **task)
-        command = [python, HERE / "peers" / script, path]
-        done = subprocess.run(command, check=True, cwd=folder, capture_output=True, text=True, timeout=900)
-    found: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
-    return found

@@ -8,15 +8,14 @@ an otherwise idle machine only.
 import platform
 import subprocess
 import sys
+from collections.abc import Callable, Mapping
 
-from against_paper_scheme import paper_scheme
 from eel_base.wording import did_you_mean
 from evaluations import evaluation, flows, wrench
 from integrators import integrators
 from lockstep import lockstep
-from measuring import REPEATS
+from measuring import REPEATS, Lines
 from nodes import nodes, visualiser
-from other_simulators import peers
 from overhead import overhead
 from robots import robots
 from swims import batch, falling_gait, gym, start, ticks
@@ -26,12 +25,10 @@ FIGURES = {
     each.__name__.removesuffix("_gait"): each
     for each in (*OF_SWIMS, visualiser, nodes, lockstep, gym, overhead, robots)
 }
-OPTIONAL = {"peers": peers, "paper_scheme": paper_scheme}  # on request: they install other people's packages
 
 
-def main(names: list[str]) -> int:
-    """Run the named figures, or all. Exit status 2 for an unknown name."""
-    known = FIGURES | OPTIONAL
+def main(names: list[str], known: Mapping[str, Callable[[], Lines]] = FIGURES) -> int:
+    """Run the named figures of the `known`, or all. Exit status 2 for an unknown name."""
     for name in names:
         if name not in known:
             meant = did_you_mean(name, known)
@@ -40,7 +37,7 @@ def main(names: list[str]) -> int:
     commit = subprocess.run(["git", "describe", "--always", "--dirty"], capture_output=True, text=True).stdout.strip()
     machine = f"{platform.processor() or platform.machine()}, Python {platform.python_version()}"
     print(f"{machine}, commit {commit or 'unknown'}, medians of {REPEATS}")
-    for name in names or FIGURES:
+    for name in names or known:
         print(f"{name}: {' '.join((known[name].__doc__ or '').split())}")
         for label, value, unit in known[name]():
             print(f"  {label:42s} {value:10.4g} {unit}" if value is not None else f"  {label}", flush=True)

@@ -29,6 +29,7 @@ SCRIPTS: dict[str, tuple[str, ...]] = {  # name: arguments of each run
     "tutorial_pictures": ("",),
     "pictures": ("",),
     "fault_table": ("",),
+    "comparisons": ("",),
 }
 
 

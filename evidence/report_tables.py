@@ -15,6 +15,7 @@ from eel_base.files.markdown import table, with_part
 
 ROOT = Path(__file__).resolve().parent.parent
 REPORTS = ROOT / "benchmarks" / "reports"
+OF_OTHERS = "peers", "paper_scheme"  # figures of evidence/comparisons.py
 VALIDATION = ROOT / "docs" / "appendix" / "validation.csv"
 LIFE = ROOT / "docs" / "explanation" / "life.md"
 
@@ -24,6 +25,8 @@ class Report:
 
     def __init__(self, figure: str):
         self.figure, self.command = figure, f"make bench ARGS={figure}"
+        if figure in OF_OTHERS:
+            self.command = f"python evidence/comparisons.py {figure}"
         for self.path in sorted(REPORTS.glob("*.txt"), reverse=True):
             found = re.search(rf"^{figure}: .*\n((?:  .*\n)+)", self.path.read_text(encoding="utf-8"), re.MULTILINE)
             if found:

@@ -17,7 +17,7 @@ DURATION, STEP = 3.0, 0.01  # s
 def benchmark(monkeypatch):
     """The benchmark, and the Python that has numba."""
     monkeypatch.syspath_prepend(Path(__file__).resolve().parents[1] / "benchmarks")
-    found = importlib.import_module("against_paper_scheme")
+    found = importlib.import_module("others.against_paper_scheme")
     python = found.environment("numba")
     if python is None:
         pytest.skip("numba, which runs the paper's scheme, could not be installed (no network?)")

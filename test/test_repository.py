@@ -9,7 +9,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 REQUIREMENTS = ("requirements.txt", "requirements-ros.txt", "requirements-dev.txt", "requirements-uv.txt")
-PEERS = tuple(f"benchmarks/peers/{name}.txt" for name in ("mujoco", "numba", "pyelastica"))
+PEERS = tuple(f"evidence/peers/{name}.txt" for name in ("mujoco", "numba", "pyelastica"))
 
 
 @pytest.fixture(scope="module")
@@ -100,13 +100,13 @@ def test_requirements_agree_with_one_another():
 
 
 def test_colcon_looks_only_at_the_packages():
-    for folder in ("test", "benchmarks"):
+    for folder in ("test", "benchmarks", "evidence"):
         if (ROOT / folder).exists():
             assert (ROOT / folder / "COLCON_IGNORE").exists(), folder
 
 
-def test_every_peer_of_the_benchmarks_is_pinned():
-    files = sorted((ROOT / "benchmarks" / "peers").glob("*.txt"))
+def test_every_peer_is_pinned():
+    files = sorted((ROOT / "evidence" / "peers").glob("*.txt"))
     assert files == [ROOT / name for name in PEERS]
     for path in files:
         assert f"\n{path.stem}==" in path.read_text()

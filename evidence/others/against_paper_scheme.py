@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 from eel_studies.tradeoff.measuring import REFERENCE
-from measuring import REPEATS, Lines, environment, measured, times_in_turn
+from measuring import REPEATS, Lines, times_in_turn
 
 from eel_dynamics import Body, Run, Scene, Simulation, simulate
 from eel_gaits import Law, falling
+from others.environments import environment, measured
 
 BODY, LAW, DURATION = Body.boyer2010(), falling(), 10.0  # s
 STEP = 0.01  # s, of the paper's scheme

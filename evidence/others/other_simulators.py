@@ -14,10 +14,11 @@ from statistics import median
 from typing import Any
 
 import numpy as np
-from measuring import MOTION, Lines, environment, measured, times_in_turn
+from measuring import MOTION, Lines, times_in_turn
 
 from eel_dynamics import Body, Run, Scene, Simulation, simulate
 from eel_gaits import falling
+from others.environments import environment, measured
 
 BODY, LAW, DURATION = Body.boyer2010(), falling(), 10.0  # s
 TARGETS = (3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6)
