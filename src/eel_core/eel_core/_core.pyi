@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The compiled module, whichever level of the processor it is for.
 
-Arrays are contiguous and of doubles, unless another type is named; they go through the buffer protocol. SI units and
-radians. The state (13,) of a swimmer is the head's position [m], its orientation (x y z w, world from head), and the
+Arrays are contiguous, in the byte order of this machine, and of doubles, unless another type is named; they go through
+the buffer protocol. What does not fit raises `ValueError`, `TypeError` or `IndexError`. SI units and radians.
+The state (13,) of a swimmer is the head's position [m], its orientation (x y z w, world from head), and the
 angular and linear momentum [N m s, N s] of body and water about the head; all of them in the world's axes. A twist (6,)
 is (Omega, V) [rad/s, m/s] of the head in its own axes, relative to the water unless it says otherwise. A wrench (6,) is
 (torque, force) [N m, N] about the head, in its axes. T instants, M stations, n nodes, m rows of a law.
@@ -174,6 +175,13 @@ class March:
     def __deepcopy__(self, memo: dict[int, Any]) -> Self:
         """As `copy.copy`."""
 
+    def state_as_bytes(self) -> bytes:
+        """All that goes on, without what drives the body."""
+
+    def set_state_from_bytes(self, state: bytes) -> None:
+        """Goes on from the state of another march of the same swimmer by the same method, which followed what this one
+        follows; to the same bit. `ValueError` for other bytes: nothing has changed then."""
+
     def change(self, swimmer: Swimmer, method: str, order: int, planar: bool, modes: Modes | None = None) -> None:
         """Goes on with another grid or method, with the same momentum, and the same coordinates at the same rates; a
         law on the new grid must follow."""
@@ -327,14 +335,21 @@ class SampledMarches:
     def observe(self, index: int, whole: Buffer, wrench: bool, load: bool) -> bool:
         """As `March.observe`."""
 
+    def state_as_bytes(self) -> bytes:
+        """All that goes on."""
+
+    def set_state_from_bytes(self, state: bytes, flows: Sequence[Flow | None]) -> None:
+        """Goes on from the state of other marches of the same kind, to the same bit. flows: of each, as of `start`.
+        `ValueError` for other bytes: nothing has changed then."""
+
     def present(self, index: int) -> tuple[float, list[float], tuple[int, int, int]]:
         """Time [s], works and counts of a swimmer, as of `March`."""
 
 def repeat_rate(
     swimmer: Swimmer, planar: bool, law: LawOnGrid, time: float, state: Buffer, count: int, flow: Flow | None = None
 ) -> None:
-    """Finds the rate of a state (13,) `count` times at a time [s], with no current, without Python's lock: for
-    benchmarks. planar: in three degrees of freedom."""
+    """Finds the rate of a state (13,) `count` times (a million at most) at a time [s], with no current, without
+    Python's lock: for benchmarks. planar: in three degrees of freedom."""
 
 class Instant:
     """Single instants of a motion in space."""

@@ -51,17 +51,22 @@ inline GriddedFlow grid_from(const py::tuple& axes, const py::object& velocity)
 {
     GriddedFlow flow;
     std::array<std::size_t, 4> size{};
+    std::size_t count = 1;
+    constexpr std::size_t most = std::numeric_limits<std::size_t>::max() / 32;  // bytes of a point
     for (std::size_t k = 0; k < size.size(); ++k) {
         const Numbers points(axes[k], "axis");
         size[k] = points.size();
         auto& own = flow.axes[k].points = points.vector();
+        check_finite(own, "axes");
         if (own.empty() || !std::ranges::is_sorted(own, std::less_equal())) throw py::value_error("axes must rise");
+        if (count > most / own.size()) throw py::value_error("velocity must have its numbers at all points");
+        count *= own.size();
         if (k != 1 && k != 2) continue;
         std::ranges::reverse(own);
         for (double& point : own) point = 0.0 - point;
     }
     const auto [times, columns, rows, layers] = size;
-    const auto from = Numbers::sized(velocity, "velocity", 3 * times * columns * rows * layers);
+    const auto from = Numbers::sized(velocity, "velocity", 3 * count);
     std::vector<GriddedFlow::Point> points;
     points.reserve(from.size() / 3);
     for (std::size_t t = 0; t < times; ++t)
@@ -115,12 +120,12 @@ inline Water water_from(const py::object& current, std::shared_ptr<const Flow> f
 }
 
 // Writes the flow at the places of `rows` (n, 18) into them.
-inline void put_flow(const Flow& flow, double time, const py::object& rows)
+inline void put_flow(const std::shared_ptr<Flow>& flow, double time, const py::object& rows)
 {
     const std::size_t count = Numbers(rows, "rows").size() / FunctionFlow::columns;
     const auto into = Numbers::sized(rows, "rows", FunctionFlow::columns * count, true);
     turn_rows(into.data(), count);
-    flow_at(flow, time, into.data(), count);
+    flow_at(*flow, time, into.data(), count);
     turn_rows(into.data(), count);
 }
 

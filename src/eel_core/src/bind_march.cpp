@@ -16,7 +16,8 @@ std::shared_ptr<Modes> modes_from(const py::object& table, const py::object& x, 
     const auto numbers = [&](const char* name, std::size_t size) {
         return Numbers::sized(table.attr(name), name, size);
     };
-    const auto axis = array_of<std::int64_t>(table, "axis"), degree = array_of<std::int64_t>(table, "degree");
+    const auto axis = array_of<std::int64_t>(table, "axis");
+    const auto degree = Array<std::int64_t>::sized(table.attr("degree"), "degree", axis.size());
     const std::size_t n = modes->modes = axis.size(),
                       c = modes->coordinates = array_of<double>(table, "inertia").size();
     if (degree.size() != n || c < n) throw py::value_error("modes must have a degree and an inertia each");
@@ -79,6 +80,19 @@ constexpr std::pair<const char*, double StepBounds::*> step_bounds[] = {{"tolera
                                                                         {"spare_steps", &StepBounds::spare_steps},
                                                                         {"torque_floor", &StepBounds::torque_floor}};
 
+StepBounds bounds_from(const py::kwargs& given)
+{
+    StepBounds made{};
+    for (const auto& [name, member] : step_bounds) {
+        const double value = made.*member = given[name].cast<double>();
+        // a fixed method has an infinite tolerance; a floor may be 0
+        const bool floor = member == &StepBounds::momentum_floor || member == &StepBounds::torque_floor;
+        if (!(floor ? value >= 0.0 : value > 0.0) || (std::isinf(value) && member != &StepBounds::tolerance))
+            throw py::value_error(std::string(name) + " must be finite and > 0, got " + std::to_string(value));
+    }
+    return made;
+}
+
 }  // namespace
 
 void bind_marches(py::module_& module)
@@ -86,13 +100,9 @@ void bind_marches(py::module_& module)
     module.attr("STATUSES") =
         py::make_tuple("marched", "not_finite", "step_too_small", "singular", "too_many_steps", "unfinished");
 
-    auto bounds = py::class_<StepBounds>(module, "StepBounds");
+    auto bounds = py::class_<StepBounds, std::shared_ptr<StepBounds>>(module, "StepBounds");
     share_in_copies(bounds);
-    bounds.def(py::init([](const py::kwargs& given) {
-        StepBounds made{};
-        for (const auto& [name, member] : step_bounds) made.*member = given[name].cast<double>();
-        return made;
-    }));
+    bounds.def(py::init(&bounds_from));
     for (const auto& [name, member] : step_bounds) bounds.def_readonly(name, member);
 
     auto modes = py::class_<Modes, std::shared_ptr<Modes>>(module, "Modes");
@@ -100,43 +110,38 @@ void bind_marches(py::module_& module)
     modes.def(py::init(&modes_from), py::arg("table"), py::arg("x"), py::arg("torques"), py::arg("drive"),
               py::arg("push"));
 
-    const auto of_present = [](auto member) {
-        return [member](PyMarch& march) { return march.march().now().*member; };
-    };
-    py::class_<PyMarch>(module, "March")
+    py::class_<PyMarch, std::shared_ptr<PyMarch>>(module, "March")
         .def(py::init<std::shared_ptr<Swimmer>, const std::string&, std::size_t, bool, std::shared_ptr<Modes>>(),
-             py::arg("swimmer"), py::arg("method"), py::arg("order"), py::arg("planar"),
+             needed("swimmer"), py::arg("method"), py::arg("order"), py::arg("planar"),
              py::arg("modes") = std::shared_ptr<Modes>())
-        .def("__copy__", &PyMarch::copy)
+        .def("__copy__", method(&PyMarch::copy))
         .def(
-            "__deepcopy__", [](PyMarch& march, const py::dict&) { return march.copy(); }, py::arg("memo"))
-        .def("change", &PyMarch::change, py::arg("swimmer"), py::arg("method"), py::arg("order"), py::arg("planar"),
-             py::arg("modes") = std::shared_ptr<Modes>())
-        .def("follow", &PyMarch::follow, py::arg("law"), py::arg("breakpoints"), py::arg("bounds"), py::arg("ledger"),
-             py::arg("current"), py::arg("flow"), py::arg("smoothly"), py::arg("fin_angles") = py::list(),
-             py::arg("reference") = py::none())
-        .def("start", &PyMarch::start, py::arg("position"), py::arg("orientation"), py::arg("twist"),
+            "__deepcopy__", [](PyMarch& march, const py::dict&) { return march.copy(); }, needed("memo"))
+        .def("state_as_bytes", method(&PyMarch::state_as_bytes))
+        .def("set_state_from_bytes", method(&PyMarch::set_state_from_bytes), needed("state"))
+        .def("change", method(&PyMarch::change), needed("swimmer"), py::arg("method"), py::arg("order"),
+             py::arg("planar"), py::arg("modes") = std::shared_ptr<Modes>())
+        .def("follow", method(&PyMarch::follow), needed("law"), py::arg("breakpoints"), needed("bounds"),
+             py::arg("ledger"), py::arg("current"), py::arg("flow"), py::arg("smoothly"),
+             py::arg("fin_angles") = py::list(), py::arg("reference") = py::none())
+        .def("start", method(&PyMarch::start), py::arg("position"), py::arg("orientation"), py::arg("twist"),
              py::arg("x") = py::none(), py::arg("rate") = py::none())
-        .def("set_state", &PyMarch::set_state, py::arg("position"), py::arg("orientation"), py::arg("twist"))
-        .def("set_twist", &PyMarch::set_twist, py::arg("twist"))
-        .def("twist", &PyMarch::twist)
-        .def("set_slice", &PyMarch::set_slice, py::arg("nodes"))
-        .def("advance", &PyMarch::advance, py::arg("time"))
-        .def("record", &PyMarch::record, py::arg("times"), py::arg("first"), py::arg("whole"), py::arg("works"),
+        .def("set_state", method(&PyMarch::set_state), py::arg("position"), py::arg("orientation"), py::arg("twist"))
+        .def("set_twist", method(&PyMarch::set_twist), py::arg("twist"))
+        .def("twist", method(&PyMarch::twist))
+        .def("set_slice", method(&PyMarch::set_slice), py::arg("nodes"))
+        .def("advance", method(&PyMarch::advance), py::arg("time"))
+        .def("record", method(&PyMarch::record), py::arg("times"), py::arg("first"), py::arg("whole"), py::arg("works"),
              py::arg("rows"), py::arg("wrench"), py::arg("load"), py::arg("until"))
-        .def("observe", &PyMarch::observe, py::arg("whole"), py::arg("row"), py::arg("wrench"), py::arg("load"))
-        .def("command", &PyMarch::command, py::arg("servo"), py::arg("kind"), py::arg("value"))
-        .def("to_blame", &PyMarch::to_blame, py::arg("singular"))
-        .def_property_readonly("time", of_present(&Present::time))
-        .def_property_readonly("state",
-                               [](PyMarch& march) {
-                                   const State state = half_turn(march.march().now().state);
-                                   return std::vector<double>(state.begin(), state.begin() + state_size);
-                               })
-        .def_property_readonly("works", of_present(&Present::works))
-        .def_property_readonly("outside", &PyMarch::outside)
-        .def_property_readonly("row", &PyMarch::row)
-        .def_property_readonly("counts", [](PyMarch& march) { return tuple_of(march.march().counts()); });
+        .def("observe", method(&PyMarch::observe), py::arg("whole"), py::arg("row"), py::arg("wrench"), py::arg("load"))
+        .def("command", method(&PyMarch::command), py::arg("servo"), py::arg("kind"), py::arg("value"))
+        .def("to_blame", method(&PyMarch::to_blame), py::arg("singular"))
+        .def_property_readonly("time", method(&PyMarch::time))
+        .def_property_readonly("state", method(&PyMarch::state))
+        .def_property_readonly("works", method(&PyMarch::works))
+        .def_property_readonly("outside", method(&PyMarch::outside))
+        .def_property_readonly("row", method(&PyMarch::row))
+        .def_property_readonly("counts", method(&PyMarch::counts));
 
     bind_sampled_marches(module);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <stdexcept>
+#include <string_view>
 
 #include "eel_core/march/march.hpp"
 #include "from_python.hpp"
@@ -37,10 +38,34 @@ class PyMarch {
     }
 
     // A march of its own, in the same state.
-    std::unique_ptr<PyMarch> copy()
+    std::shared_ptr<PyMarch> copy()
     {
         const InUse in_use(in_use_);
-        return std::unique_ptr<PyMarch>(new PyMarch(march_, has_law_));
+        return std::shared_ptr<PyMarch>(new PyMarch(march_, has_law_));
+    }
+    // All that goes on but what drives the body, as bytes.
+    py::bytes state_as_bytes()
+    {
+        const Driven in_use(*this);
+        Writer writer;
+        march_.pass(writer);
+        return writer.finished();
+    }
+    void set_state_from_bytes(const py::bytes& state)
+    {
+        const Driven in_use(*this);
+        Reader reader{std::string_view(state)};
+        March there = march_;
+        there.pass(reader), reader.finish();
+        march_ = std::move(there);
+    }
+    double time() { return march_.now().time; }
+    WorkDone works() { return march_.now().works; }
+    auto counts() { return tuple_of(march_.counts()); }
+    std::vector<double> state()
+    {
+        const State state = half_turn(march_.now().state);
+        return {state.begin(), state.begin() + state_size};
     }
     void change(std::shared_ptr<const Swimmer> swimmer, const std::string& method, std::size_t order, bool planar,
                 const std::shared_ptr<const Modes>& modes)
@@ -53,14 +78,17 @@ class PyMarch {
         march_.change(checked(std::move(swimmer), modes.get()), method_of(method, order, modes.get()), planar, modes);
         has_law_ = false;
     }
-    void follow(const std::shared_ptr<const LawOnGrid>& law, std::vector<double> breakpoints, const StepBounds& bounds,
-                bool ledger, const py::object& current, std::shared_ptr<Flow> flow, bool smoothly,
-                const py::list& fin_angles, const py::object& reference)
+    void follow(const std::shared_ptr<LawOnGrid>& law, std::vector<double> breakpoints,
+                const std::shared_ptr<StepBounds>& bounds, bool ledger, const py::object& current,
+                std::shared_ptr<Flow> flow, bool smoothly, const py::list& fin_angles, const py::object& reference)
     {
         const InUse in_use(in_use_);
-        check_fits(*law);
+        check_fits(*law, march_.swimmer());
+        if (march_.modes() && law->tables->rows() < march_.modes()->modes)
+            throw py::value_error("law must have the modes as its last rows");
+        check_rises(breakpoints, "breakpoints");
         BentSettings settings{
-            {*law, std::move(breakpoints), bounds, ledger, water_from(current, std::move(flow))}, 0, {}, {}};
+            {*law, std::move(breakpoints), *bounds, ledger, water_from(current, std::move(flow))}, 0, {}, {}};
         for (const py::handle each : fin_angles) {
             const auto [knots, coefficients] = each.cast<std::pair<py::object, py::object>>();
             settings.law.fins.push_back(cubics_from<double>(knots, coefficients));
@@ -109,6 +137,7 @@ class PyMarch {
     int advance(double time)
     {
         const Driven in_use(*this);
+        check_finite({&time, 1}, "time");
         const py::gil_scoped_release unlocked;
         return static_cast<int>(march_.advance(time));
     }
@@ -118,6 +147,7 @@ class PyMarch {
     {
         const Numbers instants(times, "times");
         const std::size_t n = instants.size();
+        check_finite(instants.span(), "times");
         const Profiles profiles = profiles_of(n, wrench, load);
         const Numbers into = room_for(profiles, whole),
                       works_into = Numbers::sized(works, "works", std::tuple_size_v<WorkDone> * n, true),
@@ -143,6 +173,7 @@ class PyMarch {
     std::int64_t set_slice(std::int64_t nodes)
     {
         const InUse in_use(in_use_);
+        if (nodes < 1) throw py::value_error("nodes must be 1 or more, got " + std::to_string(nodes));
         return march_.set_slice(nodes);
     }
     std::size_t to_blame(bool singular)
@@ -166,7 +197,6 @@ class PyMarch {
             places[CoordinateRow::names[q]] = py::make_tuple(row.begin[q], row.begin[q + 1]);
         return places;
     }
-    March& march() { return march_; }
 
   private:
     PyMarch(const March& march, bool has_law) : march_(march), has_law_(has_law) {}
@@ -188,20 +218,6 @@ class PyMarch {
             if (modes->first[m] >= modes->last[m] || modes->last[m] > swimmer->grid.nodes)
                 throw py::value_error("modes must have nodes of the grid");
         return swimmer;
-    }
-    void check_fits(const LawOnGrid& law) const
-    {
-        const LawTables& t = *law.tables;
-        const Swimmer& swimmer = march_.swimmer();
-        const std::size_t rows = t.rows(), nodes = swimmer.grid.blocks, stations = blocks_of(swimmer.stations);
-        const auto fits = [&](const auto& table, std::size_t blocks) {
-            return table.lanes.size() == rows * blocks && (rows == 0 || table.blocks == blocks);
-        };
-        if (!(fits(t.node, nodes) && fits(t.angle, nodes) && fits(t.moments, nodes) && fits(t.station, stations) &&
-              fits(t.station_moments, stations)))
-            throw py::value_error("law must be tabulated on the nodes and stations of the swimmer");
-        if (march_.modes() && rows < march_.modes()->modes)
-            throw py::value_error("law must have the modes as its last rows");
     }
     std::vector<double> coordinates_from(const py::object& object, const char* name) const
     {

@@ -5,30 +5,39 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "eel_core/algebra/cubics.hpp"
 #include "eel_core/march/axes.hpp"
+#include "eel_core/model/swimmer.hpp"
 
 namespace eel_core {
 
 namespace py = pybind11;
 
-// A contiguous array of numbers of type T, which Python keeps alive as long as this lives.
+// A contiguous array of numbers of type T, in the byte order of this machine, which Python keeps alive as long as this
+// lives.
 template <class T>
 class Array {
   public:
     Array(const py::handle& object, const std::string& name, bool writable = false)
-        : info_(py::cast<py::buffer>(object).request(writable))
+        : info_(buffer_of(object, name)), name_(name)
     {
+        if (!is_of_type())
+            throw py::value_error(name + " must hold numbers of " + std::to_string(8 * sizeof(T)) + " bits like '" +
+                                  py::format_descriptor<T>::format() + "', got '" + info_.format + "'");
+        if (writable && info_.readonly) throw py::value_error(name + " must be writable");
         std::size_t step = sizeof(T);
         for (std::size_t axis = info_.size > 0 ? info_.shape.size() : 0; axis-- > 0; step *= length(axis))
             if (length(axis) > 1 && static_cast<std::size_t>(info_.strides[axis]) != step)
                 throw py::value_error(name + " must be contiguous");
-        if (!is_of_type())
-            throw py::value_error(name + " must hold numbers of " + std::to_string(8 * sizeof(T)) + " bits like '" +
-                                  py::format_descriptor<T>::format() + "', got '" + info_.format + "'");
+        if (std::bit_cast<std::uintptr_t>(info_.ptr) % alignof(T) != 0)
+            throw py::value_error(name + " must begin at a multiple of " + std::to_string(alignof(T)) + " bytes");
     }
 
     static Array sized(const py::handle& object, const std::string& name, std::size_t size, bool writable = false)
@@ -40,7 +49,12 @@ class Array {
         return array;
     }
 
-    std::size_t length(std::size_t axis) const { return static_cast<std::size_t>(info_.shape.at(axis)); }
+    std::size_t length(std::size_t axis) const
+    {
+        if (axis >= info_.shape.size())
+            throw py::value_error(name_ + " must have more axes than " + std::to_string(info_.shape.size()));
+        return static_cast<std::size_t>(info_.shape[axis]);
+    }
     std::size_t size() const { return static_cast<std::size_t>(info_.size); }
     T* data() const { return static_cast<T*>(info_.ptr); }
     std::span<const T> span() const { return {data(), size()}; }
@@ -52,15 +66,26 @@ class Array {
     }
 
   private:
-    bool is_of_type() const  // 'l' and 'q', 'L' and 'Q' are the same numbers
+    static py::buffer_info buffer_of(const py::handle& object, const std::string& name)
     {
-        const char kind = info_.format.empty() ? '?' : info_.format.back();
-        const bool fits = static_cast<std::size_t>(info_.itemsize) == sizeof(T);
-        if (std::is_floating_point_v<T>) return fits && kind == 'd';
-        return fits && (std::is_signed_v<T> ? kind == 'l' || kind == 'q' : kind == 'L' || kind == 'Q');
+        if (!object || PyObject_CheckBuffer(object.ptr()) == 0)
+            throw py::value_error(name + " must be an array, got " +
+                                  (object ? Py_TYPE(object.ptr())->tp_name : "none"));
+        return py::reinterpret_borrow<py::buffer>(object).request();
+    }
+    bool is_of_type()
+        const  // 'l' and 'q', 'L' and 'Q' are the same numbers; '@', '=' and one more mean: of this machine
+    {
+        constexpr char own_order = std::endian::native == std::endian::little ? '<' : '>';
+        std::string_view kind = info_.format;
+        if (kind.size() == 2 && (kind[0] == '@' || kind[0] == '=' || kind[0] == own_order)) kind.remove_prefix(1);
+        if (static_cast<std::size_t>(info_.itemsize) != sizeof(T)) return false;
+        if (std::is_floating_point_v<T>) return kind == "d";
+        return std::is_signed_v<T> ? kind == "l" || kind == "q" : kind == "L" || kind == "Q";
     }
 
     py::buffer_info info_;
+    std::string name_;
 };
 
 using Numbers = Array<double>;
@@ -69,6 +94,40 @@ template <class T>
 Array<T> array_of(const py::handle& object, const char* name)
 {
     return Array<T>(object.attr(name), name);
+}
+
+// Throws unless the numbers rise, or stay; one that is no number does not.
+inline void check_rises(std::span<const double> numbers, const char* name)
+{
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        if (!(numbers[i] >= (i > 0 ? numbers[i - 1] : numbers[i])))
+            throw py::value_error(std::string(name) + " must rise, got " + std::to_string(numbers[i]) + " at index " +
+                                  std::to_string(i));
+}
+inline void check_finite(std::span<const double> numbers, const char* name)
+{
+    for (const double number : numbers)
+        if (!std::isfinite(number))
+            throw py::value_error(std::string(name) + " must be finite, got " + std::to_string(number));
+}
+inline void check_count(std::size_t count, std::size_t least, std::size_t most, const char* name)
+{
+    if (count < least || count > most)
+        throw py::value_error(std::string(name) + " must be " + std::to_string(least) + " to " + std::to_string(most) +
+                              ", got " + std::to_string(count));
+}
+
+// The law's rows, tabulated on the nodes and stations of a swimmer.
+inline void check_fits(const LawOnGrid& law, const Swimmer& swimmer)
+{
+    const LawTables& t = *law.tables;
+    const std::size_t rows = t.rows(), nodes = swimmer.grid.blocks, stations = blocks_of(swimmer.stations);
+    const auto fits = [&](const auto& table, std::size_t blocks) {
+        return table.lanes.size() == rows * blocks && (rows == 0 || table.blocks == blocks);
+    };
+    if (!(fits(t.node, nodes) && fits(t.angle, nodes) && fits(t.moments, nodes) && fits(t.station, stations) &&
+          fits(t.station_moments, stations)))
+        throw py::value_error("law must be tabulated on the nodes and stations of the swimmer");
 }
 
 template <std::size_t N>
@@ -106,6 +165,7 @@ Cubics<Value> cubics_from(const py::handle& knots, const py::handle& coefficient
     const Numbers times(knots, "knots");
     if (times.size() < 2) throw py::value_error("knots must be two or more, got " + std::to_string(times.size()));
     const auto numbers = Numbers::sized(coefficients, "coefficients", 4 * Parts::count * (times.size() - 1));
+    check_rises(times.span(), "knots");
     Cubics<Value> cubics{times.vector(), {}};
     for (const double* next = numbers.data(); cubics.pieces.size() + 1 < times.size();)
         for (Value& coefficient : cubics.pieces.emplace_back()) {
@@ -122,6 +182,27 @@ inline std::vector<Ramp> ramps_from(const py::handle& ramps)
         result.push_back({start, end, delta});
     return result;
 }
+
+// A method for Python. It refuses an object that is none, or was made without its constructor: it has no holder then.
+template <class Class, class Result, class... Given>
+auto method(Result (Class::*function)(Given...))
+{
+    return [function](const std::shared_ptr<Class>& self, Given... given) -> Result {
+        if (!self) throw py::type_error("the object must not be None");
+        return (self.get()->*function)(std::forward<Given>(given)...);
+    };
+}
+template <class Class, class Result, class... Given>
+auto method(Result (Class::*function)(Given...) const)
+{
+    return [function](const std::shared_ptr<Class>& self, Given... given) -> Result {
+        if (!self) throw py::type_error("the object must not be None");
+        return (self.get()->*function)(std::forward<Given>(given)...);
+    };
+}
+
+// An argument that must not be none: a pointer to nothing.
+inline py::arg needed(const char* name) { return std::move(py::arg(name).none(false)); }
 
 // Lets copies in Python share the object, which never changes.
 template <class Class>

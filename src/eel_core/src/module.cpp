@@ -69,18 +69,20 @@ std::shared_ptr<LawOnGrid> law_from(std::shared_ptr<LawTables> tables, double or
     for (const py::handle wave : waves) law->waves.push_back(wave_from(wave.cast<py::tuple>()));
     law->segment = quintic_from(segment), law->blend = quintic_from(blend);
     const std::size_t rows = law->tables->rows();
-    const auto check = [&](std::size_t last) {
-        if (last >= rows)
-            throw py::value_error("law has " + std::to_string(rows) + " rows, and wants row " + std::to_string(last));
+    const auto check = [&](std::size_t first, std::size_t count) {
+        if (first >= rows || count > rows - first)
+            throw py::value_error("law has " + std::to_string(rows) + " rows, and wants " + std::to_string(count) +
+                                  " from row " + std::to_string(first) + " on");
     };
-    for (const Wave& wave : law->waves) check(wave.sine), check(wave.cosine);
-    if (law->segment.row != Quintic::none) check(law->segment.row + 11);
-    if (law->blend.row != Quintic::none) check(law->blend.row + 5);
+    for (const Wave& wave : law->waves) check(wave.sine, 1), check(wave.cosine, 1);
+    if (!segment.is_none()) check(law->segment.row, 12);
+    if (!blend.is_none()) check(law->blend.row, 6);
     return law;
 }
 
-std::array<std::vector<double>, 3> factors_at(const LawOnGrid& law, double time)
+std::array<std::vector<double>, 3> factors_at(const std::shared_ptr<LawOnGrid>& self, double time)
 {
+    const LawOnGrid& law = *self;
     std::vector<Jet> factor(law.tables->rows());
     law.set_factors(time, factor);
     std::array<std::vector<double>, 3> result;
@@ -98,9 +100,14 @@ void repeat_rate_in(const Swimmer& swimmer, const LawOnGrid& law, double time, c
     State rate{};
     for (std::size_t k = 0; k < count; ++k) rate_of_state(swimmer, law, water, time, y, work, rate);
 }
-void repeat_rate(const Swimmer& swimmer, bool planar, const LawOnGrid& law, double time, const py::object& state,
-                 std::size_t count, std::shared_ptr<Flow> flow)
+void repeat_rate(const std::shared_ptr<Swimmer>& of, bool planar, const std::shared_ptr<LawOnGrid>& under, double time,
+                 const py::object& state, std::size_t count, std::shared_ptr<Flow> flow)
 {
+    constexpr std::size_t most_rates = 1'000'000;  // no signal is heard meanwhile
+    const Swimmer& swimmer = *of;
+    const LawOnGrid& law = *under;
+    check_fits(law, swimmer);
+    check_count(count, 0, most_rates, "count");
     State y{};
     std::ranges::copy(row_from<state_size>(state, "state"), y.begin());
     const py::gil_scoped_release unlocked;
@@ -108,14 +115,61 @@ void repeat_rate(const Swimmer& swimmer, bool planar, const LawOnGrid& law, doub
                                                              {{}, std::move(flow)});
 }
 
-std::array<std::array<double, 6>, 6> inertia_at(Instant& instant, const LawOnGrid& law, double time)
-{
-    const auto inertia = instant.inertia(law, time);
-    std::array<std::array<double, 6>, 6> rows;
-    for (std::size_t i = 0; i < rows.size(); ++i)
-        for (std::size_t j = 0; j <= i; ++j) rows[i][j] = rows[j][i] = inertia.lower[inertia.at(i, j)];
-    return rows;
-}
+// `Instant` for Python, of laws that are on its grid.
+class PyInstant {
+  public:
+    explicit PyInstant(std::shared_ptr<Swimmer> swimmer) : swimmer_(std::move(swimmer)), instant_(swimmer_) {}
+
+    std::array<std::array<double, 6>, 6> inertia(const std::shared_ptr<LawOnGrid>& law, double time)
+    {
+        check_fits(*law, *swimmer_);
+        const auto inertia = instant_.inertia(*law, time);
+        std::array<std::array<double, 6>, 6> rows;
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            for (std::size_t j = 0; j <= i; ++j) rows[i][j] = rows[j][i] = inertia.lower[inertia.at(i, j)];
+        return rows;
+    }
+    std::tuple<std::array<double, 6>, std::array<double, 6>> loads(const std::shared_ptr<LawOnGrid>& law, double time,
+                                                                   const py::object& twist)
+    {
+        check_fits(*law, *swimmer_);
+        const auto [tail, drag] = instant_.loads(*law, time, twist_from(twist, "twist"));
+        return {components_of(half_turn(tail)), components_of(half_turn(drag))};
+    }
+    void drag_powers(const std::shared_ptr<LawOnGrid>& law, const py::object& times, const py::object& twists,
+                     const py::object& powers, const py::object& current, std::shared_ptr<Flow> flow,
+                     const py::object& poses, const py::object& modes)
+    {
+        check_fits(*law, *swimmer_);
+        const Numbers at(times, "times");
+        const Numbers motion = Numbers::sized(twists, "twists", 6 * at.size()),
+                      into = Numbers::sized(powers, "powers", 4 * at.size(), true),
+                      heads = Numbers::sized(poses, "poses", 7 * at.size()), motion_of_modes(modes, "modes");
+        const std::size_t numbers = at.size() == 0 ? 0 : motion_of_modes.size() / at.size();
+        if (numbers / 2 > law->tables->rows()) throw py::value_error("modes must have rows of the law");
+        const Water water = water_from(current, std::move(flow));
+        const py::gil_scoped_release unlocked;
+        for (std::size_t k = 0; k < at.size(); ++k) {
+            State y{};
+            std::copy_n(heads.data() + 7 * k, 7, y.begin());
+            const auto twist = twist_of(motion.data() + 6 * k);
+            std::ranges::copy(instant_.drag_powers(*law, at.data()[k], twist, water, half_turn(y),
+                                                   {motion_of_modes.data() + numbers * k, numbers}),
+                              into.data() + 4 * k);
+        }
+    }
+    std::array<double, 6> momentum_rate(const std::shared_ptr<LawOnGrid>& law, double time, const py::object& twist,
+                                        const py::object& acceleration)
+    {
+        check_fits(*law, *swimmer_);
+        return components_of(half_turn(
+            instant_.momentum_rate(*law, time, twist_from(twist, "twist"), twist_from(acceleration, "acceleration"))));
+    }
+
+  private:
+    std::shared_ptr<const Swimmer> swimmer_;
+    Instant instant_;
+};
 
 }  // namespace
 
@@ -145,54 +199,20 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
     auto curvature_law = py::class_<LawOnGrid, std::shared_ptr<LawOnGrid>>(module, "LawOnGrid");
     share_in_copies(curvature_law);
     curvature_law
-        .def(py::init(&law_from), py::arg("tables"), py::arg("origin"), py::arg("waves"), py::arg("segment"),
+        .def(py::init(&law_from), needed("tables"), py::arg("origin"), py::arg("waves"), py::arg("segment"),
              py::arg("blend"))
         .def("factors", &factors_at, py::arg("time"));
 
     bind_marches(module);
 
-    module.def("repeat_rate", &repeat_rate, py::arg("swimmer"), py::arg("planar"), py::arg("law"), py::arg("time"),
+    module.def("repeat_rate", &repeat_rate, needed("swimmer"), py::arg("planar"), needed("law"), py::arg("time"),
                py::arg("state"), py::arg("count"), py::arg("flow") = py::none());
-    py::class_<Instant>(module, "Instant")
-        .def(py::init<std::shared_ptr<const Swimmer>>(), py::arg("swimmer"))
-        .def("inertia", &inertia_at, py::arg("law"), py::arg("time"))
-        .def(
-            "loads",
-            [](Instant& instant, const LawOnGrid& law, double time, const py::object& twist) {
-                const auto [tail, drag] = instant.loads(law, time, twist_from(twist, "twist"));
-                return std::make_tuple(components_of(half_turn(tail)), components_of(half_turn(drag)));
-            },
-            py::arg("law"), py::arg("time"), py::arg("twist"))
-        .def(
-            "drag_powers",
-            [](Instant& instant, const LawOnGrid& law, const py::object& times, const py::object& twists,
-               const py::object& powers, const py::object& current, std::shared_ptr<Flow> flow, const py::object& poses,
-               const py::object& modes) {
-                const Numbers at(times, "times");
-                const Numbers motion = Numbers::sized(twists, "twists", 6 * at.size()),
-                              into = Numbers::sized(powers, "powers", 4 * at.size(), true),
-                              heads = Numbers::sized(poses, "poses", 7 * at.size()), motion_of_modes(modes, "modes");
-                const std::size_t numbers = at.size() == 0 ? 0 : motion_of_modes.size() / at.size();
-                if (numbers / 2 > law.tables->rows()) throw py::value_error("modes must have rows of the law");
-                const Water water = water_from(current, std::move(flow));
-                const py::gil_scoped_release unlocked;
-                for (std::size_t k = 0; k < at.size(); ++k) {
-                    State y{};
-                    std::copy_n(heads.data() + 7 * k, 7, y.begin());
-                    const auto twist = twist_of(motion.data() + 6 * k);
-                    std::ranges::copy(instant.drag_powers(law, at.data()[k], twist, water, half_turn(y),
-                                                          {motion_of_modes.data() + numbers * k, numbers}),
-                                      into.data() + 4 * k);
-                }
-            },
-            py::arg("law"), py::arg("times"), py::arg("twists"), py::arg("powers"), py::arg("current"), py::arg("flow"),
-            py::arg("poses"), py::arg("modes"))
-        .def(
-            "momentum_rate",
-            [](Instant& instant, const LawOnGrid& law, double time, const py::object& twist,
-               const py::object& acceleration) {
-                return components_of(half_turn(instant.momentum_rate(law, time, twist_from(twist, "twist"),
-                                                                     twist_from(acceleration, "acceleration"))));
-            },
-            py::arg("law"), py::arg("time"), py::arg("twist"), py::arg("acceleration"));
+    py::class_<PyInstant, std::shared_ptr<PyInstant>>(module, "Instant")
+        .def(py::init<std::shared_ptr<Swimmer>>(), needed("swimmer"))
+        .def("inertia", method(&PyInstant::inertia), needed("law"), py::arg("time"))
+        .def("loads", method(&PyInstant::loads), needed("law"), py::arg("time"), py::arg("twist"))
+        .def("drag_powers", method(&PyInstant::drag_powers), needed("law"), py::arg("times"), py::arg("twists"),
+             py::arg("powers"), py::arg("current"), py::arg("flow"), py::arg("poses"), py::arg("modes"))
+        .def("momentum_rate", method(&PyInstant::momentum_rate), needed("law"), py::arg("time"), py::arg("twist"),
+             py::arg("acceleration"));
 }

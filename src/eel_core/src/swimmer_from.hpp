@@ -29,12 +29,21 @@ inline Sections sections_from(const py::handle& s, std::size_t n)
                 s, {"drag2", "drag3", "drag_roll", "laminar", "turbulent", "by_critical_speed"}, n)};
 }
 
-// `matrix`: rows for the `points`, as those of `PanelRows`.
-inline FromNose from_nose(const py::handle& points, const py::handle& matrix, const Row& weight, std::size_t nodes)
+// `matrix`: rows for the m `points`, as those of `PanelRows`.
+inline FromNose from_nose(const py::handle& points, std::size_t m, const py::handle& matrix, const Row& weight,
+                          std::size_t nodes)
 {
-    const auto fraction = array_of<double>(points, "fraction");
-    const auto rows = Numbers::sized(matrix, "matrix", array_of<double>(points, "matrix").size());
-    const auto first = array_of<std::uint64_t>(points, "first"), count = array_of<std::uint64_t>(points, "count");
+    const auto fraction = Numbers::sized(points.attr("fraction"), "fraction", m);
+    const std::size_t widest = array_of<double>(points, "matrix").length(1);
+    const auto rows = Numbers::sized(matrix, "matrix", m * widest);
+    const auto first = Array<std::uint64_t>::sized(points.attr("first"), "first", m),
+               count = Array<std::uint64_t>::sized(points.attr("count"), "count", m);
+    for (std::size_t i = 0; i < m; ++i) {
+        const std::uint64_t begin = first.data()[i], size = count.data()[i];
+        if (begin >= nodes || size > std::min<std::uint64_t>(widest, nodes - begin) ||
+            (i > 0 && begin < first.data()[i - 1]))
+            throw py::value_error("first and count must be of panels one behind the other, within the nodes");
+    }
     return FromNose({rows.span(), first.span(), count.span(), fraction.span()}, {weight.row(0), nodes});
 }
 
@@ -42,13 +51,16 @@ inline Grid grid_from(const py::handle& g)
 {
     Grid grid;
     const auto first = array_of<std::uint64_t>(g, "first"), count = array_of<std::uint64_t>(g, "count");
-    const auto series = array_of<double>(g, "series");
     const std::size_t n = first.size();
     if (n == 0) throw py::value_error("grid must have nodes, got none");
+    const auto series = Numbers::sized(g.attr("series"), "series", (array_of<double>(g, "matrix").length(1) + 1) * n);
     grid.nodes = n, grid.blocks = blocks_of(n), grid.widest = array_of<double>(g, "matrix").length(1);
     grid.first = first.vector<std::size_t>(), grid.count = count.vector<std::size_t>();
     grid.weight = field_from(g, {"weight"}, n);
-    grid.from_nose = from_nose(g, g.attr("matrix"), grid.weight, n);
+    grid.from_nose = from_nose(g, n, g.attr("matrix"), grid.weight, n);
+    for (std::size_t i = 0; i < n; ++i)
+        if (grid.first[i] > i || i - grid.first[i] >= grid.count[i])
+            throw py::value_error("first and count must be of the panel that the node lies in");
     grid.fraction = field_from(g, {"fraction"}, n);
     grid.barycentric = field_from(g, {"barycentric"}, n);
     grid.set_steps();
@@ -71,6 +83,7 @@ inline void add_fins(Swimmer& swimmer, const py::list& fins, const py::list& ser
             each.cast<std::tuple<double, double, double, double, std::size_t, double>>();
         if (tau > 0.0 && slot == state_space)
             throw py::value_error("servos with a time constant must be " + std::to_string(most_servos) + " at most");
+        if (node >= swimmer.grid.nodes) throw py::value_error("servos must have a node of the grid");
         swimmer.servos.push_back({tau, limit, roll, rate, node, tau > 0.0 ? slot++ : 0, initial});
     }
     for (const py::handle each : fins) {
@@ -81,10 +94,11 @@ inline void add_fins(Swimmer& swimmer, const py::list& fins, const py::list& ser
             return Vector3{v[0], v[1], v[2]};
         };
         const auto node = t[0].cast<std::size_t>(), servo = t[9].cast<std::size_t>();
-        if (node >= swimmer.grid.nodes || servo >= swimmer.servos.size())
-            throw py::value_error("fins must have a node of the grid and a servo of those given");
+        const auto behind = t[11].cast<std::size_t>();
+        if (node >= swimmer.grid.nodes || servo >= swimmer.servos.size() || behind > swimmer.stations)
+            throw py::value_error("fins must have a node of the grid, a servo of those given, and a station");
         swimmer.fins.push_back({node, vector(1), vector(2), number(3), number(4), number(5), number(6), number(7),
-                                number(8), servo, node + 1, t[11].cast<std::size_t>(), number(10)});
+                                number(8), servo, node + 1, behind, number(10)});
     }
 }
 
@@ -130,14 +144,17 @@ inline std::shared_ptr<Swimmer> swimmer_from(const py::object& grid, const py::o
     const auto before = array_of<std::uint64_t>(stations, "nodes_before");
     const std::size_t m = swimmer->stations = before.size();
     swimmer->nodes_before = before.vector<std::size_t>();
+    for (const std::size_t nodes : swimmer->nodes_before)
+        if (nodes > n) throw py::value_error("nodes_before must be at most the nodes, got " + std::to_string(nodes));
     swimmer->at_station = sections_from(stations.attr("sections"), m);
     swimmer->added2_slope = field_from(stations, {"added2_slope"}, m);
     swimmer->added3_slope = field_from(stations, {"added3_slope"}, m);
     swimmer->added_roll_slope = field_from(stations, {"added_roll_slope"}, m);
     const py::object places = stations.attr("points");
-    swimmer->to_station = from_nose(places, places.attr("matrix"), swimmer->grid.weight, n);
+    swimmer->to_station = from_nose(places, m, places.attr("matrix"), swimmer->grid.weight, n);
     const Row none(swimmer->grid.blocks);
-    for (const py::handle rows : stations.attr("missed")) swimmer->missed.push_back(from_nose(places, rows, none, n));
+    for (const py::handle rows : stations.attr("missed"))
+        swimmer->missed.push_back(from_nose(places, m, rows, none, n));
     if (!swimmer->missed.empty() && swimmer->missed.size() != SectionPart::count)
         throw py::value_error("stations must have missed rows for each part of a section, or none");
     add_fins(*swimmer, physics["fins"], physics["servos"]);
@@ -148,6 +165,8 @@ inline std::shared_ptr<Swimmer> swimmer_from(const py::object& grid, const py::o
 inline std::shared_ptr<LawTables> tables_from(const std::vector<std::size_t>& axis, const py::object& rows,
                                               std::size_t n, std::size_t s)
 {
+    constexpr std::size_t most = 1'000'000;
+    check_count(n, 0, most, "nodes"), check_count(s, 0, most, "stations");
     const auto numbers = Numbers::sized(rows, "rows", 4 * axis.size() * (n + s));
     auto tables = std::make_shared<LawTables>(axis, n, s);
     for (std::size_t row = 0; row < axis.size(); ++row) tables->set(row, numbers.data() + row * tables->columns());

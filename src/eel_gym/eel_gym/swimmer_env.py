@@ -95,7 +95,6 @@ class SwimmerEnv(Task):
         self._mean_heading = MeanHeading(max(1, round(self.action.period / self.numbers.control_period)), self.shape)
         self.ticks: np.ndarray = np.zeros(count, dtype=int)  #: (N,) control steps of the present episodes
         self._trim: Array = np.zeros((*self.shape, 1))  # rad/m
-        self._heads = self.swimmers.heads.reshape(13, *self.shape)  # the same memory
         self._status: NDArray[np.int64] = np.full(count, LEFT_OUT)  # 0 from `reset` on, until a swimmer stops
         self.starts = [Start()] * count  #: of the present episodes
         self.restart(np.zeros(self.shape))
@@ -146,6 +145,10 @@ class SwimmerEnv(Task):
         self.head, self.head_heading = head, head.heading
         self.heading = self._mean_heading.add(self.head_heading)
         return self.observation()
+
+    def __copy__(self) -> Self:
+        """A copy that goes on by itself, to the same bit; `copy.deepcopy` and pickles give such a one too."""
+        return copy.deepcopy(self)
 
     # -- one swimmer or many
 
@@ -216,7 +219,8 @@ class SwimmerEnv(Task):
         """Swimmer `index` by itself, as far as tasks see it."""
         if not self.shape:
             return self
-        other = copy.copy(self)
+        other = object.__new__(type(self))
+        other.__dict__.update(self.__dict__)
         other.shape, other.head = (), HeadMotion(*(part[:, index] for part in self.head))
         other.head_heading, other.heading = float(self.head_heading[index]), float(self.heading[index])
         other.goal = self.goal[:, index]
@@ -232,7 +236,7 @@ class SwimmerEnv(Task):
 
     def _look(self) -> None:
         """Take in the motion of the heads, and of the joints."""
-        heads = self._heads.copy()
+        heads = self.swimmers.heads.reshape(13, *self.shape).copy()
         self.head = HeadMotion(heads[:3], heads[3:7], heads[7:10], heads[10:])
         self.head_heading = self.head.heading
         if isinstance(self.swimmers, CommandedRobots) and isinstance(self.action, JointAction):

@@ -140,6 +140,13 @@ struct RowTable {
                 lanes[row * blocks + block][part] = Lanes::load(here < width ? filled_up.data() : from);
             }
     }
+    // The reverse of `set`.
+    void get(std::size_t row, double* values, std::size_t n) const
+    {
+        for (std::size_t part = 0; part < Parts; ++part)
+            for (std::size_t point = 0; point < n; ++point)
+                values[part * n + point] = at(row, point / width)[part][point % width];
+    }
 };
 
 // The rows of a law, tabulated on the nodes and the stations of a swimmer.
@@ -179,6 +186,23 @@ struct LawTables {
             std::array<double, width> lanes;
             for (std::size_t lane = 0; lane < width; ++lane) lanes[lane] = sum += moments.at(row, block)[0][lane];
             angle.lanes[row * angle.blocks + block] = {Lanes::load(lanes.data())};
+        }
+    }
+
+    // Hands over which rows are in force, and all rows by their columns (`march/archive.hpp`).
+    template <class Archive>
+    void pass(Archive& archive)
+    {
+        const std::size_t n = nodes_, s = stations_, rows = node.blocks > 0 ? node.lanes.size() / node.blocks : 0;
+        archive.same(rows), archive.same(n), archive.same(s);
+        archive(rows_of[0], rows_of[1]);
+        std::vector<double> row_columns(columns());
+        for (std::size_t row = 0; row < rows; ++row) {
+            double* const to = row_columns.data();
+            node.get(row, to, n), moments.get(row, to + n, n);
+            station.get(row, to + 4 * n, s), station_moments.get(row, to + 4 * n + s, s);
+            archive(row_columns);
+            if constexpr (Archive::reads) set(row, to);
         }
     }
 

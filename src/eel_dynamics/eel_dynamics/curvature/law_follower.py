@@ -7,7 +7,8 @@ its acceleration never jump. When a controller's samples run out, the shape come
 """
 
 from collections.abc import Callable
-from typing import NamedTuple
+from copy import copy
+from typing import Any, NamedTuple
 
 import numpy as np
 from eel_gaits.laws.law import Law
@@ -57,6 +58,24 @@ class LawFollower:
         self._last: tuple[CurvatureSample, np.ndarray] | None = None  # the last sample that was tabulated, and its rows
         self._source = self._begun(law, origin, 0.0)
         self.law_on_grid = self._with_blend()
+
+    def __copy__(self) -> "LawFollower":
+        """What never changes is shared."""
+        copied = object.__new__(type(self))
+        copied.__dict__.update(self.__dict__)
+        copied.samples = copy(self.samples)
+        return copied
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without the tables of the compiled mechanics: `tabulate` comes next."""
+        left_out = "_tabulation", "law_on_grid", "_spline"
+        kept = {name: value for name, value in self.__dict__.items() if name not in left_out}
+        return kept | {"_source": self._source._replace(tables=None)}
+
+    def tabulate(self, tabulation: Tabulation) -> None:
+        """Make what a pickle left out, on its grid, which had this `tabulation`."""
+        self._tabulation, self._spline = tabulation, None
+        self._follow(self._source)
 
     def move(self, tabulation: Tabulation, values_at_nodes: Callable[[np.ndarray], np.ndarray]) -> None:
         """Change to the grid of another `tabulation`.

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Many robots of one kind side by side, whose joints are commanded: as `SampledSwimmers`, of bodies that bend."""
 
+import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from eel_gaits.laws.law import Law
@@ -41,7 +43,11 @@ class CommandedRobots:
         self.grid = self._swims[0].discretisation.grid
         self.heads: Array = np.zeros((13, count))
         self.joints: Array = np.zeros((2, len(setup.robot.joints), count))
-        self._pool = ThreadPoolExecutor(threads, thread_name_prefix="robot") if threads > 1 else None
+        self._threads, self._process = threads, 0
+        self._pool: ThreadPoolExecutor | None = None  # of that process: a fork has none of its threads
+
+    def __getstate__(self) -> dict[str, Any]:
+        return self.__dict__ | {"_pool": None, "_process": 0}
 
     def start(self, index: int, position, orientation, twist, commands: Array, flow: Flow | None = None) -> None:
         """Put a robot at the start, at time 0, with springs at rest and these `commands` (n,) in force.
@@ -71,6 +77,8 @@ class CommandedRobots:
                 stopped[index] = error
 
         marched = np.flatnonzero(status != LEFT_OUT).tolist()
+        if self._threads > 1 and self._process != os.getpid():
+            self._pool, self._process = ThreadPoolExecutor(self._threads, thread_name_prefix="robot"), os.getpid()
         list((map if self._pool is None else self._pool.map)(march, marched))
         return dict(sorted(stopped.items()))
 

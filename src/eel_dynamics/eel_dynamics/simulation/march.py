@@ -91,10 +91,24 @@ class March:
 
     def __deepcopy__(self, memo: dict[int, Any]) -> "March":
         """What never changes is shared."""
-        copied = copy(self)
+        copied = object.__new__(type(self))
+        copied.__dict__.update(self.__dict__)
         copied.core, copied.follower = copy(self.core), copy(self.follower)
-        copied.follower.samples = copy(self.follower.samples)
         return copied
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without what follows from the rest; of the core what goes on, as bytes."""
+        left_out = "core", "discretisation", "robot", "law_on_grid", "_bounds", "_places"
+        kept = {name: value for name, value in self.__dict__.items() if name not in left_out}
+        return kept | {"core": self.core.state_as_bytes()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self.core = eel_core.March(*self._on_grid(self.settings))
+        self._places = self.core.row
+        self.follower.tabulate(self.discretisation.tabulation)
+        self._hand_over_law()
+        self.core.set_state_from_bytes(state["core"])
 
     def copy_with(self, setup: SimulationSetup) -> "March":
         """A copy in the present state, on a grid for the accuracy of `setup`, which differs in that or in its robot."""

@@ -2,6 +2,7 @@
 """Many swimmers of one body in one scene, each driven by a controller's samples, marched in one call."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from eel_base.wording import shown
@@ -50,25 +51,39 @@ class SampledSwimmers:
     def __init__(self, count: int, points: Array, waves: float | None, setup: SimulationSetup, threads: int = 1):
         self.accuracy = setup.settings.for_control_steps()
         setup = self.setup = replace(setup, accuracy=self.accuracy)
-        self._points, self._waves = points, waves
-        sample = self.check(np.zeros((6, len(points))))
+        self._points, self._waves, self._threads = points, waves, threads
+        self._starts = [setup] * count  # the set-up of each from its start
+        self._make_marches()
+        self.heads: Array = np.zeros((13, count))
+        self._energy_at_start = np.zeros(count)
+
+    def _make_marches(self) -> None:
+        setup, sample = self.setup, self.check(np.zeros((6, len(self._points))))
         self._discretisation = discretise(setup, setup.grid_for(ShapeNeeds(sample.waves)))
         self.grid = self._discretisation.grid
         self._marches = eel_core.SampledMarches(
             self._discretisation.swimmer,
             method=self.accuracy.method,
             order=self.accuracy.order,
-            planar=bool(self.setup.scene.planar),
-            ledger=bool(self.setup.scene.ledger),
+            planar=bool(setup.scene.planar),
+            ledger=bool(setup.scene.ledger),
             current=setup.current,
-            weights=self._discretisation.tabulation.weights_of(points),
+            weights=self._discretisation.tabulation.weights_of(self._points),
             transition=DEFAULT_TRANSITION,
-            count=count,
-            threads=threads,
+            count=len(self._starts),
+            threads=self._threads,
         )
-        self.heads: Array = np.zeros((13, count))
-        self._energy_at_start = np.zeros(count)
-        self._bounds = [step_bounds_of(setup, self._discretisation, True, setup.time_scale)] * count
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without what follows from the rest; of the core what goes on, as bytes."""
+        left_out = "_discretisation", "grid"
+        kept = {name: value for name, value in self.__dict__.items() if name not in left_out}
+        return kept | {"_marches": self._marches.state_as_bytes()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._make_marches()
+        self._marches.set_state_from_bytes(state["_marches"], [each.core_flow for each in self._starts])
 
     def check(self, rows: Array) -> CurvatureSample:
         """A sample with these `rows` (6, n); `ValueError` for one that `Simulation.add_samples` refuses."""
@@ -88,12 +103,15 @@ class SampledSwimmers:
         setup = self.setup.starting(position, orientation, twist, flow)
         if flow is not None:
             self._check_flow(flow)
-        self._bounds[index] = bounds = step_bounds_of(setup, self._discretisation, True, setup.time_scale)
+        self._starts[index], bounds = setup, self._bounds_of(setup)
         place, turn, _ = setup.initial_state
         energy = self._marches.start(index, bounds, place, turn, setup.initial_twist, rows, setup.core_flow)
         if not (np.isfinite(energy) and self._marches.put_head(index, self.heads)):
             raise SimulationStopped(0.0, "kinetic energy", energy, "start slower")
         self._energy_at_start[index] = energy
+
+    def _bounds_of(self, setup: SimulationSetup) -> eel_core.StepBounds:
+        return step_bounds_of(setup, self._discretisation, True, setup.time_scale)
 
     def _check_flow(self, flow: Flow) -> None:
         if any(isinstance(part, FlowField) for part in parts_of(flow)):
@@ -140,4 +158,5 @@ class SampledSwimmers:
         return self._marches.present(index)[2]
 
     def _stopped(self, index: int, status: int) -> SimulationStopped:
-        return stopped_by(status, self._marches.present(index)[0], self._bounds[index], self.accuracy)
+        bounds = self._bounds_of(self._starts[index])
+        return stopped_by(status, self._marches.present(index)[0], bounds, self.accuracy)

@@ -2,7 +2,7 @@
 """The march in time of a swimmer in water: the algorithm of section 7.1 of Boyer, Porez and Leroyer (2010)."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from copy import copy, deepcopy
+from copy import deepcopy
 from dataclasses import replace
 from typing import Any
 
@@ -38,7 +38,7 @@ ROUNDING = 1e-12  # of a time, s at least: how far the first one to record may l
 class Simulation(Present):
     """One swimmer, from its initial state on. Adopt a law (or add samples), advance, observe.
 
-    `ValueError` names the argument that does not fit.
+    `ValueError` names the argument that does not fit. A copy, by `copy` or a pickle, goes on by itself to the same bit.
 
     Args:
         body: the swimmer; by default that of the paper.
@@ -217,12 +217,17 @@ class Simulation(Present):
         self._march = action(self._march) or self._march
         self._meter.repeat(action)
 
+    def __copy__(self) -> "Simulation":
+        """A copy that goes on by itself, to the same bit; `copy.deepcopy` and pickles give such a one too."""
+        return deepcopy(self)
+
     def copy_with(self, accuracy: Accuracy | None = None, robot: Robot | None = None) -> "Simulation":
         """A copy in the present state that continues with the settings `accuracy`, or with other numbers of the robot.
 
         robot: with the same parts at the same places; its gains, limits, springs and dampers may differ. None: as here.
         """
-        other = copy(self)
+        other = object.__new__(type(self))
+        other.__dict__.update(self.__dict__)
         setup = self._setup if robot is None else self._setup.with_robot(robot)
         if accuracy is not None:
             setup = replace(setup, accuracy=Accuracy.of(accuracy))

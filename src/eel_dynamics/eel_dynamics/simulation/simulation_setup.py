@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The set-up of a simulation: its checked arguments, and the accuracy and grid that follow from them."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -91,6 +91,9 @@ class SimulationSetup(EqualByFields):
 
     def __deepcopy__(self, memo: dict) -> "SimulationSetup":
         return self
+
+    def __getstate__(self) -> dict[str, Any]:  # without what is computed once
+        return {each.name: getattr(self, each.name) for each in fields(self)}
 
     @cached_property
     def current(self) -> np.ndarray:

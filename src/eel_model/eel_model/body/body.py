@@ -228,6 +228,9 @@ class Body:
             own["density"] = None
         return Body(**own | changes)
 
+    def __deepcopy__(self, memo: dict[int, Any]) -> "Body":  # it never changes
+        return self
+
     def __reduce__(self) -> tuple[Any, ...]:
         return partial(Body, **self.arguments), ()
 

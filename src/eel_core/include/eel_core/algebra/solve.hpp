@@ -74,6 +74,11 @@ class Definite {
     explicit Definite(std::size_t n = 0) : n_(n), entries_(n * n) {}
 
     std::size_t size() const { return n_; }
+    template <class Archive>
+    void pass(Archive& archive)
+    {
+        archive(n_, entries_);
+    }
     double& at(std::size_t i, std::size_t j) { return i >= j ? entries_[j * n_ + i] : entries_[i * n_ + j]; }
     double at(std::size_t i, std::size_t j) const { return i >= j ? entries_[j * n_ + i] : entries_[i * n_ + j]; }
 

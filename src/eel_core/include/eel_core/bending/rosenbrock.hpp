@@ -18,6 +18,12 @@ namespace eel_core {
 struct BentState {
     State head{};
     std::vector<double> momentum, x;  // of the coordinates
+
+    template <class Archive>
+    void pass(Archive& archive)
+    {
+        archive(head, momentum, x);
+    }
 };
 
 inline constexpr std::size_t bent_works = std::tuple_size_v<Powers> + 1;
@@ -58,6 +64,13 @@ struct BentPoint {
     Frame<M, double> head{};                          // axes of the head
     Definite mass;
     BentPowers powers{};
+
+    template <class Archive>
+    void pass(Archive& archive)
+    {
+        archive(time, y, head_rate, momentum_rate, rate, drift, force, stiffness, damping, in_time, this->head, mass,
+                powers);
+    }
 };
 
 template <class M>
@@ -116,6 +129,14 @@ class BentStepper {
         const Status status = march(settings, time, all);
         settings.breakpoints.erase(settings.breakpoints.begin() + index);
         return status == Status::marched;
+    }
+
+    // Hands over what the next steps and the present follow from (`march/archive.hpp`).
+    template <class Archive>
+    void pass(Archive& archive)
+    {
+        archive(pace, before_, here_, ends_, known_ends_, damping_of_ends_, matrix_, works_, works_before_, middle_,
+                hardest_, anew_);
     }
 
     // Puts state, coordinates, their rates and the works at the present time, which lies within the step.
@@ -431,6 +452,12 @@ class BentStepper {
     struct End {
         double time = 0.0;
         std::vector<double> x;
+
+        template <class Archive>
+        void pass(Archive& archive)
+        {
+            archive(time, x);
+        }
     };
     std::array<End, 3> ends_;  // of the steps before the last, the latest first
     std::size_t known_ends_ = 0;

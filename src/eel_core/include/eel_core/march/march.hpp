@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "eel_core/bending/coordinate_row.hpp"
+#include "eel_core/march/archive.hpp"
 #include "eel_core/march/observe.hpp"
 #include "eel_core/march/steps.hpp"
 
@@ -46,6 +47,18 @@ class March {
         next.take_over(steps_);
         steps_ = std::move(next), swimmer_ = std::move(swimmer), modes_ = std::move(modes);
         here_ = StationWork(*swimmer_);
+    }
+
+    const MarchSettings& settings() const { return settings_; }
+
+    // Hands over all that goes on but what drives the body, which must follow first (`march/archive.hpp`).
+    template <class Archive>
+    void pass(Archive& archive)
+    {
+        archive.same(sizeof(State)), archive.same(swimmer_->grid.nodes), archive.same(swimmer_->stations);
+        archive.same(modes_ ? modes_->coordinates : 0), archive.same(modes_ ? modes_->servos.size() : 0);
+        archive(now_.time, now_.state, now_.x, now_.rate, now_.works, now_.damping_work, settings_.commands);
+        steps_.pass(archive);
     }
 
     // What drives the body from now on; commands hold. The next step begins anew, unless the motion goes on as before

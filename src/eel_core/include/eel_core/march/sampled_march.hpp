@@ -60,6 +60,24 @@ class SampledMarch {
     }
 
     March& march() { return march_; }
+    bool begun() const { return tables_ != nullptr; }
+
+    // Hands over all that goes on; the `flow` is that of the start (`march/archive.hpp`).
+    template <class Archive>
+    void pass(Archive& archive, std::shared_ptr<const Flow> flow = {})
+    {
+        bool begins = begun();
+        archive(begins);
+        if constexpr (Archive::reads) {
+            flow_ = std::move(flow), tables_ = nullptr;
+            if (begins) begin_law();
+        }
+        if (!begins) return;
+        std::vector<double> breakpoints = march_.settings().breakpoints;
+        archive(bounds_, rows_, still_, under_way_, unfinished_, law_.segment, law_.blend, breakpoints, *tables_);
+        if constexpr (Archive::reads) follow(std::move(breakpoints), false);
+        archive(march_);
+    }
 
     // Stands at the start, straight, with the head's twist relative to the water; `values`: the sample at time 0;
     // `flow`: by which its water moves, no function of Python; none: not by itself. Returns the kinetic and potential
@@ -68,9 +86,7 @@ class SampledMarch {
                  const Twist<Space, double>& twist, const double* values, std::shared_ptr<const Flow> flow = {})
     {
         flow_ = std::move(flow);
-        static const std::vector<std::size_t> axes{0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 1, 1};
-        tables_ = std::make_shared<LawTables>(axes, kind_->swimmer->grid.nodes, kind_->swimmer->stations);
-        law_ = {tables_, 0.0, {}, {}, {}, {}};
+        begin_law();
         still_ = {true, true}, rows_.assign(rows_.size(), 0.0);
         bounds_ = bounds, under_way_ = unfinished_ = false;
         tabulate_sample(values);
@@ -91,6 +107,13 @@ class SampledMarch {
     static constexpr std::size_t axes_rows = 6, blend_row = 12;
 
     std::size_t columns() const { return kind_->weights.columns; }
+
+    void begin_law()
+    {
+        static const std::vector<std::size_t> axes{0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 1, 1};
+        tables_ = std::make_shared<LawTables>(axes, kind_->swimmer->grid.nodes, kind_->swimmer->stations);
+        law_ = {tables_, 0.0, {}, {}, {}, {}};
+    }
 
     void take_sample(double time, const double* values)
     {
@@ -192,6 +215,22 @@ class SampledMarches {
     std::size_t size() const { return marches_.size(); }
     std::size_t points() const { return points_; }
     SampledMarch& operator[](std::size_t index) { return marches_.at(index); }
+
+    // Hands over all that goes on.
+    void pass(Writer& writer)
+    {
+        writer.same(size());
+        for (SampledMarch& march : marches_) march.pass(writer);
+    }
+    // Takes it over; `flows`: of each, as of its start. Nothing changes where it does not fit.
+    void pass(Reader& reader, const std::vector<std::shared_ptr<Flow>>& flows)
+    {
+        reader.same(size());
+        std::vector<SampledMarch> there = marches_;
+        for (std::size_t i = 0; i < size(); ++i) there[i].pass(reader, i < flows.size() ? flows[i] : nullptr);
+        reader.finish();
+        marches_ = std::move(there);
+    }
 
     // Wakes the threads, as `advance` will be called soon.
     void wake() { threads_.wake(); }

@@ -22,6 +22,15 @@ class Steps {
     // Goes on as `last` would, which takes steps of another swimmer or by another method.
     void take_over(Steps& last) { pace() = last.pace(); }
 
+    // Hands over what the next steps and the present follow from (`march/archive.hpp`).
+    template <class Archive>
+    void pass(Archive& archive)
+    {
+        archive.same(stepper_.index());
+        std::visit([&](auto& stepper) { stepper.pass(archive); }, stepper_);
+        archive(due_);
+    }
+
     Counts counts() const
     {
         return std::visit([](const auto& stepper) { return stepper.pace.counts; }, stepper_);

@@ -51,6 +51,14 @@ class Stepper {
             [this] { return end_time(); }, [&](double tiny) { return take_step(settings, tiny); });
     }
 
+    // Hands over what the next steps and the present follow from (`march/archive.hpp`).
+    template <class Archive>
+    void pass(Archive& archive)
+    {
+        archive.same(method_.stages), archive.same(method_.adams);
+        archive(pace, adams_, start_, length_, begin_, end_, end_twist_, rate_, works_, powers_, anew_);
+    }
+
     // Puts state and works at the present time, which lies within the step.
     void put_state(bool ledger, Present& now) const
     {
