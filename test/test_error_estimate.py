@@ -13,7 +13,7 @@ from eel_dynamics.runs import companion
 from eel_dynamics.runs.companion import relative_errors
 from studied import random_swims
 
-from eel_dynamics import Accuracy, Body, Scene, Simulation, simulate, simulate_batch
+from eel_dynamics import Accuracy, Body, Robot, Scene, Simulation, simulate, simulate_batch
 from eel_gaits import falling, still, straight
 
 FINE = Accuracy(name="fine settings", resolution=70.0, tolerance=1e-11)
@@ -25,13 +25,22 @@ SENSITIVE = {
 }
 
 
-def run_at(position, time, torque=None):
-    """As a run, of a body of 1 m and 2 kg, with a law of period 1 s."""
+def run_at(position, time, torque=None, turn=0.0, twist=0.0):
+    """As a run, of a body of 1 m and 2 kg, with a law of period 1 s; heads turned by `turn` [rad] about z, (T,)."""
     law = SimpleNamespace(waves=[SimpleNamespace(period=1.0)])
     path = float(np.linalg.norm(np.diff(position, axis=0), axis=1).sum())
-    body = SimpleNamespace(length=1.0)
+    half = 0.5 * np.broadcast_to(turn, time.shape)
     return SimpleNamespace(
-        law=law, body=body, body_mass=2.0, time=time, position=position, path_length=path, torque=torque
+        law=law,
+        body=SimpleNamespace(length=1.0),
+        body_mass=2.0,
+        time=time,
+        position=position,
+        path_length=path,
+        torque=torque,
+        orientation=np.column_stack((0.0 * time, 0.0 * time, np.sin(half), np.cos(half))),
+        twist=np.broadcast_to(twist, (len(time), 6)),
+        robot=None,
     )
 
 
@@ -63,6 +72,19 @@ def test_torques_that_are_round_off_have_no_relative_error():
     tiny = np.full((21, 5, 3), 1e-15)
     found = relative_errors(run_at(still, time, tiny), run_at(still, time, -tiny))
     assert found.torque == pytest.approx(2e-15 * np.sqrt(3.0) / 2e-3)
+
+
+def test_errors_of_the_head_s_turn_and_twist_are_by_their_scales():
+    """Turns in rad, of q and -q alike; velocities by the greatest speed; slow turns by a thousandth of 1/T."""
+    time, still = np.linspace(0.0, 1.0, 21), np.zeros((21, 3))
+    true = run_at(still, time, turn=2.0 * time, twist=(0.0, 0.0, 0.0, 2.0, 0.0, 0.0))
+    run = run_at(still, time, turn=2.0 * time + 2.0 * np.pi + 3e-4, twist=(0.0, 0.0, 1e-6, 2.0, 4e-4, 0.0))
+    found = relative_errors(run, true, share=0.5)
+    assert found.orientation == pytest.approx(1.5e-4) and found.twist == pytest.approx(0.5 * 1e-6 / 1e-3)
+    for swim in (run, true):
+        swim.twist = swim.twist + np.array((0.0, 0.0, 5.0, 0.0, 0.0, 0.0))
+    assert relative_errors(run, true).twist == pytest.approx(4e-4 / 2.0, rel=1e-3)
+    assert found.worst == found.position == 0.0 and (found.joint_angle, found.joint_rate) == (None, None)
 
 
 def test_what_is_missed_is_said_in_one_line():
@@ -131,6 +153,18 @@ def test_the_companion_has_another_grid(body, wrench, target):
     error = run.error_estimate
     assert error.cost % error.evaluations == 0  # one companion: nothing was refined
     assert error.cost // error.evaluations != run.nodes
+
+
+@pytest.mark.parametrize("robot", ["eight_servos", "passive_tail"])
+def test_errors_that_no_target_promises_are_measured_too(robot):
+    swim = {"duration": 1.0, "robot": Robot.named(robot), "stations": 11}
+    run = simulate(straight(), **swim, accuracy=1e-3)
+    exact = Accuracy(name="exact", resolution=60.0, tolerance=1e-7)
+    true = relative_errors(run, simulate(straight(), **swim, accuracy=exact, estimate=False)).errors
+    estimated = run.error_estimate.errors
+    assert list(estimated) == list(true) == ["position", "torque", "orientation", "twist", "joint_angle", "joint_rate"]
+    assert all(0.0 < true[name] < estimated[name] < 1e-2 for name in true), (true, estimated)
+    assert "not promised        orientation" in run.summary() and "joint rates" in run.summary()
 
 
 def estimate_with(monkeypatch, run, **changed):

@@ -133,6 +133,7 @@ def test_the_error_under_steps_of_commands_is_not_underrated():
     (measured, torque), (_, exact) = runs
     apart, size = (np.linalg.norm(each, axis=2).max() for each in (torque - exact, exact))
     assert measured.error_estimate.torque > apart / size > 2e-5
+    assert 0.0 < measured.error_estimate.joint_angle < 1e-3 and 0.0 < measured.error_estimate.joint_rate < 0.1
 
 
 def test_series_springs_that_ring_after_each_command_keep_their_target():

@@ -72,6 +72,8 @@ def test_the_head_is_nearer_to_the_true_motion_than_its_errors_say():
     errors = simulation.head_errors
     assert errors.relative == simulation.error_estimate.position
     assert np.all(greatest < errors[1:]) and np.all(np.array(errors[1:]) < 1e-3), (greatest, errors)
+    estimate = simulation.error_estimate
+    assert estimate.orientation == errors.orientation and 0.0 < estimate.twist < 1e-3 and estimate.joint_angle is None
 
 
 def test_a_head_whose_position_was_lost_has_no_absolute_errors():

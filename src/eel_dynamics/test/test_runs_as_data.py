@@ -264,6 +264,7 @@ def test_files_that_name_no_axes_have_the_paper_s_and_are_converted_with_one_lin
         run = Run.load(DATA / "paper_axes_run.nc")
     again = simulate(run.law, 0.6, scene=run.scene, stations=4, sample_period=0.1, position=(-1, -2, 3), twist=twist)
     assert len(told) == 1 and run.scene.current == current and run.axes == "rep103"
+    assert run.error_estimate.torque > 0.0 and run.error_estimate.twist is None  # which it did not know
     for name in ("position", "orientation", "twist", "head_acceleration", "backbone", "section_orientation", "torque"):
         assert getattr(run, name) == pytest.approx(getattr(again, name), abs=1e-9), name
     with pytest.warns(UserWarning, match=r"^batch file .*batch\.nc' has the paper's axes, which are converted") as told:

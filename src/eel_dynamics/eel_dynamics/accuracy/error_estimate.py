@@ -10,7 +10,7 @@ is `error_by_tolerance` in eel_core/steppers/step_control.hpp.
 """
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -23,18 +23,27 @@ FIRST_PART = 0.2  # share of a run in which the distance grows from nothing, and
 # whose logarithm rises by 1.8 or 3.6 in a line through the later 80 %.
 SENSITIVE = np.log(100.0)
 LEAST_SAMPLES = 5  # of a fit of the growth rate
-# Torques below this part of m (l/T)^2 count by it: m mass, l length, T the shortest period or the run's duration.
-TORQUE_FLOOR = 1e-3
+# Torques below this part of m (l/T)^2 count by it, speeds of l/T, rates of 1/T: m mass, l length, T the shortest period
+# or the run's duration. Their relative error would be one of round-off.
+FLOOR = 1e-3
+PROMISED = "position", "torque"  # what a target is for
+MEASURED = *PROMISED, "orientation", "twist", "joint_angle", "joint_rate"
 
 
 @dataclass(frozen=True)
 class ErrorEstimate:
-    """Relative errors of position and torque, as accuracy targets define them; infinite where they are not known.
+    """Errors of a run, infinite where they are not known. A target promises those of position and torque alone.
 
-    torque is None for a run without internal wrench or stations. growth_rate [1/s]: the distance of two runs grows by
-    a factor of e in 1/growth_rate; 0 where it does not grow, or not seen. evaluations: of the head's dynamics that the
-    estimate took, beside those of the run; cost: the same, each times the nodes along the body. resampling: the part of
-    both errors that comes from the rows of a `SampledLaw`; None for a law in closed form.
+    position, torque: relative, as accuracy targets define them; torque is None for a run without internal wrench or
+    stations. growth_rate [1/s]: the distance of two runs grows by a factor of e in 1/growth_rate; 0 where it does not
+    grow, or not seen. evaluations: of the head's dynamics that the estimate took, beside those of the run; cost: the
+    same, each times the nodes along the body. resampling: the part of the errors of position and torque that comes from
+    the rows of a `SampledLaw`; None for a law in closed form.
+
+    The others are the greatest over all samples; None where there is no such quantity, and in files of before.
+    orientation [rad]: of the head. twist: of its velocity, relative to the greatest speed of the run, or of its angular
+    velocity, likewise, whichever is greater. joint_angle [rad]: of a robot's joints, and of the modes of tails and
+    muscles, times their length. joint_rate: of their rates, relative to the greatest.
     """
 
     position: float
@@ -43,19 +52,29 @@ class ErrorEstimate:
     evaluations: int = 0
     cost: int = 0
     resampling: float | None = None
+    orientation: float | None = None
+    twist: float | None = None
+    joint_angle: float | None = None
+    joint_rate: float | None = None
+
+    @property
+    def errors(self) -> dict[str, float]:
+        """Those of `MEASURED` that there are, by name."""
+        found = {name: getattr(self, name) for name in MEASURED}
+        return {name: value for name, value in found.items() if value is not None}
 
     @property
     def worst(self) -> float:
-        """The greater of the two."""
+        """The greater of those of position and torque."""
         return max(self.position, self.torque or 0.0)
 
     def at_least(self, share: float, other: "ErrorEstimate") -> "ErrorEstimate":
         """The same, with no error below `share` of that of `other`, where this is known."""
-        position, torque = (
-            value if value is None or least is None or not np.isfinite(least) else max(value, share * least)
-            for value, least in ((self.position, other.position), (self.torque, other.torque))
-        )
-        return replace(self, position=self.position if position is None else position, torque=torque)
+        least = {name: value for name, value in other.errors.items() if np.isfinite(value)}
+        changes: dict[str, Any] = {
+            name: max(value, share * least[name]) for name, value in self.errors.items() if name in least
+        }
+        return replace(self, **changes)
 
     def round_off(self, duration: float) -> float:
         """The relative error that round-off has grown to after `duration` [s] at the `growth_rate`."""
@@ -97,19 +116,36 @@ class HeadErrors(NamedTuple):
     angular_velocity: float  # rad/s
 
 
-def least_torque(law, mass: float, length: float, duration: float) -> float:
-    """The torque [N m] by which smaller torques count: their relative error would be one of round-off.
+class Floors(NamedTuple):
+    """What smaller values of a run count by."""
 
-    law: the `Law`, or None. mass [kg], length [m]: of the body. duration [s]: of the run.
-    """
+    torque: float  # N m
+    speed: float  # m/s
+    rate: float  # rad/s
+
+
+def floors_of(law, mass: float, length: float, duration: float) -> Floors:
+    """The floors of a run of `duration` [s] by `law` (or None), of a body of `mass` [kg] and `length` [m]."""
     periods = [term.period for term in law.waves] if law is not None else []
-    return torque_floor(mass, length, min(periods, default=max(duration, 1.0)))
+    return floors(mass, length, min(periods, default=max(duration, 1.0)))
 
 
-def torque_floor(mass: float, length: float, time: float) -> float:
-    """[N m], of a `mass` [kg] that moves by `length` [m] in a `time` [s]; infinite where a power would overflow."""
+def floors(mass: float, length: float, time: float) -> Floors:
+    """Of a `mass` [kg] that moves by `length` [m] in a `time` [s]; infinite where a power would overflow."""
     fast = length / time
-    return TORQUE_FLOOR * mass * (fast * fast)
+    return Floors(FLOOR * mass * (fast * fast), FLOOR * fast, FLOOR / time)
+
+
+def twist_size(twist: np.ndarray) -> np.ndarray:
+    """(2,) m/s, rad/s: the greatest speed and angular speed in twists (..., 6) or their differences."""
+    sizes = np.linalg.norm(twist.reshape(-1, 2, 3), axis=2).max(axis=0)
+    return np.asarray(sizes[::-1])
+
+
+def angle_between(one: np.ndarray, two: np.ndarray) -> np.ndarray:
+    """(...) rad: the angle of the turn from one unit quaternion (..., 4) to another, which q and -q tell alike."""
+    same, opposite = (np.linalg.norm(one + sign * two, axis=-1) for sign in (-1.0, 1.0))
+    return np.asarray(4.0 * np.arcsin(np.minimum(1.0, np.minimum(same, opposite) / 2.0)))
 
 
 def growth_rate_of(time: np.ndarray, distance: np.ndarray, small: float) -> float:

@@ -12,7 +12,7 @@ from eel_gaits.laws.law import Law
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import LONGEST_STEP
-from eel_dynamics.accuracy.error_estimate import torque_floor
+from eel_dynamics.accuracy.error_estimate import floors
 
 # A run takes at most so many evaluations per simulated second. They take seconds of wall time. The most exact runs need
 # a tenth of them.
@@ -73,5 +73,5 @@ def step_bounds_of(
         part_of_span=1.0 if between_samples else min(1.0, part_of_span * accuracy.longest_step / LONGEST_STEP),
         most_steps=setup.most_evaluations / EVALUATIONS[accuracy.method],
         spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / len(here.grid.x))),
-        torque_floor=torque_floor(mass, length, min(law_scale, 1.0)),
+        torque_floor=floors(mass, length, min(law_scale, 1.0)).torque,
     )

@@ -7,6 +7,13 @@ from eel_model.robot.actuators import at_limit
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.trim import trim_of
 
+NOT_PROMISED = (  # errors that are measured, and that no target is for
+    ("orientation", "orientation", " rad"),
+    ("twist", "twist", ""),
+    ("joint_angle", "joint angles", " rad"),
+    ("joint_rate", "joint rates", ""),
+)
+
 
 def describe(run, periods: int | None = None) -> str:
     """Figures of the whole run, then those over the last `periods` whole periods (None: the later half of the run)."""
@@ -130,4 +137,7 @@ def _of_the_cost(run) -> list[str]:
             f"estimated error     of the position {error.position:.1e}{torque}{rows}; "
             f"it took {error.evaluations} evaluations"
         )
+        known = error.errors
+        further = [f"{words} {known[name]:.1e}{unit}" for name, words, unit in NOT_PROMISED if name in known]
+        lines += [f"not promised        {', '.join(further)}"] if further else []
     return lines

@@ -229,8 +229,8 @@ def _write(run: Run, path: Path) -> None:
         run.save(path)
         return
     error = run.error_estimate
-    errors = {} if error is None else {"error_position": error.position, "error_growth_rate": error.growth_rate}
-    errors |= {} if error is None or error.torque is None else {"error_torque": error.torque}
+    errors = {} if error is None else {f"error_{name}": value for name, value in error.errors.items()}
+    errors |= {} if error is None else {"error_growth_rate": error.growth_rate}
     if path.suffix == ".npz":
         with replacing(path) as draft:
             arrays: dict[str, Any] = contents_of_run(run).arrays | errors | {"axes": run.axes}

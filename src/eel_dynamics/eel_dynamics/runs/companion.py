@@ -17,8 +17,17 @@ from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.scene import ROUGH_FRICTION, Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.accuracy.error_estimate import SMALL, ErrorEstimate, growth_rate_of, least_torque
+from eel_dynamics.accuracy.error_estimate import (
+    PROMISED,
+    SMALL,
+    ErrorEstimate,
+    angle_between,
+    floors_of,
+    growth_rate_of,
+    twist_size,
+)
 from eel_dynamics.analysis.peaks import torque_size
+from eel_dynamics.simulation.bending.joint_motion import bends
 from eel_dynamics.simulation.error_meter import on_another_grid
 from eel_dynamics.simulation.stopping import SimulationStopped
 
@@ -37,21 +46,33 @@ def relative_errors(run, reference, share: float = 1.0) -> ErrorEstimate:
     """Distance of `run` from `reference`, a run of the same swimmer with the same stations, at the reference's samples.
 
     Of the head's position: the greatest over the later half of the samples, relative to the length of the path, or of
-    the body if that is longer. Of the torque: the greatest over samples and stations, relative to its own maximum,
-    which counts for no less than `least_torque`. growth_rate: of the distance of the heads. share: of the distances,
-    which counts; but at the start that of the torques counts in full, as the steps have no part in it yet.
+    the body if that is longer. Of the torque: the greatest over samples and stations, relative to its own maximum.
+    The others as `ErrorEstimate` tells. Sizes count for no less than `Floors`. growth_rate: of the distance of the
+    heads. share: of the distances, which counts; but at the start that of the torques counts in full, as the steps have
+    no part in it yet.
     """
     time, here = reference.time, np.searchsorted(run.time, reference.time)
     distance = np.linalg.norm(run.position[here] - reference.position, axis=1)
     scale = max(reference.path_length, reference.body.length)
     later = distance[time >= 0.5 * time[-1]]
-    position, rate = float(later.max()) / scale, growth_rate_of(time, distance, SMALL * scale)
-    if run.torque is None or reference.torque is None:
-        return ErrorEstimate(share * position, None, rate)
-    least = least_torque(run.law, run.body_mass, run.body.length, float(time[-1]))
-    size, apart = torque_size(reference.torque).max(), torque_size(run.torque[here] - reference.torque)
-    distance = max(share * apart.max(), apart[0].max())
-    return ErrorEstimate(share * position, float(distance / max(size, least)), rate)
+    least = floors_of(run.law, run.body_mass, run.body.length, float(time[-1]))
+    speeds = np.maximum(twist_size(reference.twist), (least.speed, least.rate))
+    apart = {
+        "position": later.max() / scale,
+        "orientation": angle_between(run.orientation[here], reference.orientation).max(),
+        "twist": (twist_size(run.twist[here] - reference.twist) / speeds).max(),
+    }
+    own, others = bends(run, vars(run)), bends(reference, vars(reference))
+    if own.size and others.size:
+        differs = np.abs(own[:, here] - others)
+        apart["joint_angle"] = differs[0].max()
+        apart["joint_rate"] = differs[1].max() / max(np.abs(others[1]).max(), least.rate)
+    found: dict[str, Any] = {"torque": None} | {name: float(share * value) for name, value in apart.items()}
+    if run.torque is not None and reference.torque is not None:
+        torques = torque_size(run.torque[here] - reference.torque)
+        greatest = max(share * torques.max(), torques[0].max())
+        found["torque"] = float(greatest / max(torque_size(reference.torque).max(), least.torque))
+    return ErrorEstimate(growth_rate=growth_rate_of(time, distance, SMALL * scale), **found)
 
 
 def with_error_estimate(swim: Any, request: Any) -> Any:
@@ -107,15 +128,13 @@ def _with_resampling(run, request, others: list):
     coarse = _finished(request._replace(law=law.coarser()), settings)
     if coarse is None:
         return replace(run, error_estimate=replace(error, position=np.inf, resampling=np.inf))
-    apart = relative_errors(others[0], coarse.run)
-    position, torque = RESAMPLING * apart.position, apart.torque and RESAMPLING * apart.torque
+    apart = {name: RESAMPLING * value for name, value in relative_errors(others[0], coarse.run).errors.items()}
     error = replace(
         error,
-        position=error.position + position,
-        torque=error.torque if torque is None else error.torque + torque,
+        **{name: value + apart.get(name, 0.0) for name, value in error.errors.items()},
         evaluations=error.evaluations + coarse.run.evaluations,
         cost=error.cost + coarse.run.evaluations * coarse.run.nodes,
-        resampling=max(position, torque or 0.0),
+        resampling=max(apart.get(name, 0.0) for name in PROMISED),
     )
     return replace(run, error_estimate=error)
 

@@ -10,6 +10,7 @@ more accurate observation.
 from collections import deque
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -19,11 +20,15 @@ from eel_dynamics.accuracy.error_estimate import (
     SMALL,
     ErrorEstimate,
     HeadErrors,
+    angle_between,
+    floors_of,
     growth_rate_of,
-    least_torque,
+    twist_size,
 )
+from eel_dynamics.simulation.bending.joint_motion import bends
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Snapshot
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 COMPARED_EVERY = 0.1  # s of simulated time between two comparisons
@@ -66,6 +71,9 @@ class ErrorMeter:
         self._path = self._torque_distance = 0.0  # m, N m: since `measured_since`
         self._apart = np.zeros(4)  # as in `HeadErrors`: m, rad, m/s, rad/s
         self._torque: float | None = None  # N m, the greatest since then
+        self._speeds = np.zeros(2)  # m/s, rad/s: the greatest since then
+        # rad, rad/s, rad/s: distances of angles and rates of joints, and the greatest rate; None without a robot
+        self._bends: np.ndarray | None = None
         self._distances: deque = deque(maxlen=REMEMBERED)  # (time [s], distance of the heads [m])
         self.due = False  # whether the next instant is to be compared, as torques have jumped
         self.begin_again(march)
@@ -75,6 +83,7 @@ class ErrorMeter:
         self.measured_since = self._compared_at = march.time
         self._last_position, self._growth_rate, self._torque = None, growth_rate, None
         self._path, self._torque_distance, self._apart = 0.0, 0.0, np.zeros(4)
+        self._speeds, self._bends = np.zeros(2), None
         self._distances.clear()
         if not self.wanted:
             return
@@ -130,13 +139,13 @@ class ErrorMeter:
         except SimulationStopped:
             self._companion = None
             return
-        self._include(this, other)
+        self._include(this, other, march.setup)
         if not self._apart[0] <= SMALL * self._scale:
             self.lost_at = march.time if self.lost_at is None else self.lost_at
             self.begin_again(march, self.estimate(march).growth_rate)
 
-    def _include(self, this: Snapshot, other: Snapshot):
-        """Add a comparison of two snapshots of one time."""
+    def _include(self, this: Snapshot, other: Snapshot, setup: SimulationSetup):
+        """Add a comparison of two snapshots of one time, of a swimmer with this `setup`."""
         apart = _distances(this, other)
         if self._last_position is not None:
             self._path += float(np.linalg.norm(this.position - self._last_position))
@@ -146,6 +155,11 @@ class ErrorMeter:
         if this.torque is not None:
             size, differs = np.linalg.norm((this.torque, this.torque - other.torque), axis=2).max(axis=1)
             self._torque, self._torque_distance = max(self._torque or 0.0, size), max(self._torque_distance, differs)
+        self._speeds = np.maximum(self._speeds, twist_size(this.twist))
+        own, others = bends(setup, this.joints), bends(setup, other.joints)
+        if own.size:
+            sizes = *np.abs(own - others).max(axis=1), np.abs(own[1]).max()
+            self._bends = np.maximum(0.0 if self._bends is None else self._bends, sizes)
 
     @property
     def _scale(self) -> float:
@@ -158,16 +172,20 @@ class ErrorMeter:
         """As `Simulation.error_estimate`."""
         if self._companion is None:
             return ErrorEstimate(np.inf, None)
-        torque = None
+        law, mass = march.follower.law, march.discretisation.mass
+        least = floors_of(law, mass, self._length, self._compared_at - self.measured_since)
+        found: dict[str, Any] = {"torque": None, "orientation": self._apart[1]}
+        found["twist"] = (self._apart[2:] / np.maximum(self._speeds, (least.speed, least.rate))).max()
         if self._torque is not None:
-            duration = self._compared_at - self.measured_since
-            least = least_torque(march.follower.law, march.discretisation.mass, self._length, duration)
-            torque = self._torque_distance / max(self._torque, least)
+            found["torque"] = self._torque_distance / max(self._torque, least.torque)
+        if self._bends is not None:
+            found["joint_angle"] = self._bends[0]
+            found["joint_rate"] = self._bends[1] / max(self._bends[2], least.rate)
         rate = self._growth_rate
         if len(self._distances) >= LEAST_SAMPLES:
             time, distances = np.array(self._distances).T
             rate = growth_rate_of(time - self.measured_since, distances, SMALL * self._scale)
-        return ErrorEstimate(self.head_errors.relative, torque, rate)
+        return ErrorEstimate(self.head_errors.relative, growth_rate=rate, **found)
 
     @property
     def head_errors(self) -> HeadErrors:
@@ -180,7 +198,5 @@ class ErrorMeter:
 
 def _distances(this: Snapshot, other: Snapshot) -> np.ndarray:
     """(4,) m, rad, m/s, rad/s: how far the heads are apart in two snapshots of one time."""
-    position, twist = this.position - other.position, this.twist - other.twist
-    same, opposite = (np.linalg.norm(this.orientation + sign * other.orientation) for sign in (-1.0, 1.0))
-    angle = 4.0 * np.arcsin(min(same, opposite) / 2.0)  # q and -q are one orientation
-    return np.array((np.linalg.norm(position), angle, np.linalg.norm(twist[3:]), np.linalg.norm(twist[:3])))
+    position, angle = this.position - other.position, angle_between(this.orientation, other.orientation)
+    return np.array((np.linalg.norm(position), angle, *twist_size(this.twist - other.twist)))

@@ -5,8 +5,11 @@
 `Robot.joints`, in their order and in their sign; modes are those of its tails and muscles, in section axes.
 """
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
-from eel_model.robot.compiled import ModeTable
+from eel_model.robot.compiled import ModeTable, mode_table
 
 from eel_dynamics.simulation.observations import Variable
 
@@ -67,3 +70,16 @@ class JointMotion:
             "mode_amplitude": x[:, soft],
             "mode_rate": rate[:, soft],
         }
+
+
+def bends(swimmer: Any, joints: Mapping[str, Any]) -> np.ndarray:
+    """(2, ..., M): angles [rad] of joints, and of modes times their length; and the rates of both [rad/s].
+
+    swimmer: has the robot, its body and the scene. joints: arrays of `JOINT_ARRAYS`; M = 0 without them.
+    """
+    if swimmer.robot is None or joints.get("joint_angle") is None:
+        return np.zeros((2, 0))
+    table = mode_table(swimmer.robot, swimmer.body, swimmer.scene.planar)
+    length = (table.end - table.start)[~table.joints]
+    pairs = ("joint_angle", "mode_amplitude"), ("joint_rate", "mode_rate")
+    return np.array([np.concatenate([joints[one], joints[other] * length], axis=-1) for one, other in pairs])
