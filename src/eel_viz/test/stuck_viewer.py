@@ -22,7 +22,7 @@ from made_up_recording import body, sample
 
 STEP = 10**7  # ns
 NOTICED = 6.0  # s, by when it has been said that the viewer does not read, where buffers are full at once
-SIGNS = "has not read", "does not answer"
+SIGNS = "has not read", "does not answer", "does not keep up"
 MOST = 3.0  # of the megabytes
 WAIT = 0.5  # s between two lines
 

@@ -12,6 +12,8 @@ from eel_viz.settings import Settings
 from eel_viz.views import blueprint
 from eel_viz.views.views import Look
 
+from eel_viz import entities
+
 HUES = {  # degrees, of colours that are neither grey nor white
     "red": (345, 375),
     "orange": (20, 40),
@@ -71,3 +73,17 @@ def test_the_words_beside_the_swimmer_say_the_colours_of_the_scene():
     ):
         assert words in said and words.split()[0] in word_of(colour)
     assert word_of(colours.FIN) == {"lime"} and word_of(colours.LOADS[-1]) == {"red"}
+
+
+@pytest.mark.parametrize(("limit", "words"), [(0.0, "of the last 3 s"), (0.25, "up to 0.25 N m")])
+def test_the_words_say_what_the_scale_of_the_torque_is(limit, words):
+    assert f"on the scale {words} below the picture" in look_text(Settings(colour_limit=limit))
+
+
+@pytest.mark.parametrize("joints", [False, True])
+def test_the_plot_of_energies_names_all_its_curves(joints):
+    drawn = {name for path in (entities.KINETIC, entities.STORED) for name, _ in SERIES[path]}
+    words = dict(plots(Look(joints=joints)))
+    (name,) = [name for name in words if name.startswith("Energy")]
+    named = {each.rpartition(" ")[0] for each in name.partition(": ")[2].split(", ")}
+    assert named == drawn - ({"springs"} if not joints else set())

@@ -10,7 +10,7 @@ from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import Body, Pose, Profiles, Status
 from eel_viz.plots.state_text import Summary
 from eel_viz.recording.destination import send_properties
-from eel_viz.settings import Drawing
+from eel_viz.settings import Settings
 
 SHORT = reprlib.Repr()
 SHORT.maxstring = 220  # characters of a law's name, which is not checked before
@@ -20,9 +20,9 @@ LEVELS = ("INFO", "WARN", "ERROR", "WARN")  # of a DiagnosticStatus: OK, WARN, E
 class RunText(Summary):
     """Logs to `stream`, by the methods of topics, and sends properties to its `recording`."""
 
-    def __init__(self, recording: rr.RecordingStream, stream: BatchedStream, scales: Drawing) -> None:
+    def __init__(self, recording: rr.RecordingStream, stream: BatchedStream, settings: Settings) -> None:
         super().__init__()
-        self._recording, self._stream, self._scales = recording, stream, scales
+        self._recording, self._stream, self._settings = recording, stream, settings
         self._statuses_said: dict[str, tuple[int, str]] = {}  # level and message, by name
         self._log_look(None)
 
@@ -62,7 +62,7 @@ class RunText(Summary):
 
     def _log_look(self, body: Body | None) -> None:
         self._stream.log_static(
-            entities.LOOK, rr.TextDocument(look_text(self._scales, body), media_type="text/markdown")
+            entities.LOOK, rr.TextDocument(look_text(self._settings, body), media_type="text/markdown")
         )
 
     def _log_event(self, stamp: int, text: str, level: str) -> None:
@@ -76,14 +76,15 @@ class RunText(Summary):
         self._stream.log_text(self.stamp, entities.RUN, self.text())
 
 
-def look_text(scales: Drawing, body: Body | None = None) -> str:
+def look_text(settings: Settings, body: Body | None = None) -> str:
     """Markdown: what to look at, a sentence each, and the scales of the arrows; with what `body` has of parts."""
+    scale = f"up to {settings.colour_limit:g} N m" if settings.colour_limit else "of the last 3 s"
     lines = [
-        "The eel swims towards its eyes, along the white arrow; bends run from nose to tail.",
-        "Red and blue on its flanks: the torque **C3** that bends it sideways, on the scale of the last 3 s below "
-        "the picture (C1 twists, C2 bends it up and down).",
-        f"Arrows: the **force of the water**, {scales.load_scale:g} m for 1 N/m; magenta at nose and tail, "
-        f"{scales.end_force_scale:g} m for 1 N. Violet ribbon: what the tail leaves in the **wake**.",
+        "Eyes show its head, the white arrow where it moves.",
+        f"Red and blue on its flanks: the torque **C3** that bends it sideways, on the scale {scale} below the picture "
+        "(C1 twists, C2 bends it up and down).",
+        f"Arrows: the **force of the water**, {settings.load_scale:g} m for 1 N/m; magenta at nose and tail, "
+        f"{settings.end_force_scale:g} m for 1 N. Violet ribbon: what the tail leaves in the **wake**.",
     ]
     parts = {
         "Lime: **fins**.": body and body.fins,

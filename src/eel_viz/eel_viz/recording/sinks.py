@@ -2,14 +2,15 @@
 """The destinations of a recording: a file, a running viewer, or a server that any viewer can connect to.
 
 The server runs in this process, and the streams of the recordings are its clients: nothing blocks without a viewer,
-memory is bounded, and an open viewer switches to a new recording. A stream directly to an absent viewer would block for
-ever in the end, so the viewer's port is probed first.
+memory is bounded, and an open viewer switches to a new recording. A viewer that holds up the server is disconnected. A
+stream directly to an absent viewer would block for ever in the end, so the viewer's port is probed first.
 """
 
 import ipaddress
 import socket
 import subprocess
 import threading
+import time
 from functools import partial
 from urllib.parse import urlsplit
 
@@ -29,6 +30,7 @@ from eel_viz.recording.destination import (
 from eel_viz.recording.recording_file import FileDestination
 from eel_viz.settings import Settings
 from eel_viz.viewer import display, free_port, listening, open_window, serve_to_browsers
+from eel_viz.viewer_connections import ViewerConnections
 
 LIVE_TICK = 0.16  # s: short enough for smooth motion in a viewer
 ANSWER_LIMIT = 1.0  # s until a listening viewer must answer
@@ -38,6 +40,8 @@ VIEWER_FLUSH_TIMEOUT = 0.1  # s for one flush to a viewer
 class ViewerDelivery(Delivery):
     """A stream to a viewer, which is given nothing while it does not read."""
 
+    RECOVERED = "the viewer reads again"
+
     def __init__(self, destination: Destination, stream: rr.RecordingStream) -> None:
         super().__init__(destination, stream)
         self._stalled_since: float | None = None  # s: since when the viewer has not read
@@ -46,21 +50,29 @@ class ViewerDelivery(Delivery):
     @property
     def accepts_data(self) -> bool:
         """Whether the viewer is there, and reads."""
-        return super().accepts_data and self._stalled_since is None
+        return super().accepts_data and not self.stalled
+
+    @property
+    def stalled(self) -> bool:
+        """Whether the last flush did not arrive: what is logged would fill this process's memory."""
+        return self._stalled_since is not None
 
     def find_faults(self, now: float) -> None:
         """Find out whether the viewer reads, and say so where that has changed."""
         if self._arrived():
             if self._stall_reported:
-                self.destination.log_info("the viewer reads again")
+                self.destination.log_info(self.RECOVERED)
             self._stalled_since, self._stall_reported = None, False
             return
         self._stalled_since = now if self._stalled_since is None else self._stalled_since
         if now - self._stalled_since > STALL_TIMEOUT and not self._stall_reported:
-            self._stall_reported = True
-            self.destination.log_warning(
-                f"the viewer has not read for {STALL_TIMEOUT:g} s: it misses what comes until it does"
-            )
+            self._report_stall()
+
+    def _report_stall(self) -> None:
+        self._stall_reported = True
+        self.destination.log_warning(
+            f"the viewer has not read for {STALL_TIMEOUT:g} s: it misses what comes until it does"
+        )
 
     def close(self, end: float = 0.0) -> None:
         """Flush and close the stream; one that blocks is detached instead."""
@@ -75,6 +87,31 @@ class ViewerDelivery(Delivery):
         except RuntimeError:
             self.disconnected = True
             return False
+
+
+class ServerDelivery(ViewerDelivery):
+    """A stream to the own server. A viewer that holds it up is disconnected, so that the others miss nothing."""
+
+    RECOVERED = "the server goes on"
+    destination: "ServerDestination"
+
+    @property
+    def stalled(self) -> bool:
+        """Whether the server is held up by itself: while a viewer may be the reason, all is kept for the others."""
+        return self._stall_reported
+
+    def find_faults(self, now: float) -> None:
+        self.destination.viewers.look()
+        super().find_faults(now)
+
+    def _report_stall(self) -> None:
+        if self.destination.disconnect_slowest():
+            self._stalled_since = None
+            return
+        self._stall_reported = True
+        self.destination.log_warning(
+            f"the server has stood still for {STALL_TIMEOUT:g} s: viewers miss what comes until it goes on"
+        )
 
 
 class ServerDestination(Destination):
@@ -99,6 +136,8 @@ class ServerDestination(Destination):
         self._host = rr.RecordingStream(APPLICATION, send_properties=False)
         self._host.set_sinks(server)
         self._host.send_recording_name("(server)")  # a viewer lists it beside the runs
+        self.viewers = ViewerConnections(port)
+        self._disconnected = 0.0  # s, steady clock: when a viewer was disconnected last
         self._shown_uri = f"rerun+http://{self._name}:{port}/proxy"
         log_info(f"serving on {address}; to look at it, now or later: rerun {self._shown_uri}")
         if not address.is_loopback:
@@ -107,7 +146,20 @@ class ServerDestination(Destination):
             )
 
     def open(self, number: int, name: str) -> Delivery:
-        return ViewerDelivery(self, self.make_stream(rr.GrpcSink(self.uri), name))
+        return ServerDelivery(self, self.make_stream(rr.GrpcSink(self.uri), name))
+
+    def disconnect_slowest(self) -> bool:
+        """Disconnect the viewer that holds up the server, or give it time after the last one; False if none does."""
+        if time.monotonic() - self._disconnected < STALL_TIMEOUT:
+            return True
+        viewer = self.viewers.disconnect_last()
+        if viewer:
+            self._disconnected = time.monotonic()
+            self.log_warning(
+                f"the viewer at {viewer} does not keep up, and has held up the others for {STALL_TIMEOUT:g} s: it is "
+                "disconnected; opened again, it gets what memory_limit has kept"
+            )
+        return bool(viewer)
 
     def close(self) -> None:
         """Close the servers, after the streams of the recordings."""

@@ -28,9 +28,9 @@ from eel_viz.views.views import (
 
 REPEATED_FROM = 0.4  # of a run: from here on it is repeated, for the swim is settled by then
 POWER_SHOWN = 4.0  # s: duration of the last power that is shown, so that its scale fits the swim and not its start
-TORQUE_MAP = "Torque C3 over body and time: pulses run from nose to tail"
-LOAD_MAP = "Torque of each motor over its limit, in time: red at the limit"
-HARDEST = "Motor nearest to its limit [N m]: torque red, limit white"
+TORQUE_MAP = "Torque C3 over body and time"
+LOAD_MAP = "Torque of each motor in time, as a share of its limit, red at it; in N m without limits"
+HARDEST = "Hardest-working motor [N m]: torque red, limit white"
 XYZ = "x orange, y green, z blue"
 
 
@@ -65,6 +65,11 @@ def power_name(look: Look) -> str:
     }
     words = ("actuators red", "drag yellow", "wake violet", *(name for name, there in named.items() if there))
     return f"Power [W]: {', '.join(words)}"
+
+
+def energy_name(look: Look) -> str:
+    """The name of the plot of energies; weight and springs have a curve where they have some."""
+    return f"Energy [J]: body grey, water yellow, weight blue{', springs brown' if look.joints else ''}"
 
 
 def torques(look: Look) -> rrb.Container:
@@ -106,9 +111,7 @@ def motion(look: Look) -> rrb.Container:
             path_view(look),
             rrb.Horizontal(
                 series_view(look, "Speed of the head [m/s]", entities.SPEED),
-                series_view(
-                    look, "Energy [J]: body grey, water yellow, weight blue", entities.KINETIC, entities.STORED
-                ),
+                series_view(look, energy_name(look), entities.KINETIC, entities.STORED),
             ),
             row_shares=[2.1, 1.0],
         ),
