@@ -25,9 +25,10 @@ import numpy as np
 from eel_base.quantity import number
 from eel_base.wording import did_you_mean, shown
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
-from eel_dynamics.analysis.measures import measures_of
+from eel_dynamics.analysis.measures import AT_END, OF_LEDGER, OF_WRENCH, measures_of
 from eel_dynamics.batches.broadcast import numbered
 from eel_dynamics.batches.simulate_batch import swim_of, swum
+from eel_dynamics.runs.sampling import checked_times
 from eel_dynamics.runs.swim_request import SwimRequest
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_gaits.gaits.registry import find
@@ -65,6 +66,22 @@ class SwimSettings(NamedTuple):
     def measured(self, run: Run, periods: int | None = None) -> dict[str, Any]:
         """The measures of `run`, over its last `periods` whole periods (None: the later half)."""
         return self.measure(run) if callable(self.measure) else measures_of(run, self.measure, periods)
+
+    def without_the_rest(self, point: Swim, every_sample: bool = True) -> Swim:
+        """The `point` without ledger, internal wrench, and samples on the way, where no named measure reads them.
+
+        every_sample: whether samples on the way are kept anyhow.
+        """
+        if callable(self.measure):
+            return point
+        ledger, wrench = (not of.isdisjoint(self.measure) for of in (OF_LEDGER, OF_WRENCH))
+        scene = point.scene
+        scene = replace(scene, ledger=scene.ledger and ledger, internal_wrench=scene.internal_wrench and wrench)
+        point = point._replace(scene=scene)
+        if every_sample or not AT_END.issuperset(self.measure):
+            return point
+        end = float(checked_times(point.duration, point.sample_period)[-1])
+        return point._replace(duration=end, sample_period=end) if end else point
 
 
 def batch_of_points(

@@ -9,10 +9,10 @@ import scipy.optimize
 from eel_dynamics.runs.swim import Swim
 from eel_studies.gradients.fixed_discretisation import common_step, on_one_grid, step_of
 from eel_studies.gradients.gradient import share_across_jump
-from eel_studies.points import point_at
+from eel_studies.points import batch_of_points, point_at
 
 from eel_dynamics import Accuracy, Body, Scene, SimulationStopped, simulate
-from eel_gaits import falling, sampled, straight
+from eel_gaits import Law, Term, falling, sampled, straight
 from eel_studies import gradient
 
 SMOOTH = Scene(friction="laminar")
@@ -72,6 +72,64 @@ def test_neighbouring_swims_share_grid_and_steps():
     assert len({(run.nodes, run.steps) for run in runs}) == 1
     assert common_step([[0.0, 1.0], [0.0, 1.001], [0.0, 0.999]], 0.1) < 0.1  # ten steps would become eleven
     assert common_step([[0.0, 1.0], [0.0, 0.5, 1.0]], 0.1) == 0.1
+
+
+KNOTS = tuple(np.linspace(0.0, 1.0, 15).tolist())
+
+
+def of_knots(**amplitudes: float) -> Law:
+    """A wave whose amplitude is a spline through these values at fifteen places."""
+    values = tuple(amplitudes[f"knot_{k}"] for k in range(len(KNOTS)))
+    return Law(Term(amplitude=values, knots=KNOTS, wavelength=1.0, period=0.8), name="of knots")
+
+
+FLAT = {f"knot_{k}": 0.5 for k in range(len(KNOTS))}
+
+
+@pytest.mark.parametrize("apart", [1e-6, 1e-5, 1e-3, 2e-2])
+def test_a_flat_spline_has_a_gradient_whatever_the_differences(apart):
+    """The usual first guess. Beside it a spline has a dozen turns, which are smaller than the grid need resolve."""
+    swim = {"gait": of_knots, "scene": SMOOTH} | SHORT
+    found = gradient("head_x", FLAT, steps=dict.fromkeys(FLAT, apart), **swim)
+    all_together = gradient("head_x", {"scale": 1.0}, **swim | {"gait": lambda scale: of_knots(**FLAT) * scale})
+    assert found.derivative.sum() * 0.5 == pytest.approx(all_together.derivative[0, 0], rel=1e-3)
+    assert (found.error <= 0.02 * np.abs(found.derivative).max()).all() and found.run.nodes <= 80
+
+
+def test_the_grid_is_that_of_the_middle_however_many_waves_are_beside_it():
+    base = Swim(None, Body.boyer2010(), SMOOTH, Accuracy.of("1e-3, fixed steps").in_scene(SMOOTH))
+    beside = [FLAT | {"knot_7": 0.5 + apart} for apart in (0.0, 0.05, -0.05)]
+    points = [point_at(each, lambda **own: of_knots(**own), {}, base) for each in beside]
+    nodes = {len(each.simulation().grid.x) for each in on_one_grid(points, step_of(points[0]))}
+    assert nodes == {len(points[0].simulation().grid.x)} != {len(points[1].simulation().grid.x)}
+
+
+def test_swims_beside_the_values_have_one_grid_and_what_the_measures_need(monkeypatch):
+    swum = []
+
+    def noting(points, how, *others):
+        batch = batch_of_points(points, how, *others)
+        swum.append((points, [batch[index] for index in range(len(points))]))
+        return batch
+
+    monkeypatch.setattr("eel_studies.gradients.gradient.batch_of_points", noting)
+    values = {"period": 0.8, "wavelength": 0.3}
+
+    def beside(of, friction="laminar"):
+        swum.clear()
+        found = gradient(of, values, scene=Scene(friction=friction), estimate=False, **SHORT)
+        (_, (middle,)), (points, runs) = swum
+        assert found.run == middle and middle.energy is not None and middle.torque is not None
+        assert len({(run.nodes, run.steps) for run in runs}) == 1
+        scene = points[0].scene
+        return scene.ledger, scene.internal_wrench, len(runs[0].time) == len(middle.time)
+
+    assert beside("head_x") == (False, False, False)
+    assert beside("head_x", friction="printed") == (False, False, True)  # a jump between two swims is looked for
+    assert beside("mean_speed") == (False, False, True)
+    assert beside(("head_x", "actuator_work")) == (True, False, True)
+    assert beside("greatest_torque") == (False, True, True)
+    assert beside(lambda run: {"x": run.position[-1, 0]}) == (True, True, True)
 
 
 def test_an_optimiser_with_the_gradient_finds_what_a_scan_finds():

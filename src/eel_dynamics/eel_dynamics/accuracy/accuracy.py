@@ -105,6 +105,7 @@ class Accuracy:
         kinks: which kinks of the drag along the body are found and integrated exactly: "all", the "jumps" alone, or
             "none". V|V| has a kink where cross flow or roll change their sign; the printed friction law jumps.
         longest_step: of adaptive steps, relative to the shortest time over which the shape changes; up to 1.
+        waves: on the body, that the points are for whatever the law has; None: those of law and flow.
         refinable: whether the run is made finer where its measured error exceeds the target, as by `simulate`: then
             the settings chosen for a target are cheaper.
     """
@@ -120,6 +121,7 @@ class Accuracy:
     kinks: str = "all"
     longest_step: float = LONGEST_STEP
     refinable: bool = False
+    waves: float | None = None
 
     def __post_init__(self) -> None:
         if self.step is not None or self.fixed is not None:
@@ -150,6 +152,8 @@ class Accuracy:
         number("accuracy longest_step", self.longest_step, minimum=0.0, maximum=1.0, exclusive=True)
         if self.step is not None:
             positive("accuracy step", self.step, "s")
+        if self.waves is not None:
+            positive("accuracy waves", self.waves)
         unknown = self.fixed == 0.0 and self.target is not None  # until the scene is known
         if self.fixed is not None and (
             self.step is not None or not (unknown or (is_finite(self.fixed) and self.fixed > 0.0))
@@ -163,6 +167,7 @@ class Accuracy:
 
     def points_per_length(self, waves: float) -> float:
         """Points per body length for `waves` waves on the body. One wave or less needs `resolution`."""
+        waves = waves if self.waves is None else self.waves
         return float(min(1000.0, (self.resolution + SPARED) * max(1.0, waves) ** WAVES_POWER - SPARED))
 
     def in_scene(self, scene: Scene) -> "Accuracy":

@@ -15,6 +15,9 @@ TURN_POINTS = 64  # along the body, for the angle that a law bends it by
 MOST_KNOTS = 8  # of laws whose panels are cut at them
 MOST_WAVES = 200.0  # on the body: with the most points that a grid may have, five for each
 WIGGLE_POINTS, WINDOW = 1024, 128  # along the body, for the turning points of an amplitude; of these close together
+# Part of the greatest amplitude, by which it must rise or fall between two turns that count. Smaller waves move the
+# body by less, and the points for the others carry most of them.
+LEAST_WIGGLE = 1e-3
 SHARPNESS, FEW_KNOTS = 1.5, 6  # of a spline's waves; of one whose waves need no count
 MODES, LEFT_OUT = 128, 1e-3  # of rows: polynomials along the body, and the part of the rows that none carries
 SHORTEST_RAMP = 1e-9  # s, or of the time that it ends at: below, steps of time do not see it
@@ -57,15 +60,29 @@ def _waves(waveforms: tuple, length: float) -> float:
 def _wiggles(amplitude: tuple, knots: tuple, length: float) -> float:
     """The number of waves that an amplitude itself has on a body of `length` [m], by its turning points.
 
-    It counts all of them, or as many everywhere as where they are closest. These waves are sharper than sines, so each
-    counts as one and a half. A spline of few knots has none, because the panels are cut at its knots.
+    It counts all but the smallest (`LEAST_WIGGLE`), or as many everywhere as where they are closest. These waves are
+    sharper than sines, so each counts as one and a half. A spline of few knots has none, because the panels are cut at
+    its knots.
     """
     if len(amplitude) <= 2 or 0 < len(knots) <= FEW_KNOTS:
         return 0.0
-    steps = np.diff(amplitude_of(amplitude, knots, np.linspace(0.0, length, WIGGLE_POINTS + 1)))
-    turning = np.concatenate(([0], np.cumsum(np.diff(np.sign(steps)) != 0)))
+    turns = _turns(amplitude_of(amplitude, knots, np.linspace(0.0, length, WIGGLE_POINTS + 1)))
+    turning = np.bincount(turns, minlength=WIGGLE_POINTS).cumsum()
     closest = np.max(turning[WINDOW:] - turning[:-WINDOW])
     return SHARPNESS * 0.5 * max(int(turning[-1]), (int(closest) - 1) * WIGGLE_POINTS // WINDOW)
+
+
+def _turns(values: np.ndarray) -> list[int]:
+    """Indices of the values where they turn, from rising to falling or back, by `LEAST_WIGGLE` or more."""
+    steps, least = np.diff(values), LEAST_WIGGLE * np.max(np.abs(values))
+    kept = [0]  # the start, the turns, and the farthest point since the last
+    for index in [*(np.flatnonzero(np.diff(np.sign(steps))) + 1), len(steps)]:
+        rise = values[index] - values[kept[-1]]
+        if len(kept) > 1 and rise * (values[kept[-1]] - values[kept[-2]]) >= 0.0:
+            kept[-1] = index
+        elif abs(rise) > least:
+            kept.append(index)
+    return [int(index) for index in kept[1:-1]]
 
 
 @lru_cache(maxsize=1024)

@@ -53,6 +53,19 @@ MEASURES: dict[
     "evaluations": ("", "evaluations of the head's dynamics", lambda run: run.evaluations),
 }
 OF_ESTIMATE = tuple(name for name, (_, _, where) in MEASURES.items() if where == ESTIMATE)
+# What a run must have, besides its motion:
+OF_WRENCH = frozenset(("greatest_torque", "error_torque"))
+OF_LEDGER = frozenset(
+    (
+        "actuator_power",
+        "actuator_work",
+        "cost_of_transport",
+        "hydromechanical_efficiency",
+        "propulsive_efficiency",
+        "ledger_residual",
+    )
+)
+AT_END = frozenset(("head_x", "head_y", "head_z", "duration", "evaluations"))  # no more than the last sample
 
 
 def measures_of(run, names=tuple(MEASURES), periods: int | None = None) -> dict[str, float]:

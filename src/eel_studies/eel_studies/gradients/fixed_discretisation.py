@@ -10,7 +10,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from eel_dynamics.accuracy.accuracy import FIXED, SPARED, WAVES_POWER, Accuracy
+from eel_dynamics.accuracy.accuracy import FIXED, Accuracy
 from eel_dynamics.accuracy.law_waves import check_law
 from eel_model.initial_state import time_scale
 
@@ -44,19 +44,13 @@ def step_of(point: Swim) -> float:
 
 
 def on_one_grid(points: list[Swim], step: float) -> list[Swim]:
-    """The `points` with settings that give them one grid and one number of steps, no longer than `step` [s].
-
-    The first point decides for the grid.
-    """
-    waves = [max(1.0, check_law(point.law, point.body.length)) ** WAVES_POWER for point in points]
-    needed = (points[0].accuracy.resolution + SPARED) * waves[0]
+    """The `points` with the grid that the first one needs, and one number of steps, no longer than `step` [s]."""
+    law, body, flow, accuracy = points[0].law, points[0].body, points[0].flow, points[0].accuracy
+    of_flow = 0.0 if flow is None else body.length / flow.traits.shortest_wave
+    waves = max(1.0, check_law(law, body.length), of_flow)
     step = common_step([breakpoints_of(point) for point in points], step)
-    return [
-        point._replace(
-            accuracy=replace(point.accuracy, resolution=needed / wave - SPARED, step=step, fixed=None, target=None)
-        )
-        for point, wave in zip(points, waves, strict=True)
-    ]
+    accuracy = replace(accuracy, waves=waves, step=step, fixed=None, target=None)
+    return [point._replace(accuracy=accuracy) for point in points]
 
 
 def breakpoints_of(point: Swim) -> list[float]:

@@ -110,9 +110,10 @@ def gradient(
     1e-2 where its motors come to their limits; of 1 where it is 0). estimate: state the derivatives'
     own errors; False: two swims per parameter, and no more. progress: as in `sweep`, by swims.
 
-    Measures over whole periods take as many periods of each swim, so that they do not jump with the period. What may
-    spoil a derivative is warned of, and is in `Gradient.warnings`. `ValueError` names what does not fit;
-    `SimulationStopped`: a swim stopped.
+    Swims beside the one at the values have its grid and step; of ledger, internal wrench and samples on the way they
+    have what the measures, or a warning, need. Measures over whole periods take as many periods of each swim, so that
+    they do not jump with the period. What may spoil a derivative is warned of, and is in `Gradient.warnings`.
+    `ValueError` names what does not fit; `SimulationStopped`: a swim stopped.
     """
     measure = of if callable(of) else checked_measures("of", of, estimate=False)
     if not isinstance(parameters, dict) or not parameters:
@@ -139,13 +140,17 @@ def gradient(
     def taken(settings: Accuracy, apart: np.ndarray, before: int, limit: float) -> _Differences:
         moved = [at] + [at | {name: float(at[name] + h)} for name, h in zip([*at] * 2, [*apart, *-apart], strict=True)]
         points = [_point(values, gait, numbers, base._replace(accuracy=settings)) for values in moved]
-        points = on_one_grid(points, min(limit, step_of(points[0])))
+        middle, *beside = on_one_grid(points, min(limit, step_of(points[0])))
+        beside = [how.without_the_rest(each, may_jump(each.scene)) for each in beside]
+        runs: list[Run] = []
 
         def count(done: int, _: int) -> None:
-            tell(before + done, swims * (1 + bool(estimate)))
+            tell(before + len(runs) + done, swims * (1 + bool(estimate)))
 
-        batch = batch_of_points(points, how, threads, count)
-        return _Differences.of([_run(batch, index) for index in range(swims)], how, apart)
+        for part in ([middle], beside):
+            batch = batch_of_points(part, how, threads, count)
+            runs += [_run(batch, index) for index in range(len(part))]
+        return _Differences.of(runs, how, apart)
 
     fine = taken(settings, apart, 0, limit)
     error = np.full(fine.derivative.shape, np.nan)
@@ -254,12 +259,17 @@ def _jumps(runs: list[Run], names: tuple[str, ...]) -> tuple[str, ...]:
     )
 
 
+def may_jump(scene: Scene) -> bool:
+    """Whether the friction of a `scene` jumps at some speed."""
+    return bool(scene.friction == PRINTED and scene.resistive and scene.viscosity)
+
+
 def share_across_jump(one: Run, other: Run) -> float:
     """Share of samples and stations at which two runs lie on different sides of the printed friction's jump; 0 without.
 
     The speed V1 along the body is that of the backbone through the water, from splines through the samples.
     """
-    if one.scene.friction != PRINTED or not one.scene.resistive or not one.scene.viscosity or len(one.time) < 4:
+    if not may_jump(one.scene) or len(one.time) < 4:
         return 0.0
     return float(np.mean(_is_turbulent(one) != _is_turbulent(other)))
 
