@@ -60,9 +60,10 @@ def step_bounds_of(
     """
     accuracy, length, mass = setup.settings, setup.body.length, here.mass
     scale = min(law_scale, here.weight_time, setup.time_scale_of_surroundings)
-    longest = accuracy.longest_step * min(scale, 10.0)
-    fixed = accuracy.step or (accuracy.fixed and min(scale, 1.0) / accuracy.fixed)
+    longest = min(accuracy.longest_step * min(scale, 10.0), setup.longest_step)
+    fixed = accuracy.step or (accuracy.fixed and min(min(scale, 1.0) / accuracy.fixed, setup.longest_step))
     part_of_span = PART_OF_RAMP if setup.scene.ledger else PART_OF_SPAN
+    sudden = not between_samples or setup.sudden_changes
     slowest = max(SLOWEST * length / min(scale, 10.0), PART_OF_SPEED * speed)
     return eel_core.StepBounds(
         tolerance=math.inf if accuracy.method == "classical" else accuracy.tolerance,  # infinite: steps of one length
@@ -70,7 +71,7 @@ def step_bounds_of(
         smallest=1e-11 * min(scale, 1.0),
         length=length,
         momentum_floor=mass * slowest,
-        part_of_span=1.0 if between_samples else min(1.0, part_of_span * accuracy.longest_step / LONGEST_STEP),
+        part_of_span=min(1.0, part_of_span * accuracy.longest_step / LONGEST_STEP) if sudden else 1.0,
         most_steps=setup.most_evaluations / EVALUATIONS[accuracy.method],
         spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / len(here.grid.x))),
         torque_floor=floors(mass, length, min(law_scale, 1.0)).torque,

@@ -99,7 +99,7 @@ class SwimRequest(NamedTuple, Generic[Kind]):
     def march(self, accuracy: Accuracy | None = None) -> March:
         """Its march at the start, with other settings if `accuracy` is given."""
         setup = self.setup if accuracy is None else replace(self.setup, accuracy=accuracy)
-        return March(setup, self.law)
+        return March(replace(setup, until=float(self.times[-1])), self.law)
 
     def swim(self, march: March, look: Callable[[float], None] | None = None) -> SwimResult[Kind]:
         """Swim it by a `march` of its own, at its start. look: as in `Simulation.record`."""

@@ -24,6 +24,7 @@ from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
 from eel_dynamics.accuracy.law_waves import check_law, knots_of_law, waves_of_rows
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS, check_cost
+from eel_dynamics.accuracy.sudden_changes import UNSEEN, given_torques, sudden_changes
 from eel_dynamics.curvature.curvature_samples import check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 
@@ -44,6 +45,7 @@ class SimulationSetup(EqualByFields):
     flow: Flow | None
     robot: Robot | None
     fins: tuple[Fin, ...]
+    until: float = 0.0  # s, up to which functions of time are looked at beforehand; 0: they are not
 
     @staticmethod
     def of(
@@ -107,8 +109,23 @@ class SimulationSetup(EqualByFields):
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Times [s] at which a derivative of the flow or of the fins' angles jumps."""
-        return *(() if self.flow is None else self.flow.traits.breakpoints), *knots_of(self.fins)
+        """Times [s] at which a derivative of the flow, of the fins' angles or of muscles' moments jumps, or what is
+        given over time changes suddenly."""
+        of_flow = () if self.flow is None else self.flow.traits.breakpoints
+        of_robot = () if self.robot is None else self.robot.ramp_ends
+        return *of_flow, *knots_of(self.fins), *of_robot, *self.sudden_changes
+
+    @cached_property
+    def sudden_changes(self) -> frozenset[float]:
+        """As `sudden_changes`."""
+        place, turn, _ = (tuple(each.tolist()) for each in self.initial_state)
+        return sudden_changes(self.robot, self.flow, place, turn, self.body.length, self.until)
+
+    @property
+    def longest_step(self) -> float:
+        """The longest step [s] that sees torques that are functions; infinite where these are looked at beforehand."""
+        unseen = not self.until and any(torque.time is None for torque in given_torques(self.robot))
+        return UNSEEN if unseen else np.inf
 
     @property
     def time_scale_of_surroundings(self) -> float:

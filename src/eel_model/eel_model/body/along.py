@@ -14,7 +14,7 @@ from eel_base.quantity import checked_row, is_finite, number
 from eel_base.wording import shown
 from numpy.typing import ArrayLike
 
-from eel_model.body.shapes import piecewise, series_through, values_along
+from eel_model.body.shapes import piecewise, series_through, values_along, warn_of_details
 
 ROUND_OFF = 1e-12  # of the greatest value, by which one may be below a minimum
 Bounds = Sequence[float]  # m: 0, kinks, length; between two of them a field is smooth
@@ -34,6 +34,7 @@ class AlongBody:
         if callable(given):
             at = _points(bounds)
             values = self(at)
+            warn_of_details(name, given, bounds)
         elif is_finite(given):
             self.given = number(name, given, minimum=minimum, unit=unit)
             return
@@ -77,6 +78,7 @@ class HalfAxis:
         elif callable(given):
             at = _points(bounds)
             values = values_along(given, at)
+            warn_of_details(f"body {name}", given, bounds, 2)
         else:
             raise ValueError(f"body {name} must be a function of X, or an array with x=, got {shown(given)}")
         _check_shape(name, at, values, bounds[-1])

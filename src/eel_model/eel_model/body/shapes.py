@@ -5,6 +5,7 @@ Sources: boyer2010 after section 7.2.1 of Boyer, Porez and Leroyer (2010); kern2
 J. Exp. Biol. 209 (2006).
 """
 
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -15,6 +16,8 @@ from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
 DEGREE = 48  # of the polynomials through a function on each panel
+LOOKS, SEED = 1024, 1  # at a function on each panel, at random
+DETAIL = 1e-2  # part of the greatest value by which polynomials may miss it
 KERN_HEAD, KERN_TAIL, KERN_WIDTH_OF_TAIL = 0.04, 0.95, 0.01  # of the length
 KERN_MIDDLE, KERN_HEIGHT = 0.51, 0.08
 KINKS = {"boyer2010": (0.05, 0.2, 0.75), "kern2006": (KERN_HEAD, KERN_TAIL)}  # of the length
@@ -113,6 +116,32 @@ def series_through(function: Callable[[np.ndarray], np.ndarray], bounds: Sequenc
     The points lie inside the panels: a jump at their ends is not seen.
     """
     return [chebyshev.Chebyshev.interpolate(function, DEGREE, domain=ends) for ends in pairwise(bounds)]
+
+
+def warn_of_details(name: str, function: Callable[..., Any], bounds: Sequence[float], power: int = 1) -> None:
+    """Warns of a `function` of X [m] whose `power` changes within a short part of a panel: a grid may pass over it.
+
+    It is looked at at random X, `LOOKS` in each panel. What is not finite is for others to tell.
+    """
+    if isinstance(function, NamedHalfAxis | PolynomialAlong):
+        return
+    draw = np.random.default_rng(SEED)
+    parts = (np.arange(LOOKS) + draw.random(LOOKS)) / LOOKS
+    x = np.concatenate([start + (end - start) * parts for start, end in pairwise(bounds)])
+
+    def wanted(x: np.ndarray) -> np.ndarray:
+        return values_along(function, x) ** power
+
+    with np.errstate(all="ignore"):
+        values = wanted(x)
+        apart = np.abs(piecewise(series_through(wanted, bounds), bounds, x) - values)
+    worst = int(np.argmax(apart))
+    if apart[worst] > DETAIL * np.max(np.abs(values)):
+        warnings.warn(
+            f"{name} is not smooth near X = {x[worst]:.4g} m, between its kinks: a grid may pass over such a detail; "
+            "give kinks= there, or values at x=",
+            stacklevel=4,
+        )
 
 
 def piecewise(

@@ -81,6 +81,10 @@ class FlowField(Flow):
     def traits(self) -> FlowTraits:
         return FlowTraits(time_scale=self.period or np.inf, shortest_wave=self.wave or np.inf)
 
+    def velocity(self, places: np.ndarray, time: float) -> np.ndarray:
+        """u (n, 3) [m/s] at `places` (n, 3) [m] and `time` [s]."""
+        return self._called("function", places, time)
+
     def _rate(self, x: np.ndarray, time: float) -> np.ndarray:
         if self.rate is not None:
             return self._called("rate", x, time)

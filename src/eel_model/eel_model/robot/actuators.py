@@ -105,10 +105,11 @@ class Torque(Quantities):
         instants = np.asarray(time, dtype=float)
         if self.spline is not None:
             return np.asarray(self.spline(np.clip(instants, self.spline.x[0], self.spline.x[-1])))
-        values = np.array([self._called(float(each)) for each in instants.ravel()])
+        values = np.array([self.called(float(each)) for each in instants.ravel()])
         return values.reshape(instants.shape)
 
-    def _called(self, time: float) -> float:
+    def called(self, time: float) -> float:
+        """The torque [N m] of a function at `time` [s]. `ValueError` as of `at`."""
         assert callable(self.torque)
         value: Any = self.torque(time)
         if not is_finite(value):

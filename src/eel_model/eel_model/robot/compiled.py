@@ -26,7 +26,8 @@ from eel_model.robot.robot import Robot
 
 HINGE = -1  # degree of a joint's mode
 GAUSS = legendre.leggauss(16)  # of each interval of a reference, and of a continuous part
-PARTS_OF_SUPPORT = 4  # equal intervals of a continuous part, for bending_stiffness(X) that is not smooth
+# Equal intervals of a continuous part: for a bending_stiffness(X) that is not smooth, or local, and for a moment.
+PARTS_OF_SUPPORT, PARTS_OF_MOMENT = 256, 16
 LONE_WIDTH = 0.05  # of the length: of a joint that is alone in its axis
 BETWEEN = np.array(((1.0, -1.0), (-1.0, 1.0)))  # what a spring between two coordinates does to each, by the other
 SAME = 1e-9  # of the length: places that are nearer are the same
@@ -255,7 +256,7 @@ def _profile(part: Any, name: str, x: np.ndarray) -> np.ndarray:
 
 
 def _muscle(part: Muscle, first: int) -> MuscleTable:
-    points, weight = _quadrature(part.start, part.end, PARTS_OF_SUPPORT)
+    points, weight = _quadrature(part.start, part.end, PARTS_OF_MOMENT)
     basis = np.array([_legendre(degree, part.start, part.end, points) for degree in range(part.modes)])
     return MuscleTable(first + np.arange(part.modes), part.moment, points, basis * weight)
 

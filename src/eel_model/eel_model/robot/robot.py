@@ -85,6 +85,12 @@ class Robot:
         """The servos of its joints; None of a joint without."""
         return tuple(joint.actuator if isinstance(joint.actuator, Servo) else None for joint in self.joints)
 
+    @property
+    def ramp_ends(self) -> list[float]:
+        """Times [s] at which ramps of muscles' moments begin and end, where a derivative of these jumps."""
+        terms = (term for part in self.parts if isinstance(part, Muscle) for term in part.moment.terms)
+        return sorted({time for term in terms for ramp in term.envelope for time in (ramp.start, ramp.end)})
+
     def changed(self, part: str | None = None, **changes: Any) -> "Robot":
         """The same robot with other fields of one `part`, or of all parts that have them; fields of an actuator too.
 

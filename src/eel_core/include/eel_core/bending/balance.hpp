@@ -12,6 +12,7 @@
 // has (U x p, rho_f A a_u - g^T p) besides. Fins act on their sections, as in fins.hpp.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "eel_core/bending/columns.hpp"
@@ -60,7 +61,11 @@ class BentBody {
         for (std::size_t m = 0; m < modes_->modes; ++m) work.factor[settings.first_mode + m] = {x[m], 0.0, 0.0};
         configure(*swimmer_, settings.law, time, work);
         set_targets(settings, work.factor, time, target);
-        set_pushing(*modes_, time, drive_, forces.pushing);
+        if (time != pushed_at_) {  // a stage ends where the step does, and functions in Python cost more than a stage
+            pushed_at_ = std::numeric_limits<double>::quiet_NaN();  // also where one throws
+            set_pushing(*modes_, time, drive_, forces.pushing);
+            pushed_at_ = time;
+        }
         work.head = head_frame(y, M());
         work.momentum = momentum_in_head(y, work.head);
         set_flow(*swimmer_, settings.water, time, Vector3{y[0], y[1], y[2]}, work);
@@ -334,6 +339,7 @@ class BentBody {
     double imposed_at_rest_ = 0.0;    // W, of what imposes the change of shape, without accelerations
     const LawOnGrid* law_ = nullptr;  // of the instant, as the next two
     double time_ = 0.0;
+    double pushed_at_ = std::numeric_limits<double>::quiet_NaN();  // [s], of `forces.pushing`
     State state_{};
 };
 

@@ -66,7 +66,7 @@ def _given(table: ModeTable, mode: int, torque: Torque) -> tuple[Any, ...]:
     """A torque over time for the compiled mechanics."""
     sign = float(table.sign[mode])
     if torque.spline is None:
-        return mode, lambda time: sign * float(torque.at(time))
+        return mode, torque.called if sign > 0.0 else lambda time: -torque.called(time)
     return mode, np.array(torque.spline.x, dtype=float), np.ascontiguousarray(sign * torque.spline.c[::-1].T)
 
 
