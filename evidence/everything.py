@@ -21,6 +21,13 @@ SCRIPTS: dict[str, tuple[str, ...]] = {  # name: arguments of each run
         *(f"{name} --out docs/images/law_{name}.png" for name in LAWS),
         "gazzola --friction taylor --out docs/images/law_gazzola_taylor.png",
     ),
+    "life": (
+        "lamprey docs/data/lamprey_midlines.csv --widths docs/data/widths.csv --out docs/images/life_lamprey.png",
+    ),
+    "robot_log": (
+        "docs/data/amphibot_joints.csv --links 0.094x7 --section 0.0275,0.0165 --seen docs/data/amphibot_leds.csv "
+        "--out docs/images/life_amphibot.png",
+    ),
     "steering": (PAGES.format("steering"),),
     "drafting": (PAGES.format("drafting"),),
     "delivered": (PAGES.format("accuracy"),),
@@ -29,6 +36,7 @@ SCRIPTS: dict[str, tuple[str, ...]] = {  # name: arguments of each run
     "tutorial_pictures": ("",),
     "pictures": ("",),
     "fault_table": ("",),
+    "midlines": (),  # of a file of yours
     "comparisons": ("",),
 }
 

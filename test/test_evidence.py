@@ -3,6 +3,7 @@
 
 import csv
 import importlib
+import re
 from pathlib import Path as FilePath
 
 import delivered
@@ -11,15 +12,18 @@ import fault_table
 import figures
 import laws
 import manoeuvres
+import midlines
 import numpy as np
 import pytest
 import report_tables
+import robot_log
 import steering
 from eel_gaits.gaits.registry import GAITS
 from eel_gaits.pilot.goals import Path
 from eel_gaits.pilot.settings import PilotSettings
 from everything import SCRIPTS
 from matplotlib.figure import Figure
+from midline_files import kern_midline, write_midlines
 from studied import ballast, courses, cylinder, laws_of_swimming
 
 ROOT = FilePath(__file__).resolve().parents[1]
@@ -68,6 +72,20 @@ def test_the_street_comes_from_a_cylinder_ahead():
     (arrows,) = [each for each in axes.collections if hasattr(each, "U")]
     middle = np.isclose(arrows.Y, 0.0, atol=0.03)
     assert middle.any() and np.mean(arrows.U[middle]) > 0.0
+
+
+def test_a_robot_log_with_its_band(tmp_path, capsys):
+    data, out = ROOT / "docs/data", tmp_path / "log.csv"
+    words = f"{data}/amphibot_joints.csv --links 0.094x7 --section 0.0275,0.0165 --seen {data}/amphibot_leds.csv"
+    assert robot_log.main([*words.split(), *f"--samples 1 --duration 1.5 --accuracy 1e-2 --out {out}".split()]) == 0
+    assert "lateral_added_mass" in capsys.readouterr().out and "x_low" in out.read_text()
+
+
+def test_midlines_come_out_as_they_went_in(tmp_path, capsys):
+    path = write_midlines(tmp_path / "fish.csv", kern_midline, end=2.0)
+    assert midlines.main(["--out", str(tmp_path / "fish.png"), str(path)]) == 0
+    apart = float(re.search(r"midlines +([0-9.]+)% of the body's length apart", capsys.readouterr().out)[1])
+    assert 0.0 < apart < 0.3 and (tmp_path / "fish.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_delivered(tmp_path):

@@ -11,8 +11,8 @@ from eel_dynamics.commands.filmed import speeds_of
 from eel_dynamics.commands.simulate import main as simulate_command
 from eel_gaits.film.beat import beat_of
 from eel_gaits.film.film import Film, read_film
-from eel_studies.life.command import main as life
 from filmed import TIMES, WAVE, swimming, write_long
+from life import main as life
 
 from eel_dynamics import Body, Scene, simulate
 

@@ -21,8 +21,6 @@ EXECUTABLES = {
     "eel_dynamics": {"dynamics", "simulate"},
     "eel_studies": {
         "identify",
-        "midlines",
-        "life",
         "motors",
         "optimise",
         "sweep",

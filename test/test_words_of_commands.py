@@ -29,7 +29,6 @@ GIVEN = [  # each with an argument that does not fit, as long as can be
     ["eel", LONG],
     ["eel", "compare", "straight", LONG],
     ["eel", "completion", LONG],
-    ["eel", "midlines", LONG],
     ["gait_generator", LONG],
     ["gait_generator", "--ros-args", "-p", f"gait:={'x' * 90_000}"],
     ["dynamics", "--ros-args", "-p", f"body:={'x' * 90_000}"],

@@ -10,11 +10,8 @@ COMMANDS = {  # of `eel`, in the order of its list: the folder of each
     "terms": "scene_terms",
     "tradeoff": "tradeoff",
     "stability": "stability",
-    "midlines": "midlines",
-    "life": "life",
-    "replay-joints": "replay",
 }
-OF_EEL_ALONE = "roll-hold", "replay-joints"  # no executables of their own
+OF_EEL_ALONE = ("roll-hold",)  # no executables of their own
 
 setup(
     name="eel_studies",

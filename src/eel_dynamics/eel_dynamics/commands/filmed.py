@@ -21,7 +21,9 @@ EEL = "kern2006"
 
 def add_film_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that say how a film is read: all have to do with files of midlines."""
-    parser.add_argument("--units", metavar="UNIT", help="of the midlines: m, cm, mm, or px with a --scale")
+    parser.add_argument(
+        "--units", metavar="UNIT", help="of midlines: m, cm, mm, or px with --scale; of joints: rad or deg"
+    )
     parser.add_argument("--rate", type=float, metavar="FPS", help="frames per second, where a file counts frames")
     parser.add_argument("--animal", metavar="NAME", help="which of several animals in the file")
     parser.add_argument("--points", metavar="NAME,...", help="those along the body, from head to tail: names, or "

@@ -7,6 +7,7 @@ eel simulate falling --duration 20 --periods 4 --actuators 8
 eel simulate --sequence patrol.yaml --duration 20
 eel simulate --file midlines.csv
 eel simulate --midlines lamprey.csv --units mm
+eel simulate --joints log.csv --links 0.18x9 --section 0.055,0.05 --mass 7.2
 eel simulate straight --set wavelength=0.8 --scene friction=laminar --accuracy 1e-6 --out run.npz
 """
 
@@ -35,6 +36,7 @@ from eel_model.scene import Scene
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.joint_demand import MOST_JOINTS
 from eel_dynamics.commands.filmed import EEL, add_film_options, beat_from, body_for, effect_of_fit
+from eel_dynamics.commands.logged import LoggedRobot, add_joint_options, logged_robot
 from eel_dynamics.commands.options import add_options, set_numbers, swim_from
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.scene_file import SUFFIXES as SCENES
@@ -70,6 +72,13 @@ def _add_options(parser: Parser) -> None:
         "the mean beat: docs/howto/motions.md",
     )
     add_film_options(parser)
+    parser.add_argument(
+        "--joints",
+        metavar="LOG",
+        help="the angles that a robot logged in place of a gait: .csv, or a bag with sensor_msgs/JointState; with "
+        "--links, and --section or --body: docs/howto/motions.md",
+    )
+    add_joint_options(parser)
     parser.add_argument("--unsmoothed", action="store_true", help="do not smooth what was measured")
     duration = None, f"{DURATION:g}; of a file: all of it; of midlines: {UNTIL_SETTLED}"
     add_options(
@@ -112,7 +121,8 @@ def main(options: argparse.Namespace) -> int:
     """Simulate, print the summary and write the run; returns the exit status: 0, or 3 for a run that stopped."""
     out = _checked_out(options.out)
     beat = None if options.midlines is None else beat_from(options.midlines, options)
-    swim = _scene_of_file(options) if (options.gait or "").endswith(SCENES) else _swim_of(options, beat)
+    robot = None if options.joints is None else logged_robot(options.joints, options)
+    swim = _scene_of_file(options) if (options.gait or "").endswith(SCENES) else _swim_of(options, beat, robot)
     if options.actuators is not None:
         _check_actuators(options, swim.scene)
     start, progress = time.perf_counter(), Progress(NAME, "simulated s")
@@ -132,7 +142,13 @@ def main(options: argparse.Namespace) -> int:
     seconds = time.perf_counter() - start
     if beat is not None:
         _print_lines(beat.about())
+    if robot is not None:
+        print(*robot.about(), sep="\n")
     print(run.summary(options.periods))
+    if robot is not None and run.torque is not None:
+        later = robot.torque(run)[run.time >= 0.5 * run.time[-1]]
+        sizes = f"greatest {np.max(np.abs(later)):.4g} N m, RMS {np.sqrt(np.mean(later**2)):.4g} N m"
+        print(f"torque of a joint   {sizes}, later half")
     if beat is not None:
         _print_lines(effect_of_fit(beat, swim.body, swim.scene))
     if options.file is not None:
@@ -146,12 +162,14 @@ def main(options: argparse.Namespace) -> int:
     return 0
 
 
-def _swim_of(options: argparse.Namespace, beat: Beat | None) -> Swim:
-    """The swim that the options tell: of a gait, a file of a motion, or the `beat` of a film."""
+def _swim_of(options: argparse.Namespace, beat: Beat | None, robot: LoggedRobot | None) -> Swim:
+    """The swim that the options tell: of a gait, a file of a motion, the `beat` of a film, or the log of a `robot`."""
     swim, duration = swim_from("falling", options), options.duration
+    if robot is not None:
+        swim = swim._replace(body=robot.body)
     if beat is not None and (options.body or swim.robot is None or swim.robot.body is None):
         swim = swim._replace(body=body_for(options.body, beat.film))
-    law = _law(options, swim.body, beat)
+    law = _law(options, swim.body, beat, robot)
     if duration is None and beat is not None:
         duration = UNTIL_SETTLED
     elif duration is None:
@@ -161,21 +179,26 @@ def _swim_of(options: argparse.Namespace, beat: Beat | None) -> Swim:
 
 def _scene_of_file(options: argparse.Namespace) -> Swim:
     """The swim of a scene's file, with what the options change."""
-    for given in filter(None, (options.file, options.midlines, options.sequence)):
+    for given in filter(None, (options.file, options.midlines, options.joints, options.sequence)):
         raise ValueError(f"{options.gait} has a gait of its own, got {shown(given)} too")
     swim, numbers = swim_from(options.gait, options), set_numbers(options.set)
     return swim.with_gait(**numbers) if numbers else swim
 
 
-def _law(options: argparse.Namespace, body: Body, beat: Beat | None) -> Law | SampledLaw:
-    """The law of the gait, of the sequence, of the motion in a file, or of the `beat` of a film."""
+def _law(options: argparse.Namespace, body: Body, beat: Beat | None, robot: LoggedRobot | None) -> Law | SampledLaw:
+    """The law of the gait, of the sequence, of the motion in a file, of the `beat` of a film, or of a `robot`'s log."""
     if options.file is None and (options.unsmoothed or (options.scale != 1.0 and beat is None)):
         raise ValueError("--unsmoothed and --scale belong to --file, which is not given")
-    of_film = options.units, options.rate, options.animal, options.points, options.rigid, options.harmonics
-    if beat is None and any(of_film):
+    of_film = options.rate, options.animal, options.points, options.rigid, options.harmonics
+    if beat is None and (any(of_film) or (options.units and robot is None)):
         rule = "--units, --rate, --animal, --points, --rigid and --harmonics belong to --midlines"
         raise ValueError(f"{rule}, which is not given")
-    given = [name for name in ("midlines", "file", "sequence") if getattr(options, name) is not None]
+    of_log = options.columns, options.topic, options.tail_first, options.links, options.section, options.mass
+    if robot is None and any(of_log):
+        raise ValueError(
+            "--columns, --topic, --tail-first, --links, --section and --mass belong to --joints, which is not given"
+        )
+    given = [name for name in ("midlines", "joints", "file", "sequence") if getattr(options, name) is not None]
     if not given:
         return gait(options.gait or "falling", **set_numbers(options.set))
     others = [options.gait, *(f"--set {text}" for text in options.set[:1]), *(f"--{name}" for name in given[1:])]
@@ -183,6 +206,8 @@ def _law(options: argparse.Namespace, body: Body, beat: Beat | None) -> Law | Sa
         raise ValueError(f"--{given[0]} takes the place of a gait, got {shown(next(filter(None, others)))} too")
     if beat is not None:
         return beat.law(body.length)
+    if robot is not None:
+        return robot.law
     if options.file is None:
         return sequence_from_file(options.sequence)
     return read_motion(options.file, length=body.length, scale=options.scale, smooth=not options.unsmoothed)

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Robots by the log of their joints: a known swim comes out, with its bands."""
+"""Robots by the log of their joints: a known swim comes out of `eel simulate --joints`."""
 
-import csv
+import re
 
 import numpy as np
 import pytest
-from eel_studies.replay.band import replay, robot_body, with_factors
-from eel_studies.replay.command import main as replay_joints
+from eel_dynamics.commands.logged import chain_body
+from eel_dynamics.commands.simulate import main
 
-from eel_dynamics import Scene, simulate
+from eel_dynamics import Run, Scene, simulate
 from eel_gaits import Law, Ramp, Term
 
 LINKS, HALF_HEIGHT, HALF_WIDTH = 8, 0.05, 0.02
@@ -40,32 +40,22 @@ def log(tmp_path_factory):
 
 
 def test_a_chain_of_links_swims_as_the_body_that_it_stands_for(log, tmp_path, capsys):
-    body = robot_body(LENGTH, HALF_HEIGHT, HALF_WIDTH)
-    scene = Scene(planar=True, friction="blended")
-    known = simulate(WAVE, 5.98, body=body, scene=scene, accuracy=1e-3)
-    out = tmp_path / "out.csv"
-    arguments = [str(log), "--links", "0.1x8", "--section", f"{HALF_HEIGHT},{HALF_WIDTH}", "--accuracy", "1e-2"]
-    assert replay_joints([*arguments, "--samples", "4", "--speed", "0.5", "--out", str(out)]) == 0
+    body = chain_body(LENGTH, HALF_HEIGHT, HALF_WIDTH)
+    known = simulate(WAVE, 5.98, body=body, scene=Scene(planar=True, friction="blended"), accuracy=1e-3)
+    out = tmp_path / "out.nc"
+    arguments = ["--joints", str(log), "--links", "0.1x8", "--section", f"{HALF_HEIGHT},{HALF_WIDTH}", "--mass", "2.5"]
+    arguments += ["--scene", "planar=on", "--scene", "friction=blended", "--accuracy", "1e-2", "--out", str(out)]
+    assert main(arguments) == 0
     printed = capsys.readouterr().out
-    speed = float(next(line for line in printed.splitlines() if line.startswith("mean speed")).split()[5])
-    assert speed == pytest.approx(known.mean_speed, rel=0.03)
-    assert "0.5: " in printed and "lateral_added_mass" in printed
-    with out.open() as file:
-        rows = list(csv.DictReader(file))
-    last = {name: float(value) for name, value in rows[-1].items()}
-    assert last["x_low"] <= last["x"] <= last["x_high"] and last["x_low"] < last["x_high"]
-    assert {f"torque_{joint}_high" for joint in range(1, LINKS)} <= set(last)
-
-
-def test_factors_keep_the_mass_and_change_the_drag():
-    body = robot_body(1.0, 0.05, 0.04)
-    wide = with_factors(body, {"half_width": 1.1, "lateral_drag": 0.5})
-    assert wide.mass == pytest.approx(body.mass) and wide.lateral_drag == 0.5 * body.lateral_drag
-    assert wide.half_width(0.5) == pytest.approx(1.1 * body.half_width(0.5))
+    assert "angles of 7 joints of 'log.csv'" in printed and "8 links, 0.8 m, 2.5 kg" in printed
+    run = Run.load(out)
+    assert run.mean_speed == pytest.approx(known.mean_speed, rel=0.05)
+    assert run.body.mass == pytest.approx(2.5) and f"{run.time[-1]:g}" == "5.98"
+    assert float(re.search(r"torque of a joint   greatest ([0-9.]+) N m, RMS", printed)[1]) > 0.0
 
 
 def test_friction_and_added_mass_by_factors_act_as_they_say():
-    body, scene = robot_body(LENGTH, HALF_HEIGHT, HALF_WIDTH), Scene(planar=True, friction="laminar")
+    body, scene = chain_body(LENGTH, HALF_HEIGHT, HALF_WIDTH), Scene(planar=True, friction="laminar")
     still = Law(Term(amplitude=(0.0,), period=1.0))
     glide = {"scene": scene, "accuracy": 1e-3, "twist": (0.0, 0.0, 0.0, 0.5, 0.0, 0.0)}
     lost = [
@@ -86,19 +76,19 @@ def test_friction_and_added_mass_by_factors_act_as_they_say():
         ({"--links": "0.1x7"}, "--links must be 8 lengths for 7 joints, got 7"),
         ({"--links": "a"}, "--links must be lengths"),
         ({"--section": "0.05"}, "--section must be half-height,half-width"),
-        ({"--vary": "lateral_drag=2"}, "--vary must be NAME=LOW:HIGH"),
-        ({"--vary": "colour=1:2"}, "must be one of the body's, got 'colour'"),
         ({"--topic": "joints"}, "--topic belongs to a bag"),
         ({"--body": "boyer2010"}, "one of --body and --section"),
+        ({"--units": "gon"}, "gon"),
+        ({"--rate": "5"}, "belong to --midlines, which is not given"),
+        ({"--sequence": "patrol.yaml"}, "--joints takes the place of a gait, got '--sequence' too"),
     ],
 )
 def test_what_does_not_fit_is_told(log, change, words, capsys):
-    options = {"--links": "0.1x8", "--section": "0.05,0.02"} | change
-    assert replay_joints([str(log), *(word for pair in options.items() for word in pair)]) == 2
+    options = {"--joints": str(log), "--links": "0.1x8", "--section": "0.05,0.02"} | change
+    assert main([word for pair in options.items() for word in pair]) == 2
     assert words in capsys.readouterr().err
 
 
-def test_a_number_that_is_no_factor_is_refused(log):
-    body = robot_body(LENGTH, HALF_HEIGHT, HALF_WIDTH)
-    with pytest.raises(ValueError, match="factors of nose_drag must rise from 0"):
-        replay(WAVE, body, np.array([0.1]), Scene(planar=True), uncertain={"nose_drag": (2.0, 1.0)})
+def test_options_of_a_log_need_one(capsys):
+    assert main(["straight", "--links", "0.1x8"]) == 2
+    assert "belong to --joints, which is not given" in capsys.readouterr().err

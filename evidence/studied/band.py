@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import positive
 from eel_base.wording import shown
 from eel_dynamics.analysis.analysis import Analysis
 
@@ -26,8 +25,6 @@ UNCERTAIN: dict[str, tuple[float, float]] = {  # factors, and why
 }
 STATIONS = 41  # along the body, beside the joints
 SEED = 1
-POINTS = 81  # of a robot's body along its length
-ROUND = 1.0  # length of a nose by its half-height
 
 
 @dataclass(frozen=True)
@@ -69,18 +66,6 @@ class Replayed:
             "greatest torque of a joint, later half [N m]": float(np.max(np.abs(torque[later]))),
             "RMS torque of the joints, later half [N m]": float(np.sqrt(np.mean(torque[later] ** 2))),
         }
-
-
-def robot_body(length: float, half_height: float, half_width: float) -> Body:
-    """A chain of links of one elliptic section [m]: a round nose, a blunt tail."""
-    for name, value in (("half_height", half_height), ("half_width", half_width)):
-        positive(f"section's {name}", value, "m")
-    nose = min(ROUND * half_height, 0.1 * length)
-    x = np.concatenate(
-        (nose * (1.0 - np.cos(np.linspace(0.0, 0.5 * np.pi, 13))), np.linspace(nose, length, POINTS)[1:])
-    )
-    end = np.sqrt(np.clip(1.0 - np.clip(1.0 - x / nose, 0.0, None) ** 2, 0.0, None))
-    return Body(x=x, half_height=half_height * end, half_width=half_width * end, kinks=(nose,), name="links")
 
 
 def with_factors(body: Body, factors: dict[str, float]) -> Body:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The picture of `eel replay-joints`; with points that a camera saw, both motions one above the other."""
+"""The picture of evidence/robot_log.py; with points that a camera saw, both motions one above the other."""
 
 import itertools
 from dataclasses import dataclass
@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 from eel_gaits.sources.tables import read_table
-
 from eel_studies.pictures import BLACK, BLUE, PALE_BLUE, Axes, Figure, along_way, legend_above
-from eel_studies.replay.band import Replayed
+
+from studied.band import Replayed
 
 SHOWN = 6  # instants of the points that are drawn
 SHIFTS = 64  # of the log's time that are tried, to lay the computed beat beside the filmed one

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel life`: filmed swimmers beside what was measured on them.
+"""`python evidence/life.py`: filmed swimmers beside what was measured on them.
 
-eel life lamprey docs/data/lamprey_midlines.csv --widths docs/data/widths.csv --out lamprey.png --out lamprey.csv
-eel life robot docs/data/tendon_fish_?.??Hz.csv --body docs/data/tendon_fish_body.csv --mass 1.5 --rigid 0.5
+python evidence/life.py lamprey docs/data/lamprey_midlines.csv --widths docs/data/widths.csv --out lamprey.png
+python evidence/life.py robot docs/data/tendon_fish_?.??Hz.csv --body docs/data/tendon_fish_body.csv --rigid 0.5
 """
 
 import argparse
+import sys
 from pathlib import Path
 from typing import TypeAlias
 
@@ -17,15 +18,15 @@ from eel_dynamics.commands.filmed import add_film_options, beat_from
 from eel_dynamics.commands.options import add_options, add_repeated, scene_of, set_numbers
 from eel_gaits.film.beat import Beat
 from eel_model.body.body import body_of
-
-from eel_dynamics import Run
-from eel_studies.life.lamprey import HEIGHTS, LampreySwim, Thickened, in_thick_water, lamprey, swims, thickened
-from eel_studies.life.lamprey import PLANAR as WATER_OF_FILM
-from eel_studies.life.leave_out import PLANAR, Choice, choices, computed, swum
 from eel_studies.outputs import Table, checked_outs, write_files
 from eel_studies.pictures import BLACK, BLUE, GREY, LOOKS, PALE_BLUE, Axes, Draw, Figure, along_way, legend_above
+from studied.lamprey import HEIGHTS, LampreySwim, Thickened, in_thick_water, lamprey, swims, thickened
+from studied.lamprey import PLANAR as WATER_OF_FILM
+from studied.leave_out import PLANAR, Choice, choices, computed, swum
 
-NAME = "eel life"
+from eel_dynamics import Run
+
+NAME = "life.py"
 Drawn: TypeAlias = tuple[Table, Draw, tuple[float, float]]  # with the picture and its size, inches
 FIRST = {"nose_drag": 1.0}  # one number: with two, films that are left out are predicted worse
 SHOWN = 6  # midlines of a beat
@@ -217,3 +218,7 @@ def draw_robot(
         axes.plot(frequency[rest], each.speeds[rest], mark, color=colour, alpha=0.8, label=label)
     axes.set(xlabel="beats per second", ylabel="speed [m/s]", ylim=(0.0, None))
     legend_above(figure, 3)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel midlines`: swim a file of midlines, and compare what comes out.
+"""`python evidence/midlines.py`: swim a file of midlines, and compare what comes out.
 
-eel midlines fish.csv                       # the distance, as a number
-eel midlines fish.csv --out midlines.png    # and a picture
+python evidence/midlines.py fish.csv                       # the distance, as a number
+python evidence/midlines.py fish.csv --out midlines.png    # and a picture
 """
 
 import argparse
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,12 +19,12 @@ from eel_dynamics.commands.options import add_options
 from eel_gaits.sources.midlines import Midlines
 from eel_gaits.sources.order import laid_on
 from eel_model.body.body import body_of
+from eel_studies.pictures import PICTURES, Figure, write_picture
 
 from eel_dynamics import Run, simulate
 from eel_gaits import read_midlines
-from eel_studies.pictures import PICTURES, Figure, write_picture
 
-NAME = "eel midlines"
+NAME = "midlines.py"
 SHOWN = 8  # instants in the picture
 
 
@@ -123,3 +124,7 @@ def compared(run: Run, midlines: Midlines) -> MidlineComparison:
     assert run.backbone is not None  # it has stations
     found = run.backbone[..., : measured.shape[2]]
     return MidlineComparison(run.time, measured, laid_on(found, measured), run.body.length)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A robot by the log of its joints: the options of commands, its links, its body and its motion."""
+
+import argparse
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from eel_base.command.command_line import Parser
+from eel_base.quantity import positive
+from eel_base.wording import shown
+from eel_gaits.sources.joint_log import JointLog, joint_log, law_of_links, read_joint_log
+from eel_gaits.sources.sampled_law import SampledLaw
+from eel_model.body.body import Body, body_of
+
+from eel_dynamics.runs.exchange.eel_viz_functions import function_of_eel_viz
+from eel_dynamics.runs.run import Run
+
+BAGS = ".mcap", ".db3"
+FITTING = 1e-6  # part of the length by which the links' sum may miss the body's
+POINTS = 81  # of a robot's body along its length
+ROUND = 1.0  # length of a nose by its half-height
+
+
+def add_joint_options(parser: Parser) -> None:
+    """Add the options that say how a log of joints is read, and what the robot is."""
+    parser.add_argument("--columns", default="", metavar="WHICH", help='joints of a .csv: "8-13", names, "*Fbck*"')
+    parser.add_argument("--topic", metavar="TOPIC", help="of a bag with several of sensor_msgs/JointState")
+    parser.add_argument("--tail-first", action="store_true", help="the first joint is that at the tail")
+    parser.add_argument("--links", metavar="LENGTHS", help="m, from nose to tail: 0.18x9, or 0.2,0.1x5,0.2")
+    parser.add_argument("--section", metavar="A,B", help="m, half-height and half-width of all links, or --body")
+    parser.add_argument("--mass", type=float, metavar="KG", help="of the robot (that of the water in its place)")
+
+
+@dataclass(frozen=True)
+class LoggedRobot:
+    """A robot of n joints and the motion in its log."""
+
+    joints: np.ndarray  # (n,) m, their places from the nose
+    body: Body
+    law: SampledLaw
+    notes: tuple[str, ...]  # of the log
+
+    def about(self) -> list[str]:
+        """What was read, and the robot, a line each."""
+        body = self.body
+        robot = f"{len(self.joints) + 1} links, {body.length:.4g} m, {body.mass:.4g} kg, {body.volume * 1e3:.4g} l"
+        return [self.law.about, *self.notes, robot]
+
+    def torque(self, run: Run) -> np.ndarray:
+        """(T, n) N m, of the motors in a `run` with internal wrench."""
+        from scipy.interpolate import CubicSpline
+
+        assert run.torque is not None
+        return np.asarray(-CubicSpline(run.x, run.torque[:, :, 2], axis=1)(self.joints))
+
+
+def logged_robot(path: str, options: argparse.Namespace) -> LoggedRobot:
+    """The robot of the log at `path`, a .csv or a bag, as the `options` say. `ValueError` for what does not fit."""
+    log = _log(Path(path), options)
+    links = _links(options.links, log.angles.shape[1])
+    body = _body(options, float(links.sum()))
+    if options.mass is not None:
+        body = body.changed(density=positive("mass", options.mass, "kg") / body.volume)
+    joints = np.cumsum(links)[:-1]
+    return LoggedRobot(joints, body, law_of_links(log, joints, body.length), tuple(log.notes))
+
+
+def _log(path: Path, options: argparse.Namespace) -> JointLog:
+    unit = options.units or ""
+    if path.is_dir() or path.suffix in BAGS:
+        if options.columns:
+            raise ValueError("--columns belong to a .csv file; joints of a bag have names")
+        time, angles, names = function_of_eel_viz("joints")(path, options.topic)
+        return joint_log(path.name, time, angles, tuple(names), unit=unit, tail_first=options.tail_first)
+    if options.topic is not None:
+        raise ValueError("--topic belongs to a bag")
+    return read_joint_log(path, columns=options.columns, unit=unit, tail_first=options.tail_first)
+
+
+def _links(text: str | None, joints: int) -> np.ndarray:
+    """Lengths [m] of the links, from nose to tail: one more than joints."""
+    found: list[float] = []
+    for part in (text or "").split(","):
+        length, _, count = part.partition("x")
+        try:
+            found += [float(length)] * int(count or 1)
+        except ValueError:
+            raise ValueError(
+                f"--links must be lengths such as 0.18x9 or 0.2,0.1x5,0.2 [m], got {shown(text)}"
+            ) from None
+    if len(found) != joints + 1:
+        raise ValueError(f"--links must be {joints + 1} lengths for {joints} joints, got {len(found)}")
+    return np.array([positive("link", each, "m") for each in found])
+
+
+def _body(options: argparse.Namespace, length: float) -> Body:
+    if (options.body is None) == (options.section is None):
+        raise ValueError("one of --body and --section must be given")
+    if options.section is not None:
+        try:
+            half_height, half_width = map(float, options.section.split(","))
+        except ValueError:
+            raise ValueError(f"--section must be half-height,half-width [m], got {shown(options.section)}") from None
+        return chain_body(length, half_height, half_width)
+    body = body_of(options.body)
+    if abs(body.length - length) > FITTING * length:
+        raise ValueError(f"--links must add up to the body's length, {body.length:g} m, got {length:g} m")
+    return body
+
+
+def chain_body(length: float, half_height: float, half_width: float) -> Body:
+    """A chain of links of one elliptic section [m]: a round nose, a blunt tail."""
+    for name, value in (("half_height", half_height), ("half_width", half_width)):
+        positive(f"section's {name}", value, "m")
+    nose = min(ROUND * half_height, 0.1 * length)
+    x = np.concatenate(
+        (nose * (1.0 - np.cos(np.linspace(0.0, 0.5 * np.pi, 13))), np.linspace(nose, length, POINTS)[1:])
+    )
+    end = np.sqrt(np.clip(1.0 - np.clip(1.0 - x / nose, 0.0, None) ** 2, 0.0, None))
+    return Body(x=x, half_height=half_height * end, half_width=half_width * end, kinks=(nose,), name="links")
