@@ -195,7 +195,7 @@ def test_a_recorder_that_is_killed_leaves_a_bag_with_all_that_it_had_saved(start
     "one line that says how many messages it has, status 1; the bag opens",
 )
 def test_a_full_disk_is_said_in_one_line_and_what_was_written_opens(start, network, tmp_path):
-    limited = f"ulimit -f 600; exec record -o {tmp_path / 'bag'}"  # KiB
+    limited = f"ulimit -f 600; exec eel record -o {tmp_path / 'bag'}"  # KiB
     recorder = start("bash", "-c", limited)
     recorder.wait_for_output("recording to")
     publisher = network.create_publisher(TOPICS["backbone"], "backbone", 1000)

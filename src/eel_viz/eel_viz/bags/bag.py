@@ -1,17 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads a rosbag2 folder, or one of its files, without ROS: MCAP or sqlite3, split or not, compressed or not.
 
-After a crash (no metadata, no index, a truncated file) the readable part is read, and so it is where checksums tell of
-damage. Types are those that the bag defines; a bag without definitions (sqlite3 before Iron) needs the message
-packages installed. What metadata.yaml and chunks inflate to is bounded.
+A bag that is damaged or unfinished is refused, with the tool that repairs it. Types are those that the bag defines; a
+bag without definitions (sqlite3 before Iron) needs the message packages installed. What metadata.yaml and chunks
+inflate to is bounded.
 """
 
 import contextlib
 import os
 import pathlib
-import shutil
-import sqlite3
-import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, Self
@@ -23,9 +20,10 @@ from rosbags.rosbag2 import Reader
 from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_types_from_msg, get_typestore
 
-from eel_viz.bags.unvouched_files import METADATA, RecordReader, check_metadata, damage_of
+from eel_viz.bags.bounds import METADATA, check_mcap, check_metadata
 
 SUFFIXES = (".mcap", ".db3")
+JOURNALS = ".db3-wal", ".db3-journal"  # of sqlite: what a recorder that was killed has not brought into its file
 PADDED = "sensor_msgs/msg/JointState", "eel_msgs/msg/MotorStates"  # their last fields are sequences of doubles
 PADDING = 8, 12  # bytes that ROS may leave behind one or several such sequences that are empty
 
@@ -40,24 +38,13 @@ class Topic:
     publishers: int = 1
 
 
-class DamagedBag(ValueError):
-    """The bag cannot be read any further."""
-
-
 class Bag:
-    """A bag, open for reading. `ValueError` in one line if nothing of it can be read.
-
-    Attributes:
-        topics: by name.
-        damage: what is wrong with the bag; empty if nothing is.
-    """
+    """A bag, open for reading; `topics`: by name. `ValueError` in one line if it cannot be read."""
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self._path = pathlib.Path(path)
         self._stack = contextlib.ExitStack()
-        self._readers: list[Reader | RecordReader] = []
         self._store = get_typestore(Stores.EMPTY)
-        self.damage = ""
         self.topics: dict[str, Topic] = {}
         with reading(f"bag {shown(str(path))}"):
             if not self._path.exists():
@@ -65,7 +52,7 @@ class Bag:
             if not self._path.is_dir():
                 InputFile(self._path).close()
         try:
-            self._open()
+            self._reader = self._opened()
             self.topics = self._topics()
         except BaseException:
             self.close()
@@ -86,28 +73,25 @@ class Bag:
         """Yield topic, time of reception [ns] and message of all messages of `topics`, in the order of reception.
 
         `unreadable(topic, why)` is called for each message whose bytes do not fit its type. `ValueError` if a type is
-        unknown; `DamagedBag` where the bag is damaged.
+        unknown, and where the bag is damaged.
         """
         for name in topics:
             self._learn(self.topics[name])
-        for reader in self._readers:
-            chosen = [connection for connection in reader.connections if connection.topic in topics]
-            records = reader.messages(chosen) if chosen else iter(())
-            while True:
-                try:
-                    connection, stamp, raw = next(records)
-                except StopIteration:
-                    break
-                except Exception as error:
-                    raise DamagedBag(
-                        f"bag {shown(str(self._path))} is damaged: {self.damage or _line(error)}"
-                    ) from error
-                try:
-                    message = self._deserialised(raw, connection.msgtype)
-                except Exception as error:  # rosbags' own, struct.error, ValueError of numpy or of text
-                    unreadable(connection.topic, _line(error))
-                    continue
-                yield connection.topic, stamp, message
+        chosen = [connection for connection in self._reader.connections if connection.topic in topics]
+        records = self._reader.messages(chosen) if chosen else iter(())
+        while True:
+            try:
+                connection, stamp, raw = next(records)
+            except StopIteration:
+                return
+            except Exception as error:
+                raise ValueError(f"bag {shown(str(self._path))} is damaged: {_line(error)}") from error
+            try:
+                message = self._deserialised(raw, connection.msgtype)
+            except Exception as error:  # rosbags' own, struct.error, ValueError of numpy or of text
+                unreadable(connection.topic, _line(error))
+                continue
+            yield connection.topic, stamp, message
 
     def _deserialised(self, raw: Any, kind: str) -> object:
         """The message; empty sequences of doubles at its end may have some bytes behind them."""
@@ -119,48 +103,35 @@ class Bag:
                     return self._store.deserialize_cdr(raw[:-behind], kind)
             raise
 
-    def _open(self) -> None:
-        if self._path.is_file() or (self._path / METADATA).exists():
-            try:
-                self.damage = "; ".join(filter(None, map(damage_of, _mcap_files(self._path))))
-                self._readers = [self._stack.enter_context(_checked_reader(self._path))]
-                return
-            except Exception as error:  # on damaged files rosbags raises struct.error, KeyError, sqlite's and others
-                self.damage = _line(error)
-        else:
-            self.damage = f"no {METADATA}"
-        files = [self._path] if self._path.is_file() else sorted(self._path.iterdir())
-        files = [each for each in files if each.suffix in SUFFIXES and each.is_file()]
-        if not files:
-            raise ValueError(
-                f"bag {shown(str(self._path))} cannot be read: {self.damage}, no .mcap or .db3 file"
-                if self._path.is_dir()
-                else f"{shown(str(self._path))} is no bag: {self.damage}"
-            )
-        for each in files:
-            try:
-                reader = _reader(each, self._stack)
-                reader.__enter__()
-                self._stack.callback(reader.__exit__, None, None, None)
-                self._readers.append(reader)
-            except Exception as error:
-                self.damage = f"{each.name}: {_line(error)}"
-        if not any(reader.connections for reader in self._readers):
-            raise ValueError(f"bag {shown(str(self._path))} cannot be read: {self.damage}")
+    def _opened(self) -> Reader:
+        path, what = self._path, f"bag {shown(str(self._path))} cannot be read"
+        if path.is_file() and path.suffix not in SUFFIXES:
+            raise ValueError(f"{shown(str(path))} is no bag: its name must end in {' or '.join(SUFFIXES)}")
+        if path.is_dir() and not (path / METADATA).exists():
+            raise ValueError(f"{what}: no {METADATA} (`ros2 bag reindex` makes it)")
+        try:
+            files = [each for each in (path.iterdir() if path.is_dir() else [path]) if each.is_file()]
+            for each in sorted(files):
+                if each.suffix == ".mcap":
+                    check_mcap(each)
+                elif each.name.endswith(JOURNALS) and each.stat().st_size:
+                    raise ValueError(f"{each.name} is not yet in its file (`sqlite3 FILE .tables` brings it in)")
+            return self._stack.enter_context(_checked_reader(path))
+        except Exception as error:  # on damaged files rosbags raises struct.error, KeyError, sqlite's and others
+            raise ValueError(f"{what}: {_line(error)}") from error
 
     def _topics(self) -> dict[str, Topic]:
         found: dict[str, Topic] = {}
-        for reader in self._readers:
-            for connection in reader.connections:
-                offered: Any = connection.ext  # of a bag of ROS 2
-                known = found.get(connection.topic)
-                text = connection.msgdef.data or (known.definition if known else "")
-                found[connection.topic] = Topic(
-                    type=connection.msgtype,
-                    definition=text,
-                    idl=connection.msgdef.format == MessageDefinitionFormat.IDL,
-                    publishers=max(1, len(offered.offered_qos_profiles)),
-                )
+        for connection in self._reader.connections:
+            offered: Any = connection.ext  # of a bag of ROS 2
+            known = found.get(connection.topic)
+            text = connection.msgdef.data or (known.definition if known else "")
+            found[connection.topic] = Topic(
+                type=connection.msgtype,
+                definition=text,
+                idl=connection.msgdef.format == MessageDefinitionFormat.IDL,
+                publishers=max(1, len(offered.offered_qos_profiles)),
+            )
         return found
 
     def _learn(self, topic: Topic) -> None:
@@ -207,32 +178,6 @@ def _checked_reader(path: pathlib.Path) -> Iterator[Reader]:
 def _identity(connection: Connection) -> tuple[str, str, str]:
     """What a topic in metadata.yaml must have in common with one in a file."""
     return connection.topic, connection.msgtype, str(connection.ext)
-
-
-def _mcap_files(path: pathlib.Path) -> list[pathlib.Path]:
-    found = sorted(path.glob("*.mcap")) if path.is_dir() else [path]
-    return [each for each in found if each.suffix == ".mcap" and each.is_file()]
-
-
-def _reader(path: pathlib.Path, stack: contextlib.ExitStack) -> Reader | RecordReader:
-    """A reader of one file, which may be incomplete."""
-    if path.suffix == ".mcap":
-        with contextlib.suppress(Exception):
-            damage_of(path)
-            with Reader(path):
-                return Reader(path)
-        return RecordReader(path)
-    journal = [path.with_name(path.name + suffix) for suffix in ("-wal", "-journal")]
-    if any(each.exists() and each.stat().st_size for each in journal):  # let sqlite recover a copy
-        folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        for each in (path, *journal):
-            if each.exists():
-                shutil.copy(each, folder / each.name)
-        path = folder / path.name
-        with contextlib.closing(sqlite3.connect(path)) as database:
-            database.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchall()
-            database.execute("PRAGMA journal_mode=DELETE").fetchall()
-    return Reader(path)
 
 
 def _line(error: BaseException) -> str:

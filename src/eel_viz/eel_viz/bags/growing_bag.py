@@ -4,7 +4,7 @@
 The index, the end of the file and metadata.yaml are usually written when a bag is closed; before, there is no bag. Here
 `save` writes them whenever it is called: the new messages and a new end overwrite the old end in one write. So a
 recorder that is killed leaves a complete bag of all saved messages. If the disk is full, the old end is restored. (A
-process killed within that write leaves a file without its end; `unvouched_files` reads it.) Chunks, data and index have
+process killed within that write leaves a file without its end; `mcap recover` repairs it.) Chunks, data and index have
 their checksums.
 """
 

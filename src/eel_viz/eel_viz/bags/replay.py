@@ -58,8 +58,6 @@ def replay(
             bag = stack.enter_context(Bag(where))
             sources.append(SwimmerMessages(bag, space, log_warning))
             names.append(name_of(where, other, path) if other else sources[-1].namespace.strip("/") or "eel")
-            if bag.damage:
-                log_warning(f"{where} is unfinished or damaged ({bag.damage}): shown as far as it goes")
         numbers = count(1)
 
         def counted(source: SwimmerMessages) -> Iterator[tuple[str, Any]]:

@@ -10,7 +10,7 @@ import numpy as np
 from eel_base.topics import DIAGNOSTICS, GLOBAL, OWN, SAMPLED
 from eel_base.wording import shown
 
-from eel_viz.bags.bag import Bag, DamagedBag
+from eel_viz.bags.bag import Bag
 from eel_viz.recording.destination import LogFunction
 from eel_viz.recording.dispatcher import READERS
 
@@ -49,18 +49,11 @@ class SwimmerMessages:
         first = next((message for _, _, message in self._bag.messages(body)), None) if body in self._topics else None
         if first is not None:
             yield "body", first
-        count = 0
-        try:
-            for topic, _, message in self._bag.messages(*self._topics, unreadable=self._leave_out):
-                count += 1
-                if topic == body and first is not None:
-                    first = None
-                else:
-                    yield self._topics[topic], message
-        except DamagedBag as error:
-            if not count:
-                raise
-            self._log_warning(f"{error}: shown as far as it goes")
+        for topic, _, message in self._bag.messages(*self._topics, unreadable=self._leave_out):
+            if topic == body and first is not None:
+                first = None
+            else:
+                yield self._topics[topic], message
 
     def _leave_out(self, topic: str, why: str) -> None:
         if topic not in self._reported:
@@ -93,15 +86,13 @@ class SwimmerMessages:
 def swimmer_messages(path: str | os.PathLike[str], namespace: str | None = None) -> Iterator[tuple[str, Any]]:
     """Yield topic and message of the swimmer in the bag at `path`, as of `SwimmerMessages`.
 
-    A damaged bag is read as far as it goes, with a warning. `ValueError` in one line if it cannot be read.
+    `ValueError` in one line if it cannot be read.
     """
 
     def log_warning(text: str) -> None:
         warnings.warn(text, stacklevel=3)
 
     with Bag(path) as bag:
-        if bag.damage:
-            log_warning(f"{path} is unfinished or damaged ({bag.damage}): read as far as it goes")
         yield from SwimmerMessages(bag, namespace, log_warning, ("fin_states",))
 
 
