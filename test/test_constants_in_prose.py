@@ -59,7 +59,7 @@ QUOTED = {
         f"companion has {accuracy.ROBOT_LOOSER:g} times the tolerance and "
         f"{accuracy.ROBOT_SAFETY / (accuracy.ROBOT_LOOSER - 1.0):g} of the distance counts",
         f"Torque is compared at {LEAST_COMPARED} gaps or more",
-        f"10^{{{math.log10(error_estimate.TORQUE_FLOOR):g}}} \\, m \\, l^2 / T^2",
+        f"10^{{{math.log10(error_estimate.FLOOR):g}}} \\, m \\, l^2 / T^2",
     ),
     "docs/howto/bending.md": (f"compares it at {LEAST_COMPARED} gaps or more",),
     "docs/howto/controllers.md": (
