@@ -74,10 +74,18 @@ class Soak:
             )
 
 
-def soak(start, duration: float, *, limit: float, look: float = LOOK, memory_limit: str = "32MiB") -> Soak:
+def soak(
+    start,
+    duration: float,
+    *,
+    limit: float,
+    look: float = LOOK,
+    memory_limit: str = "32MiB",
+    swimmer: tuple[str, ...] = (),
+) -> Soak:
     """Swim for `duration` [s of simulation], within `limit` [s]; AssertionError where a node does not end well.
 
-    look [s]: wall time between two looks at the memory.
+    look [s]: wall time between two looks at the memory. swimmer: parameters of `dynamics`.
     """
     samples = round(duration * RATE) + 1
     listener = start(sys.executable, "-c", LISTENER, str(samples))
@@ -91,6 +99,7 @@ def soak(start, duration: float, *, limit: float, look: float = LOOK, memory_lim
     dynamics = start(
         "dynamics", "--ros-args", "-p", f"duration:={duration}", "-p", f"rate:={RATE}", "-p", "real_time_factor:=0",
         "-p", "wait_for_subscribers:=2", "-p", "subscriber_timeout:=60",
+        *(word for parameter in swimmer for word in ("-p", parameter)),
     )  # fmt: skip
     dynamics.wait_for_output("waiting for curvature_law")
     gait, began = start("gait_generator"), time.monotonic()  # the run begins after the first look

@@ -7,10 +7,12 @@ sockets are this process's own, and Linux counts what has passed through each: a
 falls behind.
 """
 
+import math
 import os
 import socket
 import stat
 import struct
+import time
 from collections.abc import Iterator
 
 COUNTERS = struct.Struct("120xQQ")  # linux/tcp.h, tcp_info: bytes acknowledged by the peer, bytes received from it
@@ -26,6 +28,7 @@ class ViewerConnections:
         self._counted: dict[tuple[str, int], int] = {}  # peer: bytes received from it at the last look
         self._received = 0  # bytes from all peers, also from those that have gone
         self._least: dict[tuple[str, int], int] = {}  # viewer: the least bytes received, less those given to it
+        self._disconnected = -math.inf  # s, steady clock: when a viewer was disconnected last
 
     def look(self) -> dict[tuple[str, int], int]:
         """By how many bytes each viewer is further behind than it ever was, by its address."""
@@ -41,6 +44,10 @@ class ViewerConnections:
         self._least = {peer: min(count, self._least.get(peer, count)) for peer, count in waiting.items()}
         return {peer: count - self._least[peer] for peer, count in waiting.items()}
 
+    def in_grace(self, seconds: float) -> bool:
+        """Whether a viewer was disconnected less than so many `seconds` ago: the server may not have gone on yet."""
+        return time.monotonic() - self._disconnected < seconds
+
     def disconnect_last(self) -> str:
         """Disconnect the viewer that is furthest behind; its address, or "" if none holds up the server."""
         behind = self.look()
@@ -50,6 +57,7 @@ class ViewerConnections:
         for peer, connection in self._connections():
             if peer == last:
                 connection.shutdown(socket.SHUT_RDWR)
+        self._disconnected = time.monotonic()
         return f"{last[0]}:{last[1]}"
 
     def _connections(self) -> Iterator[tuple[tuple[str, int], socket.socket]]:

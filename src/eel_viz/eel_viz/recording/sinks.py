@@ -10,7 +10,6 @@ import ipaddress
 import socket
 import subprocess
 import threading
-import time
 from functools import partial
 from urllib.parse import urlsplit
 
@@ -20,7 +19,6 @@ from eel_base.wording import shown
 from eel_viz.batched_stream import Rates
 from eel_viz.recording.destination import (
     APPLICATION,
-    STALL_TIMEOUT,
     Delivery,
     Destination,
     LogFunction,
@@ -28,90 +26,13 @@ from eel_viz.recording.destination import (
     detach_blocked,
 )
 from eel_viz.recording.recording_file import FileDestination
+from eel_viz.recording.viewer_delivery import ServerDelivery, ViewerDelivery
 from eel_viz.settings import Settings
 from eel_viz.viewer import display, free_port, listening, open_window, serve_to_browsers
 from eel_viz.viewer_connections import ViewerConnections
 
 LIVE_TICK = 0.16  # s: short enough for smooth motion in a viewer
 ANSWER_LIMIT = 1.0  # s until a listening viewer must answer
-VIEWER_FLUSH_TIMEOUT = 0.1  # s for one flush to a viewer
-
-
-class ViewerDelivery(Delivery):
-    """A stream to a viewer, which is given nothing while it does not read."""
-
-    RECOVERED = "the viewer reads again"
-
-    def __init__(self, destination: Destination, stream: rr.RecordingStream) -> None:
-        super().__init__(destination, stream)
-        self._stalled_since: float | None = None  # s: since when the viewer has not read
-        self._stall_reported = False
-
-    @property
-    def accepts_data(self) -> bool:
-        """Whether the viewer is there, and reads."""
-        return super().accepts_data and not self.stalled
-
-    @property
-    def stalled(self) -> bool:
-        """Whether the last flush did not arrive: what is logged would fill this process's memory."""
-        return self._stalled_since is not None
-
-    def find_faults(self, now: float) -> None:
-        """Find out whether the viewer reads, and say so where that has changed."""
-        if self._arrived():
-            if self._stall_reported:
-                self.destination.log_info(self.RECOVERED)
-            self._stalled_since, self._stall_reported = None, False
-            return
-        self._stalled_since = now if self._stalled_since is None else self._stalled_since
-        if now - self._stalled_since > STALL_TIMEOUT and not self._stall_reported:
-            self._report_stall()
-
-    def _report_stall(self) -> None:
-        self._stall_reported = True
-        self.destination.log_warning(
-            f"the viewer has not read for {STALL_TIMEOUT:g} s: it misses what comes until it does"
-        )
-
-    def close(self, end: float = 0.0) -> None:
-        """Flush and close the stream; one that blocks is detached instead."""
-        if self.disconnected or self._arrived() or self.disconnected:
-            close_stream(self.stream)
-        else:
-            detach_blocked(self.stream)
-
-    def _arrived(self) -> bool:
-        try:
-            return self.flushed(VIEWER_FLUSH_TIMEOUT)
-        except RuntimeError:
-            self.disconnected = True
-            return False
-
-
-class ServerDelivery(ViewerDelivery):
-    """A stream to the own server. A viewer that holds it up is disconnected, so that the others miss nothing."""
-
-    RECOVERED = "the server goes on"
-    destination: "ServerDestination"
-
-    @property
-    def stalled(self) -> bool:
-        """Whether the server is held up by itself: while a viewer may be the reason, all is kept for the others."""
-        return self._stall_reported
-
-    def find_faults(self, now: float) -> None:
-        self.destination.viewers.look()
-        super().find_faults(now)
-
-    def _report_stall(self) -> None:
-        if self.destination.disconnect_slowest():
-            self._stalled_since = None
-            return
-        self._stall_reported = True
-        self.destination.log_warning(
-            f"the server has stood still for {STALL_TIMEOUT:g} s: viewers miss what comes until it goes on"
-        )
 
 
 class ServerDestination(Destination):
@@ -136,8 +57,7 @@ class ServerDestination(Destination):
         self._host = rr.RecordingStream(APPLICATION, send_properties=False)
         self._host.set_sinks(server)
         self._host.send_recording_name("(server)")  # a viewer lists it beside the runs
-        self.viewers = ViewerConnections(port)
-        self._disconnected = 0.0  # s, steady clock: when a viewer was disconnected last
+        self._viewers = ViewerConnections(port)
         self._shown_uri = f"rerun+http://{self._name}:{port}/proxy"
         log_info(f"serving on {address}; to look at it, now or later: rerun {self._shown_uri}")
         if not address.is_loopback:
@@ -146,20 +66,7 @@ class ServerDestination(Destination):
             )
 
     def open(self, number: int, name: str) -> Delivery:
-        return ServerDelivery(self, self.make_stream(rr.GrpcSink(self.uri), name))
-
-    def disconnect_slowest(self) -> bool:
-        """Disconnect the viewer that holds up the server, or give it time after the last one; False if none does."""
-        if time.monotonic() - self._disconnected < STALL_TIMEOUT:
-            return True
-        viewer = self.viewers.disconnect_last()
-        if viewer:
-            self._disconnected = time.monotonic()
-            self.log_warning(
-                f"the viewer at {viewer} does not keep up, and has held up the others for {STALL_TIMEOUT:g} s: it is "
-                "disconnected; opened again, it gets what memory_limit has kept"
-            )
-        return bool(viewer)
+        return ServerDelivery(self, self.make_stream(rr.GrpcSink(self.uri), name), self._viewers)
 
     def close(self) -> None:
         """Close the servers, after the streams of the recordings."""
