@@ -13,7 +13,7 @@ import yaml
 import zstandard
 from eel_viz.bags.bag import Bag
 from eel_viz.bags.bounds import check_mcap
-from eel_viz.bags.definitions import definition, type_hash
+from eel_viz.bags.definitions import definition, message_class, type_hash
 from eel_viz.bags.growing_bag import GrowingBag
 from mcap.reader import make_reader
 from rosbags.rosbag2 import Reader
@@ -194,3 +194,15 @@ def test_the_place_of_damage_is_said(tmp_path):
         with pytest.raises(ValueError, match=r"bag\.mcap, from byte \d+ on: .*`mcap recover` repairs it") as told:
             Bag(tmp_path / "bag")
         assert abs(place - int(re.search(r"from byte (\d+)", str(told.value))[1])) < 1000
+
+
+def test_a_type_that_names_no_interface_imports_nothing(tmp_path, monkeypatch):
+    (tmp_path / "harmful").mkdir()
+    (tmp_path / "harmful" / "__init__.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w').close()")
+    (tmp_path / "harmful" / "msg.py").write_text("Thing = int")
+    monkeypatch.syspath_prepend(tmp_path)
+    for name in ("harmful/msg/Thing", "/msg/Thing", "os", "eel_msgs/msg/Missing"):
+        with pytest.raises(ValueError, match=f"message type '{name}' is not installed here"):
+            message_class(name)
+    assert not (tmp_path / "ran").exists()
+    assert message_class("eel_msgs/msg/Backbone").__name__ == "Backbone"

@@ -19,8 +19,13 @@ _SEPARATOR = "=" * 80
 
 
 def message_class(name: str) -> type[Any]:
-    """The Python class of `name`, such as eel_msgs/msg/Backbone; `ValueError` if its package is not installed."""
+    """The Python class of `name`, such as eel_msgs/msg/Backbone; `ValueError` if its package is not installed.
+
+    Anybody on the network may name a type: no module is imported but those of interface packages.
+    """
     package, _, kind = name.partition("/msg/")
+    if not _file(name, "msg").is_file():
+        raise _not_installed(name)
     try:
         found: type[Any] = getattr(importlib.import_module(f"{package}.msg"), kind)
     except (ImportError, AttributeError, ValueError) as error:
