@@ -4,9 +4,14 @@
 import io
 import json
 import struct
+import tempfile
 import zipfile
+import zlib
+from pathlib import Path
 
+import h5py
 import numpy as np
+from flow_files import write_flow
 
 DEEP = 20_000
 CELLS = (
@@ -37,8 +42,20 @@ def tables(good: str) -> dict[str, bytes]:
         "blank": " \n",
         "header alone": header + "\n",
         "five million blank lines": header + "\n" * 5_000_001,
+        "two million cells, one in a row": names[0] + "\n" + "1\n" * 2_000_000,
         "line of 2 MB": header + "\n" + "1" * 2_000_000,
         "field of 200 kB": good + "9" * 200_000 + last[last.index(",") :],
+        "20,000 rows, each of a frame and a track of its own": "track,frame_idx,a.x,a.y,b.x,b.y\n"
+        + "".join(f"{n},{n},1,2,3,4\n" for n in range(20_000)),
+        "30,000 animals": "scorer"
+        + ",s" * 60_000
+        + "\nindividuals"
+        + "".join(f",{n},{n}" for n in range(30_000))
+        + "\nbodyparts"
+        + ",a" * 60_000
+        + "\ncoords"
+        + ",x,y" * 30_000
+        + ("\n0" + ",1" * 60_000),
         "200,000 columns": ",".join(map(str, range(200_000))) + "\n" + "0," * 199_999 + "0\n",
         "open quote": good + '"' + last,
         "open quote over many lines": good + '"' + (last + "\n") * 100_000,
@@ -268,6 +285,53 @@ def heads(good: bytes) -> dict[str, bytes]:
     }
     for part in range(8):
         found[f"noise in part {part} of the head"] = _with(good, 16 + part * variable // 8, _noise(16))
+    return found
+
+
+def of_hdf5(good: bytes) -> dict[str, bytes]:
+    """Files of HDF5 from a `good` one: each of its data sets with a shape that it does not hold, or a swollen chunk."""
+    found = {
+        "empty": b"",
+        "the mark alone": good[:8],
+        "noise": good[:8] + _noise(4000),
+        "noise in the middle": _with(good, len(good) // 2, _noise(200)),
+        "zeros": good[:8] + bytes(100_000),
+        "half": good[: len(good) // 2],
+        "no last byte": good[:-1],
+        "no HDF5": b"time,x,y\n",
+    }
+    names, swollen = list[str](), zlib.compress(bytes(3 * 10**8), 1)
+    with h5py.File(io.BytesIO(good)) as file:
+        file.visititems(lambda name, each: names.append(name) if getattr(each, "shape", ()) else None)
+    for name in names:
+        for kind, shape, chunk in (
+            ("1e15 numbers", 10**15, 1000),
+            ("3e7 numbers that are not there", 3 * 10**7, 1000),
+            ("a chunk of 1 GB", 1, 10**8),
+            ("a chunk that inflates to 300 MB", 1000, 1000),
+        ):
+            content = io.BytesIO(good)
+            with h5py.File(content, "r+") as file:
+                dims, dtype, attributes = file[name].ndim, file[name].dtype, dict(file[name].attrs)
+                del file[name]
+                shape_of, chunk_of = ((each, *(1,) * (dims - 1)) for each in (shape, chunk))
+                data = file.create_dataset(
+                    name, shape_of, dtype, chunks=chunk_of, maxshape=(None,) * dims, compression="gzip"
+                )
+                data.attrs.update({key: value for key, value in attributes.items() if "LIST" not in key})
+                if kind.startswith("a chunk that"):
+                    data.id.write_direct_chunk((0,) * dims, swollen)
+            found[f"{kind} as {name}"] = content.getvalue()
+    return found
+
+
+def flows(good: bytes) -> dict[str, bytes]:
+    """Flows in netCDF from a `good` one, some with dimensions that spread small variables over many points."""
+    found = heads(good)
+    with tempfile.TemporaryDirectory() as folder:
+        for count in (41, 54, 150):
+            write_flow(path := Path(folder) / "flow.nc", count)
+            found[f"{count} points along each of four axes"] = path.read_bytes()
     return found
 
 

@@ -16,12 +16,13 @@ import time
 import warnings
 from pathlib import Path
 
+from eel_gaits.film.film import read_film
 from eel_gaits.gaits.settings import Settings
 from eel_ros.parameters import shared_names
 from eel_studies.identification.measured_file import read_measured
 from eel_studies.sweeps.sweep_parts import Parts
 
-from eel_dynamics import Batch, Body, Run
+from eel_dynamics import Batch, Body, GriddedFlow, Run
 from eel_gaits import read_midlines, read_motion, sequence_from_file
 
 MEGABYTE, LONGEST = 2**20, 60  # s of wall time, for a file
@@ -50,6 +51,17 @@ def terms_of_file(path: Path) -> tuple:
     return Settings(gait="file", file=str(path)).law().terms
 
 
+def film_of(path: Path) -> tuple:
+    """A film without its name, which is the file's."""
+    film = read_film(path, units="px", scale=1.0, rate=None if path.parent.name == "film.csv" else 50.0)
+    return film.time, film.points, film.names
+
+
+def flow_of(path: Path) -> int:
+    """The hash of a flow, which may take nearly all memory that there is."""
+    return hash(GriddedFlow.of(path))
+
+
 def part_of_sweep(path: Path) -> dict:
     """The points in a part of a sweep. The library warns of a damaged part, and does its points again."""
     parts = Parts(path.with_name("sweep.nc"), KEY, 10, True)
@@ -75,6 +87,13 @@ READERS = {
     "sequence.yaml": lambda path: sequence_from_file(path).terms,
     "file.yaml": terms_of_file,
     "parameters.yaml": lambda path: shared_names(["--params-file", str(path)]),
+    "film.csv": film_of,
+    "sleap.csv": film_of,
+    "table.h5": film_of,
+    "blocks.h5": film_of,
+    "sleap.h5": film_of,
+    "flow.nc": flow_of,
+    "flow.h5": flow_of,
     "run.nc": Run.load,
     "batch.nc": Batch.load,
     "measured.nc": lambda path: read_measured(str(path)),

@@ -13,11 +13,16 @@ import crafted_files
 import numpy as np
 import pytest
 from eel_studies.sweeps.sweep_parts import Parts
+from filmed import write_deeplabcut_h5, write_sleap_h5
+from flow_files import write_flow
 
 from eel_dynamics import Body, simulate, simulate_batch
 from eel_gaits import sampled, save_law, straight
 
-QUICK = ("body.csv", "rows.npz", "sequence.yaml", "run.nc", "batch.nc", "part.json")
+QUICK = (
+    *("body.csv", "rows.npz", "sequence.yaml", "run.nc", "batch.nc", "part.json"),
+    *("film.csv", "table.h5", "sleap.h5", "flow.nc", "flow.h5"),
+)
 CHECKED = ("body.npz", "midlines.npz", "rows.npz", "speeds.npz")  # with checksums
 MEMORY = 200  # MB that a reader may take
 SECONDS = 1.0  # of CPU time
@@ -61,6 +66,20 @@ def good(tmp_path_factory) -> dict[str, bytes]:
     midlines = {"time": time, "x": s, "y": 0.02 * s * np.sin(2.0 * np.pi * (s - time)), "arc_length": s}
     joints = {"time": np.arange(40) / 40.0}
     joints |= {f"yaw_{n}": 0.1 * np.sin(2.0 * np.pi * (joints["time"] - n / 5)) for n in range(1, 5)}
+    film = {"time_s": joints["time"]}
+    for place in range(6):
+        film |= {f"x{place}": np.full(40, 0.2 * place), f"y{place}": 0.02 * np.sin(9.0 * joints["time"] - place)}
+    sleap = {"frame_idx": np.arange(40.0), "track": np.zeros(40)}
+    sleap |= {f"p{name[1]}.{name[0]}": each for name, each in list(film.items())[1:]}
+    points = np.stack([midlines[name].reshape(40, 9) for name in "xy"], axis=2)
+    for form in ("table", "blocks"):
+        write_deeplabcut_h5(folder / f"{form}.h5", {"": points}, form)
+    write_sleap_h5(folder / "sleap.h5", {"": points}, [f"p{place}" for place in range(9)])
+    for name in ("flow.nc", "flow.h5"):
+        write_flow(folder / name, 4)
+    files |= {
+        name: (folder / name).read_bytes() for name in ("table.h5", "blocks.h5", "sleap.h5", "flow.nc", "flow.h5")
+    }
     path = {"time": run.time, "x": run.position[:, 0], "y": run.position[:, 1]}
     return files | {
         "body.csv": table(columns).encode(),
@@ -69,6 +88,8 @@ def good(tmp_path_factory) -> dict[str, bytes]:
         "midlines.npz": archive(midlines),
         "joints.csv": table(joints).encode(),
         "path.csv": table(path).encode(),
+        "film.csv": table(film).encode(),
+        "sleap.csv": table(sleap).encode(),
         "speeds.npz": archive({"speed": np.array([0.2, 0.3]), "period": np.array([1.0, 0.8])}),
         "sequence.yaml": SEQUENCE.encode(),
         "file.yaml": SEQUENCE.encode(),
@@ -101,6 +122,10 @@ def crafted(reader: str, content: bytes) -> dict[str, bytes]:
     suffix = Path(reader).suffix
     if suffix == ".npz":
         return crafted_files.archives(dict(np.load(io.BytesIO(content))))
+    if reader == "flow.nc":
+        return crafted_files.flows(content)
+    if suffix == ".h5":
+        return crafted_files.of_hdf5(content)
     if suffix == ".nc":
         return crafted_files.runs(content) if b"eel\0" in content else crafted_files.heads(content)
     make = {".csv": crafted_files.tables, ".yaml": crafted_files.sequences, ".json": crafted_files.texts_of_json}

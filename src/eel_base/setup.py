@@ -12,7 +12,7 @@ setup(
         ("share/eel_base", ["package.xml"]),
     ],
     install_requires=["setuptools", "numpy", "PyYAML"],
-    extras_require={"test": ["pytest"], "pictures": ["matplotlib"]},
+    extras_require={"test": ["pytest"], "pictures": ["matplotlib"], "hdf5": ["h5py"]},
     maintainer="Eel simulator maintainers",
     maintainer_email="maintainers@eel-simulator.example.org",
     description="What every package of the eel simulator uses: numbers with bounds, words of messages, output files.",

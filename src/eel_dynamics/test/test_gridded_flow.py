@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Flows between the points of a grid: their cubics, their files, and what a swimmer meets in them."""
 
+import tracemalloc
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from eel_model.robot.robot import robot_of
+from flow_files import write_flow
 from scipy.io import netcdf_file
 
 from eel_dynamics import (
@@ -263,6 +266,62 @@ def test_a_damaged_file_is_named(tmp_path):
         (tmp_path / "pool.nc").write_bytes(part)
         with pytest.raises(ValueError, match=r"flow file .*pool\.nc"):
             GriddedFlow.of(tmp_path / "pool.nc")
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".h5"])
+def test_the_points_of_a_file_are_counted_before_any_is_made(tmp_path, suffix):
+    path = tmp_path / f"small{suffix}"
+    write_flow(path, 12)
+    assert GriddedFlow.of(path).velocity.shape == (12, 12, 12, 12, 3)
+    write_flow(path, 60)
+    tracemalloc.start()
+    with pytest.raises(ValueError, match=r"small.*: flow must have at most 3000000 points, got 12960000 \(time 60, x"):
+        GriddedFlow.of(path)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert path.stat().st_size < 100_000 and most < 5e6  # the points would take 3e8
+
+
+def test_a_netcdf_4_file_that_states_more_than_it_holds_is_refused(tmp_path):
+    path = tmp_path / "empty.nc"
+    with h5py.File(path, "w") as file:
+        for name in ("u", "v", "x"):
+            file.create_dataset(name, (10**12,), "f8", chunks=(1000,))
+        file["x"].make_scale("x")
+        for name in "uv":
+            file[name].dims[0].attach_scale(file["x"])
+    with pytest.raises(ValueError, match="flow must have at most 3000000 points, got 1000000000000"):
+        GriddedFlow.of(path)
+    with h5py.File(path, "w") as file:  # the velocity fits, its coordinate does not
+        file.create_dataset("x", (10**12,), "f8", chunks=(1000,)).make_scale("x")
+        for name in "uv":
+            file[name] = np.zeros(8)
+            file[name].dims[0].attach_scale(file["x"])
+    with pytest.raises(ValueError, match="'/x' must have at most 24000000 bytes"):
+        GriddedFlow.of(path)
+
+
+def test_a_netcdf_4_file_is_read_with_its_scale_and_its_missing_values(tmp_path):
+    path = tmp_path / "tank.nc"
+    with h5py.File(path, "w") as file:
+        file["time"], file["x"] = np.arange(3) * 500, np.array([0.0, 1.0])
+        file["time"].attrs["units"] = "milliseconds since 2020-01-01"
+        for name in ("time", "x"):
+            file[name].make_scale(name)
+        for name in "uv":
+            file.create_dataset(name, data=np.array([[1, 2, 3], [4, 5, 6]], "i2"), compression="gzip", shuffle=True)
+            file[name].attrs.update(
+                {"scale_factor": 0.5, "add_offset": 1.0, "_FillValue": np.int16(-9), "units": "m/s"}
+            )
+            for place, axis in enumerate(("x", "time")):
+                file[name].dims[place].attach_scale(file[axis])
+    flow = GriddedFlow.of(path)
+    assert flow.time.tolist() == [0.0, 0.5, 1.0] and flow.velocity.shape == (3, 2, 1, 1, 3)
+    assert flow.velocity[:, 1, 0, 0, 0].tolist() == [3.0, 3.5, 4.0]
+    with h5py.File(path, "a") as file:
+        file["u"][0, 1] = -9
+    with pytest.raises(ValueError, match=r"flow velocity must be finite, got nan at \(0, 0, 0\) m and 0.5 s"):
+        GriddedFlow.of(path)
 
 
 def test_runs_and_batches_are_saved_with_their_grid(tmp_path):

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Films of a swimmer whose beat is known, and files of them in the forms of laboratories and trackers."""
 
+import json
 import math
+import pickle
 
+import h5py
 import numpy as np
 from measured import midline_of, moved, write
 
@@ -84,3 +87,42 @@ def with_eyes_and_fins(points, arc, reach=1.0):
         side = reach * width * np.stack((-step[:, 1], step[:, 0]), axis=1) / np.linalg.norm(step, axis=1)[:, None]
         aside |= {f"left_{name}": points[:, place] + side, f"right_{name}": points[:, place] - side}
     return along | aside
+
+
+def write_deeplabcut_h5(path, animals, form):
+    """DeepLabCut's table as pandas writes it by PyTables: form "table" or "blocks" ("fixed")."""
+    heads, values = deeplabcut_rows(animals)
+    names = list(zip(*(row[1:] for row in heads), strict=True))
+    with h5py.File(path, "w") as file:
+        group = file.create_group("df_with_missing")
+        group.attrs["pandas_type"] = np.bytes_({"table": "frame_table", "blocks": "frame"}[form])
+        if form == "table":
+            kind = np.dtype([("index", "<i8"), ("values_block_0", "<f8", (values.shape[1],))])
+            rows = np.zeros(len(values), kind)
+            rows["index"], rows["values_block_0"] = np.arange(len(values)), values
+            table = group.create_dataset("table", data=rows, chunks=(50,), maxshape=(None,))
+            for name, listed in (("values_block_0_kind", names), ("values_block_0_meta", None)):
+                table.attrs[name] = np.bytes_(pickle.dumps(listed, 0))  # PyTables knows no other protocol
+            info = {1: {"names": [row[0] for row in heads], "type": "MultiIndex"}}
+            group.attrs["info"] = np.bytes_(pickle.dumps(info, 0))
+            return path
+        group.create_dataset("block0_values", data=values).attrs["transposed"] = np.uint8(1)
+        group["axis1"] = np.arange(len(values))
+        for place, row in enumerate(heads):
+            level, mark = np.unique(np.array(row[1:], dtype="S"), return_inverse=True)
+            group[f"block0_items_level{place}"], group[f"block0_items_label{place}"] = level, mark.astype(np.int8)
+    return path
+
+
+def write_sleap_h5(path, animals, parts, dims=None):
+    """SLEAP's analysis file: axes track, xy, node, frame, or other `dims`, which it then names."""
+    axes = ("track", "xy", "node", "frame")
+    points = np.stack([each.transpose(2, 1, 0) for each in animals.values()])
+    with h5py.File(path, "w") as file:
+        points = points.transpose([axes.index(name) for name in dims or axes])
+        tracks = file.create_dataset("tracks", data=points, compression="gzip", compression_opts=9)
+        if dims:
+            tracks.attrs["dims"] = json.dumps(dims)
+        file["node_names"], file["track_names"] = np.array(parts, dtype="S"), np.array(list(animals), dtype="S")
+        file["labels_path"] = "fish.slp"
+    return path

@@ -5,9 +5,8 @@ import numpy as np
 import pytest
 from eel_gaits.film.beat import beat_of
 from eel_gaits.film.film import Film, read_film
-from eel_gaits.film.forms import tracks_of_frame
 from eel_gaits.film.kinematics import kinematics
-from filmed import TIMES, TWICE, WAVE, deeplabcut_rows, swimming, write_deeplabcut, write_long, write_sleap, write_wide
+from filmed import TIMES, TWICE, WAVE, swimming, write_deeplabcut, write_long, write_sleap, write_wide
 
 X = np.linspace(0.05, 0.95, 37)
 
@@ -82,21 +81,6 @@ def test_all_forms_of_files_give_the_same_points(tmp_path):
     ]
     for each in films:
         assert np.allclose(each.points, points, atol=1e-9) and np.allclose(np.diff(each.time), 0.02)
-
-
-def test_deeplabcuts_table_is_read_from_the_frame_that_an_h5_file_holds():
-    pandas = pytest.importorskip("pandas")
-    heads, values = deeplabcut_rows({"": swimming()})
-    columns = pandas.MultiIndex.from_arrays([row[1:] for row in heads], names=[row[0] for row in heads])
-    tracks = tracks_of_frame(pandas.DataFrame(values, columns=columns))
-    assert np.array_equal(tracks.animals[""], swimming()) and tracks.unit == "px"
-
-
-def test_an_h5_file_without_its_libraries_says_what_to_install(tmp_path, monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "tables", None)
-    (tmp_path / "fish.h5").write_bytes(b"")
-    with pytest.raises(ValueError, match=r"fish.h5.*pip install pandas tables.*\.csv needs neither"):
-        read_film(tmp_path / "fish.h5", units="px", scale=1.0, rate=50.0)
 
 
 def test_gaps_missing_points_and_jumps_are_repaired_and_told(tmp_path):
@@ -231,26 +215,6 @@ def test_the_figures_of_a_swimmer_are_those_of_its_wave():
     assert found.wavelength * found.length == pytest.approx(0.6, rel=4e-2)  # along the arc, which is 2 % longer
     assert found.slip == pytest.approx(0.4 * 0.5 / 0.6, rel=4e-2)
     assert found.strouhal == pytest.approx(0.1 / 0.5 / 0.4, rel=2e-2)
-
-
-@pytest.mark.parametrize("form", ["table", "fixed"])
-def test_an_h5_file_of_deeplabcut_swims(tmp_path, form):
-    pandas = pytest.importorskip("pandas")
-    pytest.importorskip("tables")
-    points = swimming(noise=1e-3)
-    heads, values = deeplabcut_rows({"": 1e3 * points})
-    columns = pandas.MultiIndex.from_arrays([row[1:] for row in heads], names=[row[0] for row in heads])
-    path = tmp_path / "fishDLC_resnet50.h5"
-    pandas.DataFrame(values, columns=columns).to_hdf(path, key="df_with_missing", format=form, mode="w")
-    found = read_film(path, units="px", scale=1e-3, rate=50.0)
-    assert np.allclose(found.points, points, atol=1e-9) and np.allclose(np.diff(found.time), 0.02)
-
-
-def test_an_h5_file_that_is_none_is_told(tmp_path):
-    pytest.importorskip("tables")
-    (tmp_path / "fish.h5").write_bytes(b"no HDF")
-    with pytest.raises(ValueError, match=r"fish.h5.*cannot be read as HDF5"):
-        read_film(tmp_path / "fish.h5", units="px", scale=1.0, rate=50.0)
 
 
 def test_names_of_columns_may_end_with_their_unit_without_a_line(tmp_path):

@@ -3,28 +3,33 @@
 
     time_s, point, x_mm, y_mm                  a row for each point; all rows of one time are a frame, head first
     time_s, x0_m, y0_m, x1_m, y1_m ...         a row for each frame
-    scorer / bodyparts / coords                DeepLabCut (.csv, and .h5 where pandas and PyTables are installed)
+    scorer / bodyparts / coords                DeepLabCut (.csv, and .h5 where h5py is installed)
     scorer / individuals / bodyparts / coords  the same, of several animals
-    track, frame_idx, instance.score, nose.x   SLEAP's analysis .csv
+    track, frame_idx, instance.score, nose.x   SLEAP's analysis (.csv, and .h5 likewise)
 
 A unit after the last _ of a column counts as the file's. The trackers' points are in pixels, and their time in frames.
 """
 
+import array
 import itertools
+import math
 import re
-from importlib import import_module
+from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from eel_base.files.input_file import InputFile, Misplaced
-from eel_base.wording import one_line, shown
+from eel_base.files.archive import MOST_NUMBERS
+from eel_base.files.input_file import Misplaced
+from eel_base.wording import shown
 
-from eel_gaits.sources.tables import LARGEST, MOST_BYTES, csv_rows
+from eel_gaits.film.hdf5 import Columns, read_hdf5
+from eel_gaits.sources.tables import LARGEST, csv_rows
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}  # metres in each; pixels have no length
 COORDINATE = re.compile(r"m?([xy])_?([0-9]*)_?(m|cm|mm|px)?")  # x, y_mm, x0_m; mxmm of fishmechr
 TIME = re.compile(r"(?:time|t)(?:_(s|ms))?")
+TRACK = "track"  # SLEAP's column of names
 LIKELY = 0.6  # likelihood of a DeepLabCut point below which it counts as missing, as there
 
 
@@ -39,29 +44,47 @@ class Tracks(NamedTuple):
     notes: tuple[str, ...]  # what was done, in words
 
 
-class Cells(NamedTuple):
-    """The names of the columns, and the line and the cells of each row."""
+class Cells:
+    """The cells of a table as numbers; those of the column `track` as texts, each kept once.
 
-    head: list[str]
-    rows: list[tuple[int, list[str]]]
+    head: names of the columns. rows: line and cells of each row.
+    """
+
+    def __init__(self, head: list[str], rows: Iterable[tuple[int, list[str]]]) -> None:
+        self.head, self.tracks = head, list[str]()
+        self._lines, values, names = array.array("q"), array.array("d"), dict[str, str]()
+        self._bad: dict[int, tuple[int, str]] = {}  # the first cell of a column that is no number, and its row
+        track = head.index(TRACK) if TRACK in head else -1
+        for line, row in rows:
+            for column, cell in enumerate(map(str.strip, row)):
+                try:
+                    values.append(math.nan if cell.lower() in ("", "na", "nan") else float(cell))
+                except ValueError:
+                    values.append(math.nan)
+                    self._bad.setdefault(column, (len(self._lines), cell))
+                if column == track:
+                    self.tracks.append(names.setdefault(cell, cell))
+            self._lines.append(line)
+        self._values = np.frombuffer(values).reshape(len(self._lines), len(head))
+
+    def __len__(self) -> int:
+        return len(self._lines)
 
     def error(self, row: int, text: str) -> Misplaced:
         """An error in this row."""
-        return Misplaced(f"line {self.rows[row][0]}", text)
+        return Misplaced(f"line {self._lines[row]}", text)
 
     def numbers(self, columns: list[int]) -> np.ndarray:
         """The numbers (rows, columns); NaN for an empty cell, NA or nan."""
-        found = np.empty((len(self.rows), len(columns)))
-        for place, (_, row) in enumerate(self.rows):
-            for column, index in enumerate(columns):
-                cell = row[index].strip()
-                try:
-                    value = np.nan if cell.lower() in ("", "na", "nan") else float(cell)
-                except ValueError:
-                    raise self.error(place, f"{self.head[index]} must be a number, got {shown(cell)}") from None
-                if abs(value) > LARGEST:
-                    raise self.error(place, f"{self.head[index]} must be at most {LARGEST:g}, got {cell}")
-                found[place, column] = value
+        for column in columns:
+            if column in self._bad:
+                row, cell = self._bad[column]
+                raise self.error(row, f"{self.head[column]} must be a number, got {shown(cell)}")
+        found = self._values[:, columns]
+        if len(large := np.argwhere(np.abs(found) > LARGEST)):
+            row, place = large[0]
+            rule = f"{self.head[columns[place]]} must be at most {LARGEST:g}"
+            raise self.error(row, f"{rule}, got {found[row, place]:g}")
         return found
 
     def check_rising(self, time: np.ndarray, rows: np.ndarray) -> None:
@@ -84,13 +107,17 @@ def read_tracks(path: Path) -> Tracks:
         return _of_hdf(path)
     if path.suffix != ".csv":
         raise ValueError("tracked points must be in a .csv or .h5 file")
-    rows = list(csv_rows(path))
-    if len(rows) < 2:
-        raise ValueError("it has a header and no row" if rows else "it is empty")
-    cells = Cells([name.strip() for name in rows[0][1]], rows[1:])
-    if cells.head[0] == "scorer":
-        return _of_deeplabcut(cells)
-    return _of_sleap(cells) if "frame_idx" in cells.head else _of_columns(cells)
+    rows = csv_rows(path)
+    _, head = next(rows, (0, []))
+    if not head:
+        raise ValueError("it is empty")
+    head = [name.strip() for name in head]
+    if head[0] == "scorer":
+        return _of_deeplabcut(rows)
+    cells = Cells(head, rows)
+    if not len(cells):
+        raise ValueError("it has a header and no row")
+    return _of_sleap(cells) if "frame_idx" in head else _of_columns(cells)
 
 
 def _of_columns(cells: Cells) -> Tracks:
@@ -126,7 +153,7 @@ def _names_in_frames(cells: Cells, starts: np.ndarray) -> list[str]:
 
     `ValueError` where the frames that begin at the rows `starts` do not have the same points in the same order.
     """
-    sizes = np.diff(np.append(starts, len(cells.rows)))
+    sizes = np.diff(np.append(starts, len(cells)))
     if len(other := np.flatnonzero(sizes != sizes[0])):
         raise cells.error(starts[other[0]], f"a frame of {sizes[other[0]]} points, the first has {sizes[0]}")
     if "point" not in cells.head:
@@ -140,16 +167,20 @@ def _names_in_frames(cells: Cells, starts: np.ndarray) -> list[str]:
     return [f"{each:g}" for each in order[0]]
 
 
-def _of_deeplabcut(cells: Cells) -> Tracks:
-    names = {row[0].strip(): row[1:] for _, row in cells.rows[:3]}
-    names = {name: row for name, row in names.items() if name in ("individuals", "bodyparts", "coords")}
-    if not {"bodyparts", "coords"} <= set(names):
+def _of_deeplabcut(rows: Iterator[tuple[int, list[str]]]) -> Tracks:
+    names: dict[str, list[str]] = {}
+    for first in rows:
+        if first[1][0].strip() not in ("individuals", "bodyparts", "coords"):
+            rows = itertools.chain([first], rows)
+            break
+        names[first[1][0].strip()] = first[1][1:]
+    if not {"bodyparts", "coords"} <= names.keys():
         raise ValueError("a DeepLabCut file must have the header lines scorer, bodyparts and coords")
-    body = cells.rows[len(names) :]
-    if not body:
-        raise ValueError("it has a header and no row")
     head = ["frame", *(f"{part} {what}" for part, what in zip(names["bodyparts"], names["coords"], strict=True))]
-    values = Cells(head, body).numbers(list(range(len(head))))
+    cells = Cells(head, rows)
+    if not len(cells):
+        raise ValueError("it has a header and no row")
+    values = cells.numbers(list(range(len(head))))
     animals = names.get("individuals", [""] * (len(head) - 1))
     return _of_parts(values[:, 0], list(zip(animals, names["bodyparts"], names["coords"], strict=True)), values[:, 1:])
 
@@ -157,19 +188,20 @@ def _of_deeplabcut(cells: Cells) -> Tracks:
 def _of_parts(frames: np.ndarray, names: list[tuple[str, str, str]], values: np.ndarray) -> Tracks:
     """Tracks of DeepLabCut's columns, each with the names of (animal, body part, x, y or likelihood)."""
     column = {name: index for index, name in enumerate(names)}
-    animals, parts_of, unlikely = {}, {}, 0
-    for animal in dict.fromkeys(name[0] for name in names):
-        parts = list(dict.fromkeys(name[1] for name in names if name[0] == animal))
+    animals, unlikely, parts_of = {}, 0, dict[str, list[str]]()
+    for animal, part in dict.fromkeys(name[:2] for name in names):
+        parts_of.setdefault(animal, []).append(part)
+    for animal, parts in parts_of.items():
         points = np.full((len(frames), len(parts), 2), np.nan)
         for place, part in enumerate(parts):
-            if not {(animal, part, "x"), (animal, part, "y")} <= set(names):
+            if not {(animal, part, "x"), (animal, part, "y")} <= column.keys():
                 raise ValueError(f"body part {shown(part)} must have x and y")
             points[:, place] = values[:, [column[animal, part, "x"], column[animal, part, "y"]]]
             if (index := column.get((animal, part, "likelihood"))) is not None:
                 bad = ~(values[:, index] >= LIKELY) & np.isfinite(points[:, place, 0])
                 points[bad, place] = np.nan
                 unlikely += int(bad.sum())
-        animals[animal], parts_of[animal] = points, parts
+        animals[animal] = points
     if fall := _fall_of(frames):
         raise ValueError(fall[1])
     notes = (f"{unlikely} points of a likelihood below {LIKELY} count as missing",) if unlikely else ()
@@ -177,28 +209,14 @@ def _of_parts(frames: np.ndarray, names: list[tuple[str, str, str]], values: np.
 
 
 def _of_hdf(path: Path) -> Tracks:
-    try:
-        import_module("tables")  # what pandas reads .h5 with
-        pandas = import_module("pandas")
-    except ImportError:
-        raise ValueError(
-            "an .h5 file of DeepLabCut needs pandas and PyTables (pip install pandas tables); its .csv needs neither"
-        ) from None
-    with InputFile(path, MOST_BYTES):
-        pass
-    try:
-        return tracks_of_frame(pandas.read_hdf(path))
-    except Exception as error:  # PyTables' own, KeyError, and what its pickles raise
-        raise ValueError(f"it cannot be read as HDF5 of DeepLabCut: {one_line(error)}") from None
-
-
-def tracks_of_frame(frame: Any) -> Tracks:
-    """Tracks of DeepLabCut's `pandas.DataFrame`: columns of the levels scorer, (individuals,) bodyparts, coords."""
-    levels = list(frame.columns.names)
-    if levels[-2:] != ["bodyparts", "coords"]:
-        raise ValueError(f"a DeepLabCut table must have columns of scorer, bodyparts and coords, got {shown(levels)}")
-    names = [(name[1] if len(name) == 4 else "", name[-2], name[-1]) for name in frame.columns]
-    return _of_parts(np.arange(len(frame), dtype=float), names, frame.to_numpy(dtype=float))
+    found = read_hdf5(path)
+    for values in [found.values] if isinstance(found, Columns) else found.tracks.values():
+        if np.any(np.abs(values) > LARGEST):
+            raise ValueError(f"its numbers must be at most {LARGEST:g}")
+    if isinstance(found, Columns):
+        return _of_parts(found.frames, found.names, found.values)
+    frames = np.arange(len(next(iter(found.tracks.values()), [])), dtype=float)
+    return Tracks(frames, found.tracks, dict.fromkeys(found.tracks, found.parts), "px", True, ())
 
 
 def _of_sleap(cells: Cells) -> Tracks:
@@ -208,10 +226,13 @@ def _of_sleap(cells: Cells) -> Tracks:
         raise ValueError(f"a SLEAP file must have columns such as nose.x, nose.y, got {shown(head)}")
     frame = cells.numbers([head.index("frame_idx")])[:, 0]
     points = cells.numbers([head.index(f"{part}.{axis}") for part in parts for axis in "xy"])
-    tracks = [row[head.index("track")].strip() if "track" in head else "" for _, row in cells.rows]
+    rows_of: dict[str, list[int]] = {}
+    for row, track in enumerate(cells.tracks or [""] * len(cells)):
+        rows_of.setdefault(track, []).append(row)
     frames, animals = np.unique(frame), {}
-    for track in dict.fromkeys(tracks):
-        mine = [place for place, name in enumerate(tracks) if name == track]
+    if 2 * len(rows_of) * len(frames) * len(parts) > MOST_NUMBERS:
+        raise ValueError(f"its {len(rows_of)} tracks and {len(frames)} frames make more than {MOST_NUMBERS} numbers")
+    for track, mine in rows_of.items():
         if len(set(frame[mine])) < len(mine):
             twice = next(place for before, place in itertools.pairwise(mine) if frame[place] <= frame[before])
             raise cells.error(twice, "a track has two instances in one frame: two animals? Track them")
