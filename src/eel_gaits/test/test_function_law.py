@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from eel_gaits.sources.lateral import LateralMidline
 from eel_gaits.sources.period import period_of
 
 from eel_gaits import sampled
@@ -119,3 +120,11 @@ def test_the_period_does_not_depend_on_where_rows_are_close():
         return np.sin(2.0 * math.pi * (places - instants[:, None] / 0.9)) * (0.2 + places)
 
     assert period_of(time, rows(time)) == pytest.approx(0.9, rel=1e-4)
+
+
+def test_a_detail_of_a_displacement_is_refused_where_points_pass_over_it():
+    def dented(x, t):
+        return (0.02 + 0.08 * x**2) * np.sin(2.0 * math.pi * (x - t)) + 1e-3 * np.exp(-(((x - 0.5061) / 0.001) ** 2))
+
+    with pytest.raises(ValueError, match=r"h must be smooth along the body: 129 points miss it by .* m at t = 0"):
+        sampled(LateralMidline(dented).curvature, 1.0)

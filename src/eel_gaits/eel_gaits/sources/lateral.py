@@ -15,8 +15,11 @@ from eel_base.wording import shown
 from eel_gaits.laws.midline import curvature_of_lateral
 from eel_gaits.sources.sampled_law import crowded
 
-POINTS = 129  # along the body, at which h is evaluated
+POINTS = 129  # along the body, at which h is evaluated; at a random place between two of them it is compared
+MISSED = 1e-3  # part of the greatest h by which the spline may miss it there
+ROUND_OFF = 1e-9  # of the length
 STEEPEST = 0.99  # of a midline's slope
+SEED = 1  # of the random places
 
 
 class LateralMidline:
@@ -27,7 +30,7 @@ class LateralMidline:
 
     def __init__(self, displacement: Callable[..., Any], length: float = 1.0) -> None:
         self._displacement, self.length = displacement, float(length)
-        self._x = crowded(POINTS, self.length)
+        self._x, self._draw = crowded(POINTS, self.length), np.random.default_rng(SEED)
 
     def curvature(self, time: float, x: np.ndarray) -> np.ndarray:
         """Yaw curvature (n,) [rad/m] at `time` [s] and the points `x` (n,) [m]: a function for `eel_gaits.sampled`."""
@@ -46,13 +49,21 @@ class LateralMidline:
         """The spline of h at `time` [s]."""
         from scipy.interpolate import make_interp_spline
 
-        h, where = numbers("h", self._displacement(self._x.copy(), float(time))), f"at t = {time:g} s"
-        if h.shape != self._x.shape:
-            raise ValueError(f"h must return {POINTS} numbers for {POINTS} points X, got {shown(h)} {where}")
+        x = np.empty(2 * POINTS - 1)
+        x[::2], x[1::2] = self._x, self._x[:-1] + np.diff(self._x) * self._draw.random(POINTS - 1)
+        h, where = numbers("h", self._displacement(x.copy(), float(time))), f"at t = {time:g} s"
+        if h.shape != x.shape:
+            raise ValueError(f"h must return {len(x)} numbers for {len(x)} points X, got {shown(h)} {where}")
         if not np.all(np.isfinite(h)):
             place = np.argmin(np.isfinite(h))
-            raise ValueError(f"h must be finite, got {h[place]} {where}, X = {self._x[place]:g} m")
-        line = make_interp_spline(self._x, h, k=5)
+            raise ValueError(f"h must be finite, got {h[place]} {where}, X = {x[place]:g} m")
+        line = make_interp_spline(self._x, h[::2], k=5)
+        apart = np.abs(line(x) - h)
+        if np.max(apart) > max(MISSED * np.max(np.abs(h)), ROUND_OFF * self.length):
+            raise ValueError(
+                f"h must be smooth along the body: {POINTS} points miss it by {np.max(apart):.2g} m {where}, "
+                f"X = {x[np.argmax(apart)]:g} m"
+            )
         slope = np.abs(line(self._x, 1))
         if np.max(slope) > STEEPEST:
             raise ValueError(
