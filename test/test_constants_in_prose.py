@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from eel_dynamics.accuracy import accuracy, error_estimate
+from eel_dynamics.accuracy.sudden_changes import UNSEEN
 from eel_dynamics.curvature.curvature_samples import MOST_POINTS as MOST_POINTS_OF_A_SAMPLE
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 from eel_dynamics.ros.loop import law_adopter, sample_output
@@ -18,6 +19,7 @@ from eel_gaits.film.beat import FEWEST_BEATS
 from eel_gaits.laws.law import MAXIMUM_TERMS
 from eel_gaits.pilot.goals import MOST_POINTS as MOST_POINTS_OF_A_PATH
 from eel_gaits.pilot.settings import PilotSettings
+from eel_gaits.sources.function_law import STEP
 from eel_gaits.sources.period import LONGEST_GAP
 from eel_model.fins.fins import Fin
 from eel_ros.loop.channel import LIVE_DEPTH
@@ -59,6 +61,9 @@ QUOTED = {
         f"companion has {accuracy.ROBOT_LOOSER:g} times the tolerance and "
         f"{accuracy.ROBOT_SAFETY / (accuracy.ROBOT_LOOSER - 1.0):g} of the distance counts",
         f"Torque is compared at {LEAST_COMPARED} gaps or more",
+        f"at a random instant in every {1e3 * STEP:g} ms",
+        f"What lasts {2e3 * STEP:g} ms or longer",
+        f"takes steps of at most {1e3 * UNSEEN:g} ms by such a torque",
         f"10^{{{math.log10(error_estimate.FLOOR):g}}} \\, m \\, l^2 / T^2",
     ),
     "docs/howto/bending.md": (f"compares it at {LEAST_COMPARED} gaps or more",),
