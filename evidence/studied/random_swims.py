@@ -14,11 +14,11 @@ from typing import Any
 
 import numpy as np
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
+from eel_dynamics.batches.simulate_batch import in_threads
 from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.swim import AT_REST, Swim
 from eel_studies.outputs import Table
 from eel_studies.reference import reference_of
-from eel_studies.workers import in_threads
 
 from eel_dynamics import Body, Scene, SimulationStopped
 from eel_gaits import Law, Ramp, Term

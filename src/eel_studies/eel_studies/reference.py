@@ -11,10 +11,10 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
+from eel_dynamics.batches.simulate_batch import in_threads
 from eel_dynamics.runs.companion import relative_errors
 
 from eel_dynamics import Accuracy, Run, SimulationStopped, Swim
-from eel_studies.workers import in_threads
 
 DEARER = 10.0  # times, that the next pair takes
 LONG = 0.5  # s, of a swim whose CPU time is known well enough from one round

@@ -12,7 +12,6 @@ from contextlib import contextmanager
 from typing import Any, NamedTuple, TypeVar
 
 from eel_base.wording import shown
-from eel_dynamics.batches.simulate_batch import available_cores
 from eel_dynamics.runs.storage.tables import needed
 
 PROCESSES = "processes"  # as a scheduler: of this machine
@@ -43,12 +42,6 @@ class Workers(NamedTuple):
         finally:
             for future in futures:
                 future.cancel()
-
-
-def in_threads(task: Callable[[Item], Result], items: Iterable[Item], threads: int | None = None) -> list[Result]:
-    """`task(item)` of each of the `items`, in their order. threads: None for one per core. An error ends it."""
-    with ThreadPoolExecutor(threads or available_cores(), thread_name_prefix="swimmer") as pool:
-        return list(pool.map(task, items))
 
 
 @contextmanager

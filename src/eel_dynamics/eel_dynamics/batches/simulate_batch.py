@@ -11,9 +11,9 @@ tabulated once.
 """
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from eel_base.wording import shown
@@ -35,6 +35,8 @@ from eel_dynamics.runs.swim_request import SwimRequest, SwimResult
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 MOST_THREADS = 1000
+Item = TypeVar("Item")
+Result = TypeVar("Result")
 
 
 def simulate_batch(
@@ -156,7 +158,7 @@ def swum(
         for name in COUNTS:
             counts[name][index] = getattr(run, name)
 
-    _for_each(swim, count, threads, progress)
+    in_threads(swim, range(count), threads, progress)
     return batch_of(own, counts, times, np.array([setup.x for setup in setups]), arrays, start, profiles)
 
 
@@ -173,19 +175,24 @@ def available_cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _for_each(
-    swim: Callable[[int], None], count: int, threads: int | None, progress: Callable[[int, int], None] | None
-) -> None:
-    """Call `swim(index)` for all indices below `count`, in `threads` threads."""
+def in_threads(
+    task: Callable[[Item], Result],
+    items: Iterable[Item],
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> list[Result]:
+    """`task(item)` of each of the `items`, in their order. threads: None for one per core. An error ends it."""
     threads = available_cores() if threads is None else threads
     if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or not 1 <= threads <= MOST_THREADS:
         raise ValueError(f"threads must be a whole number from 1 to {MOST_THREADS}, got {shown(threads)}")
+    items, found = list(items), list[Result]()
     with ThreadPoolExecutor(threads, thread_name_prefix="swimmer") as pool:
         try:
-            swims = map(swim, range(count)) if threads == 1 else pool.map(swim, range(count))
-            for done, _ in enumerate(swims, start=1):
+            for result in map(task, items) if threads == 1 else pool.map(task, items):
+                found.append(result)
                 if progress is not None:
-                    progress(done, count)
+                    progress(len(found), len(items))
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
+    return found

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from eel_base.wording import shown
+from eel_dynamics.batches.simulate_batch import in_threads
 from eel_model.robot.actuators import at_limit
 from eel_model.robot.compiled import mode_table
 
@@ -19,7 +20,6 @@ from eel_gaits import Law
 from eel_studies.outputs import Table
 from eel_studies.points import ROBOT
 from eel_studies.varied import varied
-from eel_studies.workers import in_threads
 
 SAMPLES = 100  # in a period
 STATIONS = 5  # enough for what is read of a run

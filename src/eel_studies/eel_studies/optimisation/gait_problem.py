@@ -10,13 +10,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from eel_dynamics.analysis.measures import measures_of
+from eel_dynamics.batches.simulate_batch import in_threads
 
 from eel_dynamics import Run, SimulationStopped, Swim
 from eel_gaits import Law
 from eel_studies.gradients.gradient import gradient
 from eel_studies.points import Gait, Numbers, law_of_terms, point_at
 from eel_studies.steady_swim import at_speed, swim_times
-from eel_studies.workers import in_threads
 
 STEP = 1e-5  # of the bounds' distance: differences of the derivatives to either side
 SPEED, CHANGE = "mean_speed", "speed_change"

@@ -18,12 +18,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from eel_dynamics.accuracy.accuracy import FINEST, Accuracy
+from eel_dynamics.batches.simulate_batch import in_threads
 from eel_dynamics.runs.companion import relative_errors
 
 from eel_dynamics import Run, Swim
 from eel_studies.reference import attempt
 from eel_studies.varied import varied
-from eel_studies.workers import in_threads
 
 TARGET = 1e-3  # of settings that have none of their own
 FINER = 0.1  # of the target
