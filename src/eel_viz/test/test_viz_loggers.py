@@ -405,7 +405,8 @@ def test_notes_say_how_fast_the_head_is_and_where_the_greatest_torque_was(long_s
     speeds = read(path, f"{entities.SPEED_NOTE}/words")
     for stamp, (words,) in zip(speeds.stamps.tolist(), speeds.values["labels"], strict=True):
         now = np.linalg.norm(samples[stamp]["head_twist"][0].linear)
-        assert float(words.split()[1]) == pytest.approx(now, abs=0.006)
+        head, told, unit = words.split()
+        assert (head, unit) == ("head", "m/s") and float(told) == pytest.approx(now, abs=0.006)
 
 
 @pytest.mark.parametrize("lag", [-9, 0, 9])

@@ -58,7 +58,7 @@ class Notes:
             begin, end = (backbone.position[0] + share * length / speed * velocity for share in AHEAD)
             ends = {"origins": begin[None].astype(np.float32), "vectors": (end - begin)[None].astype(np.float32)}
             self._stream.add_row(stamp, entities.HEADING, rr.Arrows3D, **ends)
-            words = f"head at {head_speed:.2f} m/s"
+            words = f"head {head_speed:.2f} m/s"
             self._write(stamp, entities.SPEED_NOTE, words, end, frame, above=BESIDE, period=PERIOD)
 
     def _draw_torque(self, stamp: int, body: tuple[Backbone, Frame], peak: tuple[float, float]) -> None:
