@@ -26,11 +26,14 @@ inline FunctionFlow function_from(const py::object& function)
     return {[function](double time, std::vector<double>& rows) {
         const py::gil_scoped_acquire locked;
         const std::size_t count = rows.size() / FunctionFlow::columns;
-        constexpr auto number = static_cast<py::ssize_t>(sizeof(double));
-        constexpr auto columns = static_cast<py::ssize_t>(FunctionFlow::columns);
+        if (count == 0) return;
         turn_rows(rows.data(), count);
-        function(time, py::memoryview::from_buffer(rows.data(), {static_cast<py::ssize_t>(count), columns},
-                                                   {columns * number, number}));
+        // Memory of Python's: the function may keep it.
+        auto* const bytes = reinterpret_cast<char*>(rows.data());
+        const py::bytearray own(bytes, sizeof(double) * rows.size());
+        const py::object view = py::memoryview(py::object(own));
+        function(time, view.attr("cast")("d", py::make_tuple(count, FunctionFlow::columns)));
+        std::copy_n(PyByteArray_AS_STRING(own.ptr()), sizeof(double) * rows.size(), bytes);
         turn_rows(rows.data(), count);
     }};
 }

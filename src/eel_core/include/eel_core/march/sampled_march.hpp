@@ -6,6 +6,8 @@
 // differs by dies out in a blend. Swimmers share nothing that changes, so the number of threads changes no result.
 #pragma once
 
+#include <unistd.h>
+
 #include "eel_core/march/march.hpp"
 #include "eel_core/march/threads.hpp"
 
@@ -205,10 +207,21 @@ class SampledMarch {
     bool under_way_ = false, unfinished_ = false;
 };
 
+// In a fork the threads are not there: to end them would wait for ever.
+struct EndThreads {
+    pid_t process = getpid();
+    void operator()(Threads* threads) const
+    {
+        if (process == getpid()) delete threads;
+    }
+};
+
 class SampledMarches {
   public:
     SampledMarches(const std::shared_ptr<const SampledKind>& kind, std::size_t count, std::size_t threads)
-        : marches_(count, SampledMarch(kind)), threads_(std::min(threads, count)), points_(kind->weights.points)
+        : marches_(count, SampledMarch(kind)),
+          threads_(new Threads(std::min(threads, count))),
+          points_(kind->weights.points)
     {
     }
 
@@ -233,14 +246,14 @@ class SampledMarches {
     }
 
     // Wakes the threads, as `advance` will be called soon.
-    void wake() { threads_.wake(); }
+    void wake() { threads_->wake(); }
 
     // Marches each swimmer to its own of the `times` (N,) [s], where the sample has its `values` (N, 6, points).
     // `status` (N,): those below 0 are left out; afterwards how each came back. `heads` (13, N): position [m],
     // orientation, twist over ground [rad/s, m/s] of each that marched.
     void advance(const double* times, const double* values, std::int64_t* status, double* heads)
     {
-        threads_.run(size(), [&](std::size_t i) {
+        threads_->run(size(), [&](std::size_t i) {
             if (status[i] < 0) return;
             Status found = marches_[i].advance(times[i], values + i * sample_rows * points_);
             if (found == Status::marched && !put_head(i, heads)) found = Status::singular;
@@ -261,7 +274,7 @@ class SampledMarches {
 
   private:
     std::vector<SampledMarch> marches_;
-    Threads threads_;
+    std::unique_ptr<Threads, EndThreads> threads_;
     std::size_t points_;
 };
 
