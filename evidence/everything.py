@@ -25,8 +25,8 @@ SCRIPTS: dict[str, tuple[str, ...]] = {  # name: arguments of each run
         "lamprey docs/data/lamprey_midlines.csv --widths docs/data/widths.csv --out docs/images/life_lamprey.png",
     ),
     "robot_log": (
-        "docs/data/amphibot_joints.csv --links 0.094x7 --section 0.0275,0.0165 --seen docs/data/amphibot_leds.csv "
-        "--out docs/images/life_amphibot.png",
+        "docs/data/amphibot_joints.csv --clock 1.078 --links 0.094x7 --section 0.0275,0.0165 --joint-drag flush "
+        "--seen docs/data/amphibot_leds.csv --out docs/images/life_amphibot.png",
     ),
     "steering": (PAGES.format("steering"),),
     "drafting": (PAGES.format("drafting"),),

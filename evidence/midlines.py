@@ -18,7 +18,7 @@ from eel_base.files.output_file import written_as
 from eel_dynamics.commands.options import add_options
 from eel_gaits.sources.midlines import Midlines
 from eel_gaits.sources.order import laid_on
-from eel_model.body.body import body_of
+from eel_model.body.text import body_of
 from eel_studies.pictures import PICTURES, Figure, write_picture
 
 from eel_dynamics import Run, simulate

@@ -16,9 +16,9 @@ from eel_dynamics import Body, Run, Scene, simulate_batch
 from eel_gaits import SampledLaw
 
 UNCERTAIN: dict[str, tuple[float, float]] = {  # factors, and why
-    "lateral_drag": (0.5, 1.0),  # cross flow on a round section, to a flat one
+    "lateral_drag": (1.0, 1.65),  # a circle across steady flow, to one in oscillating flow with KC about 10 (Sarpkaya)
     "friction_factor": (1.0, 4.0),  # a smooth plate at rest, to Lighthill's greatest for a body that beats
-    "nose_drag": (1.0, 14.0),  # a streamlined nose, to a blunt one, c_p = 0.5
+    "nose_drag": (0.5, 1.5),  # both ends 0.4 (AmphiBot coasting, turbulent friction) to 0.8 (Hoerner, less friction)
     "lateral_added_mass": (0.8, 1.2),  # gaps between links, to flat sides
     "half_height": (0.9, 1.1),
     "half_width": (0.9, 1.1),
@@ -71,10 +71,15 @@ class Replayed:
 def with_factors(body: Body, factors: dict[str, float]) -> Body:
     """The `body` with these of its numbers and half-axes times factors; its mass stays the same."""
 
-    def times(given: Any, factor: float) -> Any:
+    across = {"lateral_drag": 0, "vertical_drag": 1}
+
+    def times(name: str, factor: float) -> Any:
+        given = body.arguments[name]
+        if isinstance(given, str):  # by shape
+            return lambda x: factor * body.cross_flow(x)[across[name]]
         return (lambda x: factor * given(x)) if callable(given) else factor * given
 
-    changed = body.changed(**{name: times(body.arguments[name], factor) for name, factor in factors.items()})
+    changed = body.changed(**{name: times(name, factor) for name, factor in factors.items()})
     return changed.changed(density=body.mass / changed.volume)
 
 

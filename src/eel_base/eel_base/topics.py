@@ -44,6 +44,7 @@ SWIMMER = "head_pose"  # without publishers of this topic the swimmer has gone
 LATER_ENERGY_FIELDS = (  # that an older bag has not
     *("flow_power", "fins_power", "damping_power", "elastic"),
     *(f"{part}_work" for part in ("actuator", "wake", "nose", "drag", "flow", "fins", "damping")),
+    *("appendages_power", "appendages_work"),
 )
 ENERGY_FIELDS = (  # of an EnergyLedger, in its order
     *("kinetic_body", "kinetic_fluid", "potential"),

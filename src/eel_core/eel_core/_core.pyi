@@ -55,6 +55,7 @@ class Swimmer(_Shared):
         *,
         friction: str,
         resistive: bool,
+        segmented: bool,
         first_watched: int,
         wake: bool,
         inertia_of_water: bool,
@@ -69,21 +70,24 @@ class Swimmer(_Shared):
         missed_drag: Iterable[Buffer] = (),
         fins: list[tuple[Any, ...]] = ...,
         servos: list[tuple[float, float, float, float, int, float]] = ...,
+        appendages: list[tuple[int | None, list[float], list[float], bool, bool, int]] = ...,
     ) -> None:
         """grid: with the attributes of `Grid` (eel_model/body/grid.py). sections, at its nodes, and stations: of
         `SectionData` and `StationData` (eel_model/section_data.py). friction: of `FRICTION_LAWS`.
-        resistive: drag along the body. first_watched: first of the speeds (0 V1, 1 V2, 2 V3, 3 Omega1, 4 Re/8e4 - 1)
-        whose changes of sign within a panel are integrated exactly; 5 for none. inertia_of_water: the nodes' sections
-        have that of the water. tail_water: (3,) added masses [kg/m], [kg m] that are swept off at the tail.
-        flow_gradient: its forces. nose_mass: m_o [kg]; nose_drag: 1/2 rho_f k_o [kg/m].
+        resistive: drag along the body. segmented: its links have one of their own. first_watched: first of the speeds
+        (0 V1, 1 V2, 2 V3, 3 Omega1, 4 Re/8e4 - 1) whose changes of sign within a panel are integrated exactly; 5 for
+        none. inertia_of_water: the nodes' sections have that of the water. tail_water: (3,) added masses [kg/m], [kg m]
+        that are swept off at the tail. flow_gradient: its forces. nose_mass: m_o [kg]; nose_drag: 1/2 rho_f k_o [kg/m].
         distributed_pressure: along the body in place of at the tail. offset: the centre of mass is off the axis.
         righting, gravity [m/s^2]: g where `lever` gives a moment of weight, and where `net` gives a force; else 0.
         missed_drag: (K, n) [m] for V2, V3 and Omega1: of each node, what the drag's integral from the start of its
         panel misses, by the drag at the node, at K fractions (1 - cos(pi k / (K - 1))) / 2 of the panel; none where the
-        sections are smooth. fins: (node at the end of a panel, normal (3,), centre of pressure (3,) [m], 1/2 rho_f
-        area [kg/m], lift slope, 1 / (pi e AR), drag across and along, added mass [kg], servo, sign of its angle by the
+        sections are smooth. fins: (node at the end of a panel, normal (3,), centre of pressure (3,) [m], 1/2 rho_f area
+        [kg/m], lift slope, 1 / (pi e AR), drag across and along, added mass [kg], servo, sign of its angle by the
         servo's, first station there or behind); servos: (time constant [s], limit [rad], roll gain, rate gain [s],
-        node, initial angle [rad]). `ValueError` names what does not fit."""
+        node, initial angle [rad]). appendages: (node at the end of a panel, None at X = 0; place (3,) [m] and 1/2 rho_f
+        drag areas (3,) [kg/m] in section axes; whether by the law of the speed; whether it is the base of the tail;
+        first station there or behind, none of them at the end of the tail). `ValueError` names what does not fit."""
 
 class Flow(_Shared):
     """How the water moves by itself: the sum of its sources."""
@@ -263,7 +267,7 @@ class March:
         """(13,)."""
     @property
     def works(self) -> list[float]:
-        """(6,) [J] of actuators, wake, nose, drag, flow and fins since the start."""
+        """(7,) [J] of actuators, wake, nose, drag, flow, fins and appendages since the start."""
     @property
     def outside(self) -> tuple[float, float, float, float] | None:
         """Time [s] and place [m], world, outside the grid of the flow, where the last evaluation was there."""
@@ -373,7 +377,8 @@ class Instant:
         poses: Buffer,
         modes: Buffer,
     ) -> None:
-        """Writes powers (T, 4) [W] on the body: of the axial friction, the lateral, the vertical and the roll drag.
+        """Writes powers (T, 6) [W] on the body: of the axial friction, the lateral, the vertical and the roll drag, the
+        drag of the links, and that of the base of the tail.
 
         times (T,) [s]; twists (T, 6) of the head; current and flow as in `March.follow`; poses (T, 7) of the head:
         position [m] and orientation. modes (T, 2, M): factors of the law's last M rows, a robot's, and their rates.

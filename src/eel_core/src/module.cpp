@@ -143,7 +143,7 @@ class PyInstant {
         check_fits(*law, *swimmer_);
         const Numbers at(times, "times");
         const Numbers motion = Numbers::sized(twists, "twists", 6 * at.size()),
-                      into = Numbers::sized(powers, "powers", 4 * at.size(), true),
+                      into = Numbers::sized(powers, "powers", 6 * at.size(), true),
                       heads = Numbers::sized(poses, "poses", 7 * at.size()), motion_of_modes(modes, "modes");
         const std::size_t numbers = at.size() == 0 ? 0 : motion_of_modes.size() / at.size();
         if (numbers / 2 > law->tables->rows()) throw py::value_error("modes must have rows of the law");
@@ -155,7 +155,7 @@ class PyInstant {
             const auto twist = twist_of(motion.data() + 6 * k);
             std::ranges::copy(instant_.drag_powers(*law, at.data()[k], twist, water, half_turn(y),
                                                    {motion_of_modes.data() + numbers * k, numbers}),
-                              into.data() + 4 * k);
+                              into.data() + 6 * k);
         }
     }
     std::array<double, 6> momentum_rate(const std::shared_ptr<LawOnGrid>& law, double time, const py::object& twist,

@@ -26,7 +26,7 @@ inline Sections sections_from(const py::handle& s, std::size_t n)
                 s, {"mass", "added2", "added3", "inertia1", "inertia2", "inertia3", "added_roll"}, n),
             field_from(s, {"lever"}, n), field_from(s, {"net"}, n), field_from(s, {"displaced"}, n),
             field_from<DragSection<double>>(
-                s, {"drag2", "drag3", "drag_roll", "laminar", "turbulent", "by_critical_speed"}, n)};
+                s, {"drag2", "drag3", "drag_roll", "laminar", "turbulent", "by_critical_speed", "segment"}, n)};
 }
 
 // `matrix`: rows for the m `points`, as those of `PanelRows`.
@@ -102,9 +102,28 @@ inline void add_fins(Swimmer& swimmer, const py::list& fins, const py::list& ser
     }
 }
 
+// Gives the swimmer its appendages: (node or None at X = 0, arm (3,), drag (3,), whether by the speed, whether of the
+// body, first station there or behind).
+inline void add_appendages(Swimmer& swimmer, const py::list& appendages)
+{
+    for (const py::handle each : appendages) {
+        const auto [node, arm, drag, by_speed, of_body, station] =
+            each.cast<std::tuple<std::optional<std::size_t>, std::array<double, 3>, std::array<double, 3>, bool, bool,
+                                 std::size_t>>();
+        if (node && *node >= swimmer.grid.nodes) throw py::value_error("appendages must have a node of the grid");
+        swimmer.appendages.push_back({node.value_or(Appendage::nose),
+                                      {arm[0], arm[1], arm[2]},
+                                      {drag[0], drag[1], drag[2]},
+                                      by_speed,
+                                      of_body,
+                                      station});
+    }
+}
+
 // Which physics is on, and its numbers, by their names in Python.
 inline constexpr std::pair<const char*, bool Swimmer::*> switches[] = {
     {"resistive", &Swimmer::resistive},
+    {"segmented", &Swimmer::segmented},
     {"flow_gradient", &Swimmer::flow_gradient},
     {"distributed_pressure", &Swimmer::distributed_pressure},
     {"offset", &Swimmer::offset}};
@@ -158,6 +177,7 @@ inline std::shared_ptr<Swimmer> swimmer_from(const py::object& grid, const py::o
     if (!swimmer->missed.empty() && swimmer->missed.size() != SectionPart::count)
         throw py::value_error("stations must have missed rows for each part of a section, or none");
     add_fins(*swimmer, physics["fins"], physics["servos"]);
+    add_appendages(*swimmer, physics["appendages"]);
     return swimmer;
 }
 

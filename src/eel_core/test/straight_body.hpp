@@ -71,7 +71,7 @@ inline std::shared_ptr<Swimmer> straight_body()
     Sections& sections = swimmer->sections;
     sections = {constant<Section<double>>({body_mass, added_mass, added_mass3, 0.01, 0.015, inertia3, 0.0}),
                 constant(0.0), constant(0.0), constant(body_mass),
-                constant<DragSection<double>>({0.0, drag3, 0.0, 0.0, 0.0, 0.0})};
+                constant<DragSection<double>>({0.0, drag3, 0.0, 0.0, 0.0, 0.0, 0.0})};
     swimmer->tail.added2 = added_mass, swimmer->tail.added3 = added_mass3;
     swimmer->friction = Friction::laminar, swimmer->resistive = false;
     return swimmer;

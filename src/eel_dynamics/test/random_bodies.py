@@ -4,9 +4,11 @@
 Each comes with the smooth body from which the data were taken, before the noise.
 """
 
+from types import SimpleNamespace
 from typing import NamedTuple
 
 import numpy as np
+from eel_model.body.appendages import Appendage
 
 from eel_dynamics import Body
 from eel_gaits import Law, Term
@@ -84,3 +86,63 @@ def _half_axis(rng: np.random.Generator, length: float, size: float, pointed: bo
         return length * size * cap * tail * (1.0 + bumps)
 
     return half_axis
+
+
+def drawn_hull(rng: np.random.Generator, length: float, along: bool = True) -> dict:
+    """What makes a body of `length` [m] one of blunt links, as arguments of `Body`: coefficients as numbers, by shape
+    or (`along`) as functions of X, and up to four appendages, some of them at the ends."""
+
+    def coefficient(low, high, *others):
+        size, slope = rng.uniform(low, high), rng.uniform(-0.4, 0.4)
+        wave = lambda x: size * (1.0 + slope * np.sin(2.0 * np.asarray(x) / length))  # noqa: E731
+        return (size, *others, *([wave] if along else []))[rng.integers(1 + len(others) + along)]
+
+    return {
+        "roll_drag": rng.uniform(0.5, 1.5),
+        "lateral_drag": coefficient(0.8, 2.2, "by shape"),
+        "vertical_drag": coefficient(0.8, 2.2, "by shape"),
+        "friction_factor": rng.uniform(0.5, 4.0),
+        "lateral_added_mass": coefficient(0.5, 1.5),
+        "round_added_mass": rng.uniform(0.0, 1.0),
+        "joint_drag": rng.uniform(0.1, 0.9),
+        "link_length": rng.uniform(0.05, 0.3) * length,
+        "base_drag": rng.uniform(0.1, 0.5),
+        "nose_added_mass": rng.uniform(0.1, 0.5),
+        "nose_drag": rng.uniform(0.0, 0.6),
+        "appendages": drawn_appendages(rng, length),
+    }
+
+
+def drawn_appendages(rng: np.random.Generator, length: float) -> tuple[Appendage, ...]:
+    """Up to four of a body of `length` [m], of both laws, inside it and at its ends."""
+
+    def one():
+        x = (0.0, length, *rng.uniform(0.02, 0.98, 4) * length)[rng.integers(6)]
+        y, z = map(float, rng.uniform(-0.1, 0.1, 2) * length)
+        drag1, drag2, drag3 = map(float, rng.uniform(0.0, 0.01, 3) * length**2)
+        return Appendage(float(x), y, z, drag1, drag2, drag3, str(rng.choice(["axis", "speed"])))
+
+    return tuple(one() for _ in range(rng.integers(1, 5)))
+
+
+def drawn_chain(rng: np.random.Generator) -> SimpleNamespace:
+    """A body of links with a blunt nose and a blunt tail, as the reference takes it: wide in one part and high in the
+    other, or round all along, with the numbers of `drawn_hull`."""
+    length, size, bulge = rng.uniform(0.4, 2.0), rng.uniform(0.02, 0.05, 2), rng.uniform(-0.3, 0.3, 2)
+    if rng.random() < 0.3:
+        size, bulge = size[[0, 0]], bulge[[0, 0]]  # round
+
+    def half_axis(k):
+        wave = lambda s: 1.0 + bulge[k] * np.sin(3.0 * s + 2.0 * k) - 0.3 * s  # noqa: E731
+        return lambda x: length * size[k] * wave(np.asarray(x, dtype=float) / length)
+
+    width, height = half_axis(0), half_axis(int(np.ptp(size) > 0.0))
+    a, b = float(height(0.0)), float(width(0.0))
+    return SimpleNamespace(
+        half_width=width,
+        half_height=height,
+        kinks=(0.0, 0.3 * length, length),
+        nose=(a, b, float(np.sqrt(a * b))),
+        density=rng.uniform(900.0, 1200.0),
+        hull={"blunt_nose": True, **drawn_hull(rng, length)},
+    )

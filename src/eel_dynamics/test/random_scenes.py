@@ -2,6 +2,7 @@
 """Random scenes over more than any swimmer has: bodies, waters, laws, ramps, settings, throws."""
 
 import numpy as np
+from random_bodies import drawn_hull
 
 from eel_dynamics import Accuracy, Body, Fin, Gust, RollHold, Scene, Shear, Uniform, VortexStreet, Wave
 from eel_gaits import Law, Ramp, Term, falling, straight
@@ -194,3 +195,11 @@ def with_weight_and_fins(count, seed):
             "fins": finned(body.length, rng) if steered else None,
             "twist": (0.0, 0.0, 0.1, speed, 0.0, 0.0),
         }
+
+
+def with_hulls(count, seed):
+    """The same of bodies of blunt links with appendages: their numbers at random."""
+    rng = np.random.default_rng(seed)
+    for arguments in with_weight_and_fins(count, seed):
+        body = arguments["body"]
+        yield arguments | {"body": body.changed(**drawn_hull(rng, body.length))}

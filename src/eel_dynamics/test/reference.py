@@ -19,21 +19,45 @@ pressure, rho_f A Du/Dt, is added.
 Fins are point forces on their sections, `fins`: of each the `Fin` of the library, for its numbers, and its angle as a
 function of time. The force of their added mass takes the true acceleration, a complex step of the velocity.
 
+A body may have a `hull`, numbers in place of those of `HULL`, by the names of the library's `Body`: coefficients as
+numbers, as functions of X, or by the roundness s of the section, s = min(a, b) / max(a, b):
+
+    k = 2 max(a, b) (1.98 - 0.78 s) broadside, 2 min(a, b) (1.0 + 0.2 s) along the long axis
+    M_f times 1 - (1 - C_a) s^2 on both axes;  n_1 = -1/2 rho_f k5 |V| V1 of the links, k5 = c_s pi a b / p
+
+The base of the tail, -1/2 rho_f c_b A(l) V1|V1| at X = l, and the appendages are point forces by their velocity.
+
 Frames: the axes of the head at the instant, about the head, unless a name says `section` or `world`. Velocities are
 relative to the water. Arrays over X have shape (N, 3). Semi-axes as in the paper: `a` along E3, `b` along E2.
 """
 
+import itertools
 from types import SimpleNamespace
 
 import numpy as np
 from reference_space import Space
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 STEP = 1e-30  # of the complex steps
 PARTS = ("real", 1.0), ("imag", 1j)
 GRAVITY = 9.80665  # m/s^2
 E1 = np.array([1.0, 0.0, 0.0])
-DRAG_ROLL, DRAG_LATERAL, DRAG_VERTICAL, NOSE_ADDED_MASS, NOSE_PRESSURE = 1.0, 1.98, 1.0, 0.32, 0.036
+BY_SHAPE = "by shape"
+HULL = {
+    "roll_drag": 1.0,
+    "lateral_drag": 1.98,
+    "vertical_drag": 1.0,
+    "friction_factor": 1.0,
+    "lateral_added_mass": 1.0,
+    "round_added_mass": 1.0,
+    "joint_drag": 0.0,
+    "link_length": 1.0,
+    "base_drag": 0.0,
+    "nose_added_mass": 0.32,
+    "nose_drag": 0.036,
+    "appendages": (),
+}
 
 
 def scene(**changes):
@@ -85,7 +109,11 @@ class Reference:
     def __init__(self, body, settings=None, splits=(), **space):
         self.body, self.scene = body, settings or scene()
         settings = self.scene
-        self.space = Space(sorted({*body.kinks, *splits}), **space)  # `splits`: kinks of the law
+        self.hull = hull = SimpleNamespace(**HULL | getattr(body, "hull", {}))
+        places = {each.x for each in hull.appendages if 0.0 < each.x < body.kinks[-1]}
+        if BY_SHAPE in (hull.lateral_drag, hull.vertical_drag) or hull.round_added_mass != 1.0:
+            places |= set(_roots(lambda x: body.half_height(x) - body.half_width(x), body.kinks))
+        self.space = Space(sorted({*body.kinks, *splits, *places}), **space)  # `splits`: kinks of the law
         self.length, self.up = body.kinks[-1], np.array([0.0, 0.0, 1.0])  # up in the axes of the head: set it anew
         at_tail = np.array([self.length])
         self.a, self.b = body.half_height(self.space.x), body.half_width(self.space.x)
@@ -98,23 +126,29 @@ class Reference:
         # diagonal of J_b, (N, 6), about the centre of mass, which lies h below the axis
         self.inertia_body = mass[:, None] * np.stack([J2 + J3, J2, J3, unit, unit, unit], axis=1)
         self.offset = getattr(body, "offset", lambda x: 0 * x)(self.space.x)  # m
-        self.inertia_fluid = self._added(self.a, self.b)
-        self.tail_added = self._added(body.half_height(at_tail), body.half_width(at_tail))[0]
+        self.inertia_fluid = self._added(self.space.x)
+        self.tail_added = self._added(at_tail)[0]
         nose = np.prod(body.nose), body.nose[0] * body.nose[1]
-        self.nose_mass = self.water * np.pi * NOSE_ADDED_MASS * nose[0] * (settings.reactive and settings.nose)
+        self.nose_mass = self.water * np.pi * hull.nose_added_mass * nose[0] * (settings.reactive and settings.nose)
         self.displaced = self.water * area  # kg/m
         self.net = (self.displaced - mass) * settings.weight  # kg/m
         self.height = 0.0  # m, of the head
         self.fins = ()  # (fin, angle [rad] of a time [s])
         self.flow = None  # u (N, 3) [m/s] of places (N, 3) [m] and a time [s], world; both may be complex
         self.pose = SimpleNamespace(position=np.zeros(3), axes=np.eye(3), time=0.0)  # of the head in the world
-        self.nose_drag = np.pi * NOSE_PRESSURE * nose[1] * (settings.resistive and settings.nose)
+        base = np.pi * float(body.half_height(at_tail)[0] * body.half_width(at_tail)[0]) * hull.base_drag  # m^2
+        none = {"y": 0.0, "z": 0.0, "drag2": 0.0, "drag3": 0.0}
+        self.points = SimpleNamespace(x=self.length, drag1=base, law="axis", **none), *hull.appendages
+        self.nose_drag = np.pi * hull.nose_drag * nose[1] * (settings.resistive and settings.nose)
 
-    def _added(self, a, b):
-        """Diagonal of J_f, eq. (37): the semi-axis across the motion counts (as printed: the one along it)."""
+    def _added(self, x):
+        """Diagonal of J_f at x, eq. (37): the semi-axis across the motion counts (as printed: the one along it)."""
+        a, b = self.body.half_height(x), self.body.half_width(x)
         lateral, vertical = (a, b) if self.scene.added_mass == "corrected" else (b, a)
         zero = np.zeros_like(a)
-        columns = (a**2 - b**2) ** 2 / 8, zero, zero, zero, lateral**2, vertical**2
+        left = 1 - (1 - self.hull.round_added_mass) * roundness(a, b) ** 2  # by flow that separates
+        sideways = left * _along(self.hull.lateral_added_mass, x)
+        columns = (a**2 - b**2) ** 2 / 8, zero, zero, zero, sideways * lateral**2, left * vertical**2
         return self.scene.reactive * self.water * np.pi * np.stack(columns, axis=1)
 
     # -- kinematics -------------------------------------------------------------------------------------------------
@@ -231,6 +265,28 @@ class Reference:
         sums = [np.concatenate([np.cross(place, force), force]) for place, _, _, force in self.fin_forces(*motion)]
         return np.sum(sums, axis=0) if sums else np.zeros(6)
 
+    # -- appendages, and the base of the tail -----------------------------------------------------------------------
+    def point_forces(self, K, K_rate, mu):
+        """Of the base and of each appendage: arm from its section's centre, place about the head, velocity over ground,
+        force of the water, (3,) each, and the section's axes (3, 3)."""
+        R, r = self.configuration(K)
+        fields, found = (R.reshape(-1, 9), r, *self.shape_velocity(R, K_rate)), []
+        for point in self.points:
+            axes, centre, spin, v = (self.space.evaluate(field, point.x)[0] for field in fields)
+            axes, spin, v = axes.reshape(3, 3), spin + mu[:3], v + mu[3:] + np.cross(mu[:3], centre)
+            arm = axes @ [0.0, point.y, point.z]
+            water = np.zeros(3) if self.flow is None else self.flow_at(centre[None])[0]
+            w = axes.T @ (v - water + np.cross(spin, arm))
+            speed = np.abs(w) if point.law == "axis" else np.sqrt(w @ w)
+            areas = self.scene.resistive * np.array([point.drag1, point.drag2, point.drag3])
+            force = axes @ (-0.5 * self.water * areas * speed * w)
+            found.append(
+                SimpleNamespace(
+                    x=point.x, arm=arm, place=centre + arm, velocity=v + np.cross(spin, arm), force=force, axes=axes
+                )
+            )
+        return found
+
     # -- energy, momentum, balance ----------------------------------------------------------------------------------
     def energies(self, K, K_rate, mu):
         """Kinetic energy of body and of fluid, eqs (16), (36), for each head twist of mu (..., 6)."""
@@ -287,9 +343,15 @@ class Reference:
         else:
             friction = skin_friction(np.abs(eta[:, 3]) * x / settings.viscosity, settings.friction)
         factors = -0.5 * self.water * settings.resistive
-        roll = DRAG_ROLL * np.pi * (a**2 - b**2) ** 2 * square[:, 0]
-        forces = friction * perimeter, 2 * DRAG_LATERAL * a, 2 * DRAG_VERTICAL * b
-        return factors * np.outer(roll, E1), factors * np.stack(forces, axis=1) * square[:, 3:]
+        hull, shape = self.hull, cross_flow_by_shape(a, b)
+        roll = hull.roll_drag * np.pi * (a**2 - b**2) ** 2 * square[:, 0]
+        k2, k3 = (
+            of_shape if given == BY_SHAPE else 2 * _along(given, x) * half
+            for of_shape, given, half in zip(shape, (hull.lateral_drag, hull.vertical_drag), (a, b), strict=True)
+        )
+        forces = np.stack([hull.friction_factor * friction * perimeter, k2, k3], axis=1) * square[:, 3:]
+        links = hull.joint_drag * np.pi * a * b / hull.link_length * np.linalg.norm(eta[:, 3:], axis=1) * eta[:, 3]
+        return factors * np.outer(roll, E1), factors * (forces + np.outer(links, E1))
 
     def potential_density(self, R, r):
         """Potential energy (N,) [J/m] of weight and buoyancy: the weight hangs below each section's axis."""
@@ -323,6 +385,8 @@ class Reference:
         resistive = self.space.weights @ np.concatenate([torque + np.cross(r, force), force], axis=1)
         ends = (self.at_tail(field) for field in (R.reshape(-1, 9), r, self.through_water(eta, R, r)))
         tail_R, tail_r, tail_eta = ends
+        for point in self.point_forces(K, K_rate, mu):
+            resistive = resistive + np.concatenate([np.cross(point.place, point.force), point.force])
         return resistive + self.tail_wrench(tail_R.reshape(3, 3), tail_r, tail_eta)[0]
 
     def at_tail(self, field):
@@ -390,7 +454,11 @@ class Reference:
         hung, net = self.weight(R, r)
         n_sum = -nose * E1 + integrate(rates[1] + rates[3] - to_axes(resistive_force) - water_force - net)  # n + V1 p_f
         v = to_axes(eta[:, 3:]), to_axes(true[:, 3:])  # through the water, and over ground
-        passed = []  # fins: x behind them, the force, and its moment about the section
+        passed, points = [], self.point_forces(K, K_rate, mu)  # fins and appendages: their moments about the section
+        for point in points:
+            behind = (self.space.x > point.x)[:, None]
+            n_sum = n_sum - behind * point.force
+            passed.append(behind * np.cross(point.arm, point.force))
         for (fin, _), (place, _, _, fin_force) in zip(
             self.fins, self.fin_forces(K, K_rate, K_acceleration, mu, mu_rate), strict=True
         ):
@@ -403,6 +471,11 @@ class Reference:
         force, torque = to_section(n_sum - V1 * p_f), to_section(c_sum - V1 * sigma_f)
         tail_energy = wake * self.tail_added @ self.at_tail(eta) ** 2 / 2
         tail_residual = np.concatenate([self.at_tail(torque), self.at_tail(force) + tail_energy * E1])
+        for point in points:
+            if point.x == self.length:
+                tail_residual -= np.concatenate(
+                    [(np.cross(point.arm, point.force)) @ point.axes, point.force @ point.axes]
+                )
         flux = V1 * p_f
         if self.scene.tail_pressure == "distributed":
             force, flux, tail_energy = force + energy[:, None] * E1, flux - energy[:, None] * t1, 0.0
@@ -426,7 +499,12 @@ class Reference:
             fins_power=sum(v @ force for _, v, _, force in self.fin_forces(K, K_rate, K_acceleration, mu, mu_rate)),
             fin_force=np.array([R.T @ f for *_, R, f in self.fin_forces(K, K_rate, K_acceleration, mu, mu_rate)]),
             drag_power=self.space.weights
-            @ np.sum(resistive_torque * true[:, :3] + resistive_force * true[:, 3:], axis=1),
+            @ np.sum(resistive_torque * true[:, :3] + resistive_force * true[:, 3:], axis=1)
+            + points[0].velocity @ points[0].force,
+            appendages_power=sum(point.velocity @ point.force for point in points[1:]),
+            point_wrench=np.array(
+                [[*(np.cross(each.arm, each.force) @ each.axes), *(each.force @ each.axes)] for each in points]
+            ),
         )
 
     def wake_power(self, eta, true):
@@ -491,6 +569,32 @@ def fin_steady(fin, water, across, along, e_n, e_c):
     drag += (1 - stalled) * attached**2 / (np.pi * fin.efficiency * AR)
     ahead, aside = c * e_c - s * e_n, s * e_c + c * e_n  # along the motion, and across it
     return 0.5 * water * fin.area * q**2 * (lift * aside - drag * ahead)
+
+
+def roundness(a, b):
+    """s of sections, 1 for a circle and 0 for a plate; 0 where there is no section."""
+    most = np.maximum(a, b)
+    return np.minimum(a, b) / np.where(most > 0, most, 1.0)
+
+
+def cross_flow_by_shape(a, b):
+    """k2 and k3 [m] of sections by their roundness."""
+    s = roundness(a, b)
+    broadside, along = 2 * np.maximum(a, b) * (1.98 - 0.78 * s), 2 * np.minimum(a, b) * (1.0 + 0.2 * s)
+    return np.where(a > b, broadside, along), np.where(a > b, along, broadside)
+
+
+def _along(given, x):
+    """A number, or a function of X, at x."""
+    return given(x) if callable(given) else np.full(np.shape(x), float(given))
+
+
+def _roots(function, bounds):
+    """Where a function of X changes its sign, between the bounds."""
+    x = np.unique(np.concatenate([np.linspace(*ends, 400)[1:-1] for ends in itertools.pairwise(bounds)]))
+    values = function(x)
+    changes = np.flatnonzero(values[:-1] * values[1:] < 0)
+    return [float(brentq(lambda at: float(function(np.array([at]))[0]), x[i], x[i + 1], xtol=1e-15)) for i in changes]
 
 
 def skin_friction(reynolds, law):

@@ -209,10 +209,14 @@ class BentReference(Reference):
         shed = self.scene.wake * self.tail_added
         wake = tail_eta[3] * shed * tail_eta
         wake[3] -= shed @ tail_eta**2 / 2
-        loads = []
+        loads, points = [], self.point_forces(K, K_rate, mu)
         for shape in self.shapes:
             moved = self.twists(K, shape, np.zeros(6))
             work = self.space.weights @ np.sum(np.concatenate([torque, force], axis=1) * moved, axis=1)
+            work += sum(
+                moved_point.velocity @ point.force
+                for point, moved_point in zip(points, self.point_forces(K, shape, np.zeros(6)), strict=True)
+            )
             loads.append(work + wake @ self.at_tail(moved))
         return np.array(loads)
 

@@ -2,17 +2,18 @@
 """Robots by the log of their joints: a known swim comes out of `eel simulate --joints`."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from eel_dynamics.commands.logged import chain_body
 from eel_dynamics.commands.simulate import main
 
-from eel_dynamics import Run, Scene, simulate
+from eel_dynamics import Body, Run, Scene, simulate
 from eel_gaits import Law, Ramp, Term
 
 LINKS, HALF_HEIGHT, HALF_WIDTH = 8, 0.05, 0.02
 LENGTH = 0.1 * LINKS
+BODY = Body.of_links(LENGTH, LINKS, HALF_WIDTH, HALF_HEIGHT, joints="flush")
 WAVE = Law(
     Term(
         amplitude=(0.0, 3.0, 3.0, 0.0),
@@ -40,10 +41,10 @@ def log(tmp_path_factory):
 
 
 def test_a_chain_of_links_swims_as_the_body_that_it_stands_for(log, tmp_path, capsys):
-    body = chain_body(LENGTH, HALF_HEIGHT, HALF_WIDTH)
-    known = simulate(WAVE, 5.98, body=body, scene=Scene(planar=True, friction="blended"), accuracy=1e-3)
+    known = simulate(WAVE, 5.98, body=BODY, scene=Scene(planar=True, friction="blended"), accuracy=1e-3)
     out = tmp_path / "out.nc"
     arguments = ["--joints", str(log), "--links", "0.1x8", "--section", f"{HALF_HEIGHT},{HALF_WIDTH}", "--mass", "2.5"]
+    arguments += ["--joint-drag", "flush"]
     arguments += ["--scene", "planar=on", "--scene", "friction=blended", "--accuracy", "1e-2", "--out", str(out)]
     assert main(arguments) == 0
     printed = capsys.readouterr().out
@@ -55,15 +56,16 @@ def test_a_chain_of_links_swims_as_the_body_that_it_stands_for(log, tmp_path, ca
 
 
 def test_friction_and_added_mass_by_factors_act_as_they_say():
-    body, scene = chain_body(LENGTH, HALF_HEIGHT, HALF_WIDTH), Scene(planar=True, friction="laminar")
+    body = BODY.changed(round_added_mass=1.0, lateral_drag=1.98, vertical_drag=1.0)
+    scene = Scene(planar=True, friction="laminar")
     still = Law(Term(amplitude=(0.0,), period=1.0))
     glide = {"scene": scene, "accuracy": 1e-3, "twist": (0.0, 0.0, 0.0, 0.5, 0.0, 0.0)}
     lost = [
-        0.5 - simulate(still, 0.2, body=body.changed(friction_factor=factor, nose_drag=0.0), **glide).twist[-1, 3]
+        0.5 - simulate(still, 0.2, body=body.changed(friction_factor=factor, nose_drag=0.0, base_drag=0.0), **glide).twist[-1, 3]
         for factor in (1.0, 2.0)
     ]
     assert lost[1] == pytest.approx(2.0 * lost[0], rel=0.03)
-    high = np.sqrt(2.0) * body.arguments["half_height"]  # an ellipse of twice the added mass, at the same mass
+    high = replace(body.arguments["half_height"], size=np.sqrt(2.0) * HALF_HEIGHT)  # an ellipse of twice the added mass, at the same mass
     flat = body.changed(half_height=high, density=body.density / np.sqrt(2.0))
     dry = {"scene": Scene(planar=True, resistive=False, nose=False), "accuracy": 1e-4, "stations": 5}
     heavy = simulate(WAVE, 2.0, body=body.changed(lateral_added_mass=2.0), **dry)
@@ -79,12 +81,14 @@ def test_friction_and_added_mass_by_factors_act_as_they_say():
         ({"--topic": "joints"}, "--topic belongs to a bag"),
         ({"--body": "boyer2010"}, "one of --body and --section"),
         ({"--units": "gon"}, "gon"),
+        ({"--joint-drag": "loose"}, "joints must be flush, or the drag coefficient of a link by itself, 0"),
+        ({"--clock": "0"}, "--clock must be > 0, got 0"),
         ({"--rate": "5"}, "belong to --midlines, which is not given"),
         ({"--sequence": "patrol.yaml"}, "--joints takes the place of a gait, got '--sequence' too"),
     ],
 )
 def test_what_does_not_fit_is_told(log, change, words, capsys):
-    options = {"--joints": str(log), "--links": "0.1x8", "--section": "0.05,0.02"} | change
+    options = {"--joints": str(log), "--links": "0.1x8", "--section": "0.05,0.02", "--joint-drag": "0"} | change
     assert main([word for pair in options.items() for word in pair]) == 2
     assert words in capsys.readouterr().err
 

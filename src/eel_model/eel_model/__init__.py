@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a run is told: body, fins, robot, scene and flow. Set-up in NumPy; `eel_dynamics` marches it in time."""
 
+from eel_model.body.appendages import Appendage
 from eel_model.body.body import Body
 from eel_model.fins.fins import Fin, RollHold
 from eel_model.flow.flow import Flow, FlowSample
@@ -14,6 +15,7 @@ from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
 
 __all__ = [
+    "Appendage",
     "Body",
     "Fin",
     "Flow",

@@ -4,7 +4,7 @@
 The half-axis a lies along E3, b along E2.
 
 Body: m_b = rho_b pi a b, J2 = rho_b pi a^3 b/4, J3 = rho_b pi a b^3/4, J1 = J2 + J3.
-Water: J_f1 = rho_f pi/8 (a^2 - b^2)^2, M_f = rho_f pi diag(0, a^2, b^2).
+Water: J_f1 = rho_f pi/8 (a^2 - b^2)^2, M_f = rho_f pi diag(0, a^2, b^2), times what separated flow leaves of it.
 
 The printed eq. (37) exchanges the half-axes a and b in M_f. This is corrected here: the added mass of an ellipse that
 moves along one axis is proportional to the square of the other half-axis (Lamb; section 4.3 of the paper). The scene's
@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 import eel_core
+from eel_model.body.appendages import core_appendages
 from eel_model.body.body import Body
 from eel_model.body.grid import Grid, PanelPoints
 from eel_model.body.moments import missed_before, missed_within, with_moments
@@ -35,22 +36,17 @@ TAYLOR = 5.4  # of the friction along a cylinder in oblique flow: eel_core/model
 CRITICAL_REYNOLDS = 8.0e4  # Reynolds number at which the printed friction law jumps from laminar to turbulent
 
 
-def added_masses(
-    body: Body, scene: Scene, a_squared: np.ndarray, b_squared: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Added masses of a section: M_f along E2 and E3 [kg/m], and J_f1 [kg m] (eq. 37).
+def swept_water(body: Body, scene: Scene, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Added masses (n,) of the sections at `x` (n,) [m]: M_f along E2 and E3 [kg/m], and J_f1 [kg m] (eq. 37).
 
-    They are zero where the scene is not reactive. a_squared, b_squared: squares of the half-axes [m^2].
+    They are of the water that is swept past the sections, and zero where the scene is not reactive.
     """
     rho = scene.fluid_density if scene.reactive else 0.0
+    a_squared, b_squared = body.half_height(x) ** 2, body.half_width(x) ** 2
     along2, along3 = (a_squared, b_squared) if scene.added_mass == "corrected" else (b_squared, a_squared)
-    lateral = rho * np.pi * along2 * body.lateral_added_mass
-    return lateral, rho * np.pi * along3, rho * np.pi / 8.0 * (a_squared - b_squared) ** 2
-
-
-def swept_water(body: Body, scene: Scene, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The added masses (n,) of the water that is swept past the sections at `x` (n,) [m]."""
-    return added_masses(body, scene, body.half_height(x) ** 2, body.half_width(x) ** 2)
+    factor2, factor3 = body.added_mass_factors(x)
+    roll = rho * np.pi / 8.0 * (a_squared - b_squared) ** 2
+    return rho * np.pi * along2 * factor2, rho * np.pi * along3 * factor3, roll
 
 
 class SectionData(NamedTuple):
@@ -72,6 +68,7 @@ class SectionData(NamedTuple):
     laminar: np.ndarray  # friction force per length = -laminar |V1|^(1/2) V1
     turbulent: np.ndarray  # likewise -turbulent (Re/8e4)^(4/5) V1; by Taylor -turbulent |Vn|^(1/2) V1
     by_critical_speed: np.ndarray  # s/m, Re/8e4 per |V1|
+    segment: np.ndarray  # kg/m^2, 1/2 rho_f k5 of a robot's links
 
     def of_water(self) -> "SectionData":
         """The section data of the water alone: the mass and inertia of the body are zero."""
@@ -98,7 +95,7 @@ class StationData(NamedTuple):
     added2_slope: np.ndarray  # (M,) kg/m^2, derivative of `added2` by X
     added3_slope: np.ndarray  # (M,) kg/m^2
     added_roll_slope: np.ndarray  # (M,) kg
-    missed: np.ndarray | tuple[()]  # (14, M, p_max), of `PARTS`: what the rows of `points` miss, times m; or none
+    missed: np.ndarray | tuple[()]  # (15, M, p_max), of `PARTS`: what the rows of `points` miss, times m; or none
 
 
 def nose_of(body: Body, scene: Scene) -> tuple[float, float]:
@@ -124,6 +121,7 @@ def core_swimmer(
         stations_of(body, scene, grid, sections, x),
         friction="laminar" if scene.friction == "none" or scene.viscosity == 0.0 else scene.friction,
         resistive=bool(scene.resistive),
+        segmented=bool(sections.segment.any()),
         first_watched=WATCHED[kinks],
         wake=bool(scene.wake),
         inertia_of_water=bool(scene.added_inertia),
@@ -138,6 +136,7 @@ def core_swimmer(
         missed_drag=missed_drag_of(body, scene, grid, sections) if kinks == "all" else (),
         fins=of_fins,
         servos=servos,
+        appendages=core_appendages(body, scene, grid, x),
     )
 
 
@@ -185,16 +184,16 @@ def stations_of(body: Body, scene: Scene, grid: Grid, nodes: SectionData, x: np.
     if len(body.breaks):
         given = nodes.rows(PARTS)
         missed = missed_before(lambda at: sections_of(body, scene, at).rows(PARTS), given, grid, body.breaks, x)
-    a_squared, b_squared, a_slope, b_slope = _squares_at(body, x.tobytes())
-    slope2, slope3, _ = added_masses(body, scene, a_slope, b_slope)
+    a_squared, b_squared, a_slope, b_slope = squares = _squares_at(body, x.tobytes())
+    slope2, slope3 = body.added_mass_slopes(x, squares, scene.added_mass == "printed")
     rho = scene.fluid_density if scene.reactive else 0.0
     sections, swept = sections_of(body, scene, x), swept_water(body, scene, x)
     return StationData(
         sections=sections._replace(**dict(zip(("added2", "added3", "added_roll"), swept, strict=True))),
         points=grid.points_at(x),
         nodes_before=np.searchsorted(grid.x, x, side="right").astype(np.uint64),
-        added2_slope=slope2,
-        added3_slope=slope3,
+        added2_slope=rho * np.pi * slope2,
+        added3_slope=rho * np.pi * slope3,
         added_roll_slope=rho * np.pi / 4.0 * (a_squared - b_squared) * (a_slope - b_slope),
         missed=missed,
     )
@@ -239,6 +238,7 @@ def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionData:
     perimeter = np.pi * (1.5 * (c + d) - np.sqrt(c * d)) * (0.5 if scene.perimeter == "printed" else 1.0)
     across = half_rho if scene.cross_flow else 0.0
     rubbed = 0.0 if scene.friction == "none" else half_rho * body.friction_factor
+    c_2, c_3 = body.cross_flow(x)
     critical_speed = CRITICAL_REYNOLDS * scene.viscosity / behind  # m/s, |V1| at which Re = 8e4
     with np.errstate(divide="ignore"):
         by_critical_speed = np.where(critical_speed > 0.0, 1.0 / critical_speed, 0.0)
@@ -257,11 +257,12 @@ def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionData:
         inertia3=inertia3,
         added_roll=added_roll,
         displaced=scene.fluid_density * area,
-        drag2=across * 2.0 * body.lateral_drag * a,
-        drag3=across * 2.0 * body.vertical_drag * b,
+        drag2=across * 2.0 * c_2 * a,
+        drag3=across * 2.0 * c_3 * b,
         drag_roll=across * body.roll_drag * np.pi * (a**2 - b**2) ** 2,
         laminar=rubbed * perimeter * 0.664 * np.sqrt(scene.viscosity / behind),
         turbulent=rubbed * oblique,
         by_critical_speed=by_critical_speed,
+        segment=half_rho * body.joint_drag * area / (body.link_length or 1.0),
     )
     return SectionData(*(np.ascontiguousarray(row, dtype=float) for row in table))

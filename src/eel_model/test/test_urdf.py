@@ -42,7 +42,7 @@ def chain(links=5, sign=-1, axes=("0 0 1",), more=""):
 def robot_of(tmp_path, text, **options):
     path = tmp_path / "eel.urdf"
     path.write_text(text)
-    return Robot.from_file(path, **options)
+    return Robot.from_file(path, **{"joints": "flush"} | options)
 
 
 def test_a_chain_of_boxes_becomes_joints_and_a_body(tmp_path):

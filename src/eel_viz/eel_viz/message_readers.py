@@ -110,8 +110,8 @@ def read_flow(message: Any) -> tuple[np.ndarray, np.ndarray]:
 
 def read_energy(message: Any) -> dict[str, float]:
     """From eel_msgs/EnergyLedger: one number per field [J], [W]; 0 for those that an older bag has not."""
-    older = () if hasattr(message, "drag_work") else LATER_ENERGY_FIELDS
-    values = {name: 0.0 if name in older else getattr(message, name) for name in ENERGY_FIELDS}
+    absent = {name for name in LATER_ENERGY_FIELDS if not hasattr(message, name)}
+    values = {name: 0.0 if name in absent else getattr(message, name) for name in ENERGY_FIELDS}
     for name, value in values.items():
         if not np.isfinite(value):
             raise BadMessage(name, f"is {shown(value)}")

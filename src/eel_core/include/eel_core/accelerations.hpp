@@ -154,6 +154,7 @@ EEL_CORE_INLINE inline Wrench<M, double> accelerating_load(const Swimmer& swimme
     if (swimmer.weighs()) left += work.weight;
     if constexpr (!M::planar)
         if (!work.fins.empty()) left += wrench_of_fins(swimmer, work.shape_acceleration, work);
+    if (!work.appendages.empty()) left += work.appendage_load;
     return left;
 }
 
@@ -181,6 +182,7 @@ void find_accelerations(const Swimmer& swimmer, Workspace<M>& work)
     if (swimmer.weighs()) take_weight(swimmer, work);
     if constexpr (!M::planar)
         if (!work.fins.empty()) work.balance = work.balance - wrench_of_fins(swimmer, work.acceleration, work);
+    if (!work.appendages.empty()) work.balance = work.balance - work.appendage_load;
 }
 
 }  // namespace eel_core

@@ -8,11 +8,12 @@
 
 namespace eel_core {
 
-// Loads on the body from its true velocities: wake, eq. (60), and drag, section 7.2.1.
+// Loads on the body from its true velocities: wake, eq. (60), appendages, and drag, section 7.2.1.
 template <class M>
 EEL_CORE_INLINE inline void find_loads(const Swimmer& swimmer, Workspace<M>& work)
 {
     set_tail_load(swimmer, work);
+    if (!work.appendages.empty()) find_appendage_loads(swimmer, work);
     work.drag = {}, work.drag_power = 0.0, work.kink_count = 0;
     if (!swimmer.resistive) return;
     set_speeds(swimmer, work);
@@ -79,8 +80,8 @@ bool rate_of_state(const Swimmer& swimmer, const LawOnGrid& law, const Water& wa
 template <class M>
 EEL_CORE_INLINE inline Powers powers_of_loads(const Swimmer& swimmer, const Workspace<M>& work)
 {
-    Powers powers{0.0, work.tail_speed * work.tail_energy, work.nose_force * work.twist.linear.x, work.drag_power, 0.0,
-                  0.0};
+    Powers powers{
+        0.0, work.tail_speed * work.tail_energy, work.nose_force * work.twist.linear.x, work.drag_power, 0.0, 0.0, 0.0};
     if (work.flowing) {
         powers[1] += dot(work.tail.linear, work.flow.node(swimmer.grid.nodes - 1).u);
         powers[3] += drag_power_of_flow(swimmer, work);
@@ -88,11 +89,15 @@ EEL_CORE_INLINE inline Powers powers_of_loads(const Swimmer& swimmer, const Work
     }
     if constexpr (!M::planar)
         if (!work.fins.empty()) powers[5] = fin_power(swimmer, work);
+    if (!work.appendages.empty()) {
+        const auto [own, of_base] = appendage_powers(swimmer, work);
+        powers[3] += of_base, powers[6] = own;
+    }
     return powers;
 }
 
-// Powers [W] of actuators, wake, nose, drag, flow and fins, in the motion that `work` holds; with the acceleration of
-// the head, eq. (60). Not inlined: the same to the last bit whoever asks.
+// Powers [W] of actuators, wake, nose, drag, flow, fins and appendages, in the motion that `work` holds; with the
+// acceleration of the head, eq. (60). Not inlined: the same to the last bit whoever asks.
 template <class M>
 EEL_CORE_APART Powers find_powers(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
 {

@@ -4,10 +4,11 @@
 #pragma once
 
 #include "eel_core/accelerations.hpp"
+#include "eel_core/loads/appendages.hpp"
 
 namespace eel_core {
 
-using Powers = std::array<double, 6>;  // [W], of actuators, wake, nose, drag, flow and fins
+using Powers = std::array<double, 7>;  // [W], of actuators, wake, nose, drag, flow, fins and appendages
 
 // The wrench on the part of the body behind a section, w_tail - integral from X to the tail of the density, about the
 // section and in its axes; from the integral `integral` X.
@@ -81,6 +82,7 @@ double power_of_shape(const Swimmer& swimmer, const Workspace<M>& work)
             power -= dot(work.shape_omega.node(node), cross(fin.arm, fin.whole)) +
                      dot(work.shape_velocity.node(node), fin.whole);
         }
+    if (!work.appendages.empty()) power -= shape_power_of_appendages(swimmer, work);
     return power;
 }
 

@@ -98,6 +98,7 @@ EEL_CORE_INLINE inline Momentum<M, double> momentum_rate_from_loads(const Swimme
     if (swimmer.weighs()) rate += work.weight;
     if constexpr (!M::planar)
         if (!work.fins.empty()) rate += work.fin_load;
+    if (!work.appendages.empty()) rate += work.appendage_load;
     return rate;
 }
 

@@ -9,6 +9,7 @@
 | U l/nu < 1000 | added mass and a thin boundary layer need inertia to rule |
 | the tail leads, V1(l) > 0, for a good part of the time | the wake then feeds energy in (the last term of eq. 60) |
 | the flow's gradient changes by more than a tenth of itself across a section | it is taken as the same there |
+| the hull's coefficients, or a tail that is not slender | `hull_limits` |
 | the energy ledger is open by more than its tolerance | no limit of the model: steps or points are too few |
 
 The tolerance of the ledger is ten times the target, within 1e-4 and 1e-2, of all energy that passed, or 1e-3 where
@@ -24,6 +25,7 @@ from eel_base.attitude import world_from_body
 from eel_model.axes import REP103
 
 from eel_dynamics.analysis.analysis import STILL, Analysis
+from eel_dynamics.analysis.hull_limits import hull_warnings
 from eel_dynamics.simulation.energy import WORKS
 
 LEAST_SLENDERNESS = 5.0
@@ -194,6 +196,7 @@ def warnings_of(run) -> tuple[str, ...]:
         "" if run.flow is None else limits.of_flow(run.flow, run.time, placed.backbone, placed.section_orientation),
         limits.of_tail(run.energy.wake_power[later]) if run.energy is not None and run.flow is None else "",
         limits.of_ledger(run.energy, ledger_tolerance(run.accuracy.target), floor) if run.energy is not None else "",
+        *hull_warnings(run),
     ]
     return tuple(text for text in found if text)
 

@@ -32,16 +32,17 @@ def torque_of(run) -> np.ndarray:
 
 
 def drag_powers(run) -> np.ndarray:
-    """Powers (T, 4) [W] of the drag along the body at each sample of `run`.
+    """Powers (T, 6) [W] of the drag along the body at each sample of `run`.
 
-    Columns: forces along section axes 1 (friction, k1 of section 7.2.1), 2 and 3 (cross flow), and the torque about
-    axis 1. Positive is into the body, so none is positive. They are evaluated from the law, or a robot's joints, and
-    the head's motion, at the nodes of a simulation with the run's settings; their sum is the ledger's `drag_power`.
+    Columns: forces along section axes 1 (friction, k1 of section 7.2.1), 2 and 3 (cross flow), the torque about axis 1,
+    the drag of a robot's links (k5), and that of a blunt tail's base. Positive is into the body, so none is positive.
+    They are evaluated from the law, or a robot's joints, and the head's motion, at the nodes of a simulation with the
+    run's settings; their sum is the ledger's `drag_power`.
     """
     run = run.in_axes(REP103)
     setup = replace(run.setup_at(0, run.x[:1], run.accuracy.as_it_is()), fins=())  # whose drag is their own
     here = discretise(setup, setup.grid_for(setup.shape_needs(run.law)))
-    instant, powers = eel_core.Instant(here.swimmer), np.zeros((len(run.time), 4))
+    instant, powers = eel_core.Instant(here.swimmer), np.zeros((len(run.time), 6))
     time, relative = np.ascontiguousarray(run.time), run.twist.copy()
     if setup.current.any():
         relative[:, 3:] -= setup.current @ world_from_body(run.orientation)

@@ -11,7 +11,8 @@ import numpy as np
 from eel_base.command.command import checked_out, command
 from eel_base.command.command_line import Parser
 from eel_base.files.output_file import written_as
-from eel_model.body.body import COLUMNS, MASSES, Body, body_of
+from eel_model.body.body import COLUMNS, MASSES, Body
+from eel_model.body.text import body_of
 
 from eel_dynamics.analysis.trim import ballast_for, trim_of
 from eel_dynamics.commands.options import add_options, scene_of

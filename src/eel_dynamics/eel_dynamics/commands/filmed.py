@@ -8,7 +8,8 @@ import numpy as np
 from eel_base.wording import shown
 from eel_gaits.film.beat import Beat, beat_of, jackknife
 from eel_gaits.film.film import Film, read_film
-from eel_model.body.body import Body, body_of
+from eel_model.body.body import Body
+from eel_model.body.text import body_of
 from eel_model.scene import Scene
 
 from eel_dynamics.batches.simulate_batch import simulate_batch

@@ -11,15 +11,15 @@ from eel_base.quantity import positive
 from eel_base.wording import shown
 from eel_gaits.sources.joint_log import JointLog, joint_log, law_of_links, read_joint_log
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.body.body import Body, body_of
+from eel_model.body.body import Body
+from eel_model.body.links import ALONE, FLUSH, joint_drag_of
+from eel_model.body.text import body_of
 
 from eel_dynamics.runs.exchange.eel_viz_functions import function_of_eel_viz
 from eel_dynamics.runs.run import Run
 
 BAGS = ".mcap", ".db3"
 FITTING = 1e-6  # part of the length by which the links' sum may miss the body's
-POINTS = 81  # of a robot's body along its length
-ROUND = 1.0  # length of a nose by its half-height
 
 
 def add_joint_options(parser: Parser) -> None:
@@ -29,6 +29,10 @@ def add_joint_options(parser: Parser) -> None:
     parser.add_argument("--tail-first", action="store_true", help="the first joint is that at the tail")
     parser.add_argument("--links", metavar="LENGTHS", help="m, from nose to tail: 0.18x9, or 0.2,0.1x5,0.2")
     parser.add_argument("--section", metavar="A,B", help="m, half-height and half-width of all links, or --body")
+    parser.add_argument("--joint-drag", metavar="FLUSH|NUMBER",
+                        help=f"of a link by itself, 0 ({FLUSH}) to {ALONE}; --section has no default")  # fmt: skip
+    parser.add_argument("--clock", type=float, default=1.0, metavar="FACTOR",
+                        help="true time by that of the log, whose clock runs fast or slow (1)")  # fmt: skip
     parser.add_argument("--mass", type=float, metavar="KG", help="of the robot (that of the water in its place)")
 
 
@@ -59,7 +63,8 @@ def logged_robot(path: str, options: argparse.Namespace) -> LoggedRobot:
     """The robot of the log at `path`, a .csv or a bag, as the `options` say. `ValueError` for what does not fit."""
     log = _log(Path(path), options)
     links = _links(options.links, log.angles.shape[1])
-    body = _body(options, float(links.sum()))
+    log = log._replace(time=log.time * positive("--clock", options.clock))
+    body = _body(options, float(links.sum()), len(links))
     if options.mass is not None:
         body = body.changed(density=positive("mass", options.mass, "kg") / body.volume)
     joints = np.cumsum(links)[:-1]
@@ -94,7 +99,7 @@ def _links(text: str | None, joints: int) -> np.ndarray:
     return np.array([positive("link", each, "m") for each in found])
 
 
-def _body(options: argparse.Namespace, length: float) -> Body:
+def _body(options: argparse.Namespace, length: float, links: int) -> Body:
     if (options.body is None) == (options.section is None):
         raise ValueError("one of --body and --section must be given")
     if options.section is not None:
@@ -102,20 +107,12 @@ def _body(options: argparse.Namespace, length: float) -> Body:
             half_height, half_width = map(float, options.section.split(","))
         except ValueError:
             raise ValueError(f"--section must be half-height,half-width [m], got {shown(options.section)}") from None
-        return chain_body(length, half_height, half_width)
+        if options.joint_drag is None:
+            raise ValueError(f"--joint-drag must be given with --section, {FLUSH} or 0 to {ALONE}, got none")
+        return Body.of_links(length, links, half_width, half_height, joints=options.joint_drag)
     body = body_of(options.body)
     if abs(body.length - length) > FITTING * length:
         raise ValueError(f"--links must add up to the body's length, {body.length:g} m, got {length:g} m")
-    return body
-
-
-def chain_body(length: float, half_height: float, half_width: float) -> Body:
-    """A chain of links of one elliptic section [m]: a round nose, a blunt tail."""
-    for name, value in (("half_height", half_height), ("half_width", half_width)):
-        positive(f"section's {name}", value, "m")
-    nose = min(ROUND * half_height, 0.1 * length)
-    x = np.concatenate(
-        (nose * (1.0 - np.cos(np.linspace(0.0, 0.5 * np.pi, 13))), np.linspace(nose, length, POINTS)[1:])
-    )
-    end = np.sqrt(np.clip(1.0 - np.clip(1.0 - x / nose, 0.0, None) ** 2, 0.0, None))
-    return Body(x=x, half_height=half_height * end, half_width=half_width * end, kinks=(nose,), name="links")
+    if options.joint_drag is None:
+        return body
+    return body.changed(joint_drag=joint_drag_of(options.joint_drag), link_length=length / links)

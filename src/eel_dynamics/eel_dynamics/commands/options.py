@@ -194,7 +194,8 @@ OPTIONS = {  # what argparse takes
     "--robot": {
         "default": "",
         "metavar": "ROBOT",
-        "help": f"what bends by itself, and follows the law: {', '.join(READY)}, or a .yaml or URDF file",
+        "help": f"what bends by itself, and follows the law: {', '.join(READY)}, or a .yaml or URDF file (this "
+        "with joints=flush, or the drag coefficient of its links)",
     },
     "--fins": {
         "default": "",
@@ -202,7 +203,12 @@ OPTIONS = {  # what argparse takes
         "help": "pair, left or right with numbers, as 'pair station=0.5 area=0.0015 aspect_ratio=2.5 k_p=4 k_d=0.5 "
         "time_constant=0.05', several with ' + ' between: docs/howto/fins.md",
     },
-    "--body": {"default": "boyer2010", "help": f"{', '.join(NAMED)}, or a .csv or .npz file of half-axes"},
+    "--body": {
+        "default": "boyer2010",
+        "help": f"{', '.join(NAMED)}, a .csv or .npz file of half-axes, or links with their numbers, as 'links "
+        "length=1 number=8 half_width=0.03 half_height=0.04 joints=flush'; what differs follows, as 'fish.csv "
+        "base_drag=0.2'",
+    },
     "--accuracy": {
         "default": "standard",
         "metavar": "TARGET",

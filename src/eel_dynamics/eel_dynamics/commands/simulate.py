@@ -7,7 +7,7 @@ eel simulate falling --duration 20 --periods 4 --actuators 8
 eel simulate --sequence patrol.yaml --duration 20
 eel simulate --file midlines.csv
 eel simulate --midlines lamprey.csv --units mm
-eel simulate --joints log.csv --links 0.18x9 --section 0.055,0.05 --mass 7.2
+eel simulate --joints log.csv --links 0.18x9 --section 0.055,0.05 --joint-drag 0.65 --mass 7.2
 eel simulate straight --set wavelength=0.8 --scene friction=laminar --accuracy 1e-6 --out run.npz
 """
 
@@ -194,9 +194,10 @@ def _law(options: argparse.Namespace, body: Body, beat: Beat | None, robot: Logg
         rule = "--units, --rate, --animal, --points, --rigid and --harmonics belong to --midlines"
         raise ValueError(f"{rule}, which is not given")
     of_log = options.columns, options.topic, options.tail_first, options.links, options.section, options.mass
-    if robot is None and any(of_log):
+    if robot is None and (any(of_log) or options.joint_drag is not None or options.clock != 1.0):
         raise ValueError(
-            "--columns, --topic, --tail-first, --links, --section and --mass belong to --joints, which is not given"
+            "--columns, --topic, --tail-first, --links, --section, --joint-drag, --clock and --mass belong to --joints, "
+            "which is not given"
         )
     given = [name for name in ("midlines", "joints", "file", "sequence") if getattr(options, name) is not None]
     if not given:

@@ -6,7 +6,7 @@ from dataclasses import Field, fields, replace
 from typing import Any
 
 from eel_base.quantity import checked
-from eel_model.body.body import body_of
+from eel_model.body.text import body_of
 from eel_model.flow.plain import flow_of
 from eel_model.flow.text import flow_from_text, text_of_flow
 from eel_model.scene import Scene

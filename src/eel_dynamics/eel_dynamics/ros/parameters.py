@@ -52,7 +52,11 @@ class DynamicsParameters(Quantities):
         True, "", "measure the run's own error by a companion with coarser settings; shown in /diagnostics"
     )
     body: str = quantity(
-        "boyer2010", "", "name of a body, or a .csv or .npz file with columns x, half_width, half_height [m]", **LATER
+        "boyer2010",
+        "",
+        "name of a body, a .csv or .npz file with columns x, half_width, half_height [m], or links with their numbers; "
+        "what differs follows as NAME=VALUE",
+        **LATER,
     )
     flow: str = quantity(
         "",
@@ -64,8 +68,8 @@ class DynamicsParameters(Quantities):
     robot: str = quantity(
         "",
         "",
-        "what bends by itself: name of a robot, or a .yaml or URDF file, whose body is taken unless body is set; its "
-        "servos follow the law; empty: the law is imposed",
+        "what bends by itself: name of a robot, or a .yaml or URDF file (this with joints=flush or a number), "
+        "whose body is taken unless body is set; its servos follow the law; empty: the law is imposed",
         **LATER,
     )
     command_interfaces: tuple[str, ...] = quantity(

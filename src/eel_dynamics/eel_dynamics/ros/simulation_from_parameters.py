@@ -2,7 +2,7 @@
 """Makes the simulation from the node's parameters."""
 
 from eel_base.wording import shown
-from eel_model.body.body import body_of
+from eel_model.body.text import body_of
 from eel_model.fins.text import fins_from_text
 from eel_model.flow.text import flow_from_text
 from eel_model.robot.robot import Robot, robot_of

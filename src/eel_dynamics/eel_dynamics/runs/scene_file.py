@@ -31,7 +31,8 @@ from eel_base.files.yaml_tree import read_yaml
 from eel_base.quantity import checked_instance, checked_row, positive
 from eel_base.wording import did_you_mean, shown
 from eel_gaits.gaits.settings import SEQUENCES, Settings
-from eel_model.body.body import Body, body_of
+from eel_model.body.body import Body
+from eel_model.body.text import body_of
 from eel_model.fins.text import fins_from_text, text_of_fins
 from eel_model.flow.text import flow_from_text, text_of_flow
 from eel_model.robot.robot import robot_of

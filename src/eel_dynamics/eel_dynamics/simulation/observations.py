@@ -60,7 +60,7 @@ class Observations:
     )
     center_of_mass = Observed("time world", "m", "centre of mass, world")
     energies = Observed("time energy", "J", "kinetic of body and of water, potential")
-    powers = Observed("time power", "W", "of actuators, wake, nose, drag, flow and fins")
+    powers = Observed("time power", "W", "of actuators, wake, nose, drag, flow, fins and appendages")
     closure = Observed("time closure", "N m, N", "what is left at the nose of the internal torque and force")
     backbone = Observed("time station world", "m", "backbone, world")
     section_orientation = Observed("time station quaternion", "1", "world from section, x y z w")

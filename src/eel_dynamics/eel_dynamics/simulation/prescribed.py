@@ -29,7 +29,7 @@ class HydrodynamicWrench:
 
     inertia: np.ndarray  #: (6,) - d/dt of the water's momentum along the body
     wake: np.ndarray  #: (6,) momentum and pressure through the plane of the tail
-    resistive: np.ndarray  #: (6,) drag along the body
+    resistive: np.ndarray  #: (6,) drag along the body, of its base and its appendages
     nose: np.ndarray  #: (6,) added mass and drag of the nose
 
     @property

@@ -125,7 +125,7 @@ class Present:
 
     @property
     def works(self) -> np.ndarray:
-        """(6,) J of actuators, wake, nose, drag, flow and fins since the start."""
+        """(7,) J of actuators, wake, nose, drag, flow, fins and appendages since the start."""
         return np.array(self._march.core.works)
 
     @property

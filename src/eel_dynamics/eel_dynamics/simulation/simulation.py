@@ -290,9 +290,9 @@ class Simulation(Present):
     ) -> tuple[Observations, np.ndarray, int, SimulationStopped | None]:
         """March through `times` (T,) [s] under the law in force, and observe each.
 
-        Returns the observations, the works (T, 6) [J] of actuators, wake, nose, drag, flow and fins, the number of good
-        instants, and what stopped the march, or None. look(time [s]) is called every few milliseconds. After a bad
-        instant the simulation must be reset. `ValueError` for times that are not finite, or fall.
+        Returns the observations, the works (T, 7) [J] of actuators, wake, nose, drag, flow, fins and appendages, the
+        number of good instants, and what stopped the march, or None. look(time [s]) is called every few milliseconds.
+        After a bad instant the simulation must be reset. `ValueError` for times that are not finite, or fall.
         """
         times = checked_row("times", times, None)
         if np.any(np.diff(times, prepend=self.time) < -ROUNDING * max(1.0, abs(self.time))):

@@ -30,7 +30,7 @@ class AlongBody:
     def __init__(
         self, name: str, unit: str, given: Any, x: np.ndarray | None, bounds: Bounds, minimum: float | None = None
     ) -> None:
-        self.given, self._length, self._cubics = given, bounds[-1], None
+        self.given, self._bounds, self._length, self._cubics = given, bounds, bounds[-1], None
         if callable(given):
             at = _points(bounds)
             values = self(at)
@@ -50,6 +50,16 @@ class AlongBody:
             first = np.flatnonzero(wrong)[0]
             raise ValueError(f"{name} must be {wanted}, got {values[first]:.6g} at X = {at[first]:.6g} m")
 
+    def slope(self, x: np.ndarray) -> np.ndarray:
+        """Derivative by X at `x` [m]; of a function, from the polynomial through it on each panel."""
+        if self._cubics is None and not callable(self.given):
+            return np.zeros(np.shape(x))
+        return piecewise(*self._slopes, np.clip(x, 0.0, self._length))
+
+    @cached_property
+    def _slopes(self) -> tuple[list[Any], Any]:
+        return _slopes_of(self, self._cubics, self._bounds)
+
     def __call__(self, x: ArrayLike) -> np.ndarray:
         """The values at `x` [m]."""
         at: np.ndarray = np.clip(np.asarray(x, dtype=float), 0.0, self._length)
@@ -62,14 +72,14 @@ class HalfAxis:
     """A half-axis along X [m]: a function that returns m, or an array [m] at the points `x` (M,) [m].
 
     Monotone cubics (Fritsch and Butland) go through the squares of an array. `ValueError` for a half-axis that is not 0
-    at the nose, or not positive inside.
+    at a nose that is not `blunt`, or not positive inside.
 
     Attributes:
         given: the function, or X and values (2, M).
         breaks: X [m] inside the body where a derivative may jump: the points of an array.
     """
 
-    def __init__(self, name: str, given: Any, x: np.ndarray | None, bounds: Bounds) -> None:
+    def __init__(self, name: str, given: Any, x: np.ndarray | None, bounds: Bounds, blunt: bool = False) -> None:
         self.given, self.breaks, self._cubics, self._bounds = given, np.empty(0), None, bounds
         if x is not None:
             at, values = x, _checked_values(f"body {name}", given, x)
@@ -81,7 +91,7 @@ class HalfAxis:
             warn_of_details(f"body {name}", given, bounds, 2)
         else:
             raise ValueError(f"body {name} must be a function of X, or an array with x=, got {shown(given)}")
-        _check_shape(name, at, values, bounds[-1])
+        _check_shape(name, at, values, bounds[-1], blunt)
 
     def square(self, x: np.ndarray) -> np.ndarray:
         """[m^2] at `x` [m]."""
@@ -96,10 +106,14 @@ class HalfAxis:
 
     @cached_property
     def _slopes(self) -> tuple[list[Any], Any]:
-        if self._cubics is not None:
-            return [piece.derivative() for piece in self._cubics[0]], self._cubics[1]
-        series = series_through(lambda x: values_along(self.given, x) ** 2, self._bounds)
-        return [each.deriv() for each in series], self._bounds
+        return _slopes_of(lambda x: values_along(self.given, x) ** 2, self._cubics, self._bounds)
+
+
+def _slopes_of(function: Any, cubics: Any, bounds: Bounds) -> tuple[list[Any], Any]:
+    """Derivatives of the `cubics`, or of the polynomials through a `function` of X, and where they start."""
+    if cubics is not None:
+        return [piece.derivative() for piece in cubics[0]], cubics[1]
+    return [each.deriv() for each in series_through(function, bounds)], bounds
 
 
 def _points(bounds: Bounds) -> np.ndarray:
@@ -123,18 +137,20 @@ def _cubics(x: np.ndarray, values: np.ndarray, bounds: Bounds) -> tuple[list[Any
     return [PchipInterpolator(x[i : j + 1], values[i : j + 1]) for i, j in pairwise(cuts)], x[cuts[:-1]]
 
 
-def _check_shape(name: str, x: np.ndarray, values: np.ndarray, length: float) -> None:
-    """`ValueError` unless the half-axis is finite, 0 at the nose and positive inside."""
+def _check_shape(name: str, x: np.ndarray, values: np.ndarray, length: float, blunt: bool) -> None:
+    """`ValueError` unless the half-axis is finite, 0 at a nose that is not `blunt`, and positive inside."""
     if not np.isfinite(values).all():
         worst = np.flatnonzero(~np.isfinite(values))[0]
         raise ValueError(f"body {name} must be finite, got {values[worst]} at X = {x[worst]:.6g} m")
     if np.any(values < 0.0):
         worst = np.argmin(values)
         raise ValueError(f"body {name} must be >= 0 m, got {values[worst]:.6g} at X = {x[worst]:.6g} m")
-    if values[0] > 1e-9 * length:
+    if values[0] > 1e-9 * length and not blunt:
         raise ValueError(
-            f"body {name} must be 0 m at the nose (X = 0): a blunt nose would shed a wake, got {values[0]:.6g}"
+            f"body {name} must be 0 m at the nose (X = 0), or the body has blunt_nose on, got {values[0]:.6g}"
         )
+    if values[0] == 0.0 and blunt:
+        raise ValueError(f"body {name} must be > 0 m at a blunt nose (X = 0), got 0")
     inside = (x > 0.0) & (x < length)
     if np.any(values[inside] == 0.0):
         worst = x[inside][np.argmin(values[inside])]

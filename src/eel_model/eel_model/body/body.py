@@ -3,12 +3,13 @@
 given.
 
 A section at X has the half-height a(X) along E3 (its major axis on the paper's robot) and the half-width b(X) along E2.
-X runs from 0 at the nose to the length at the tail. The nose is pointed, a(0) = b(0) = 0, so it sheds no wake.
+X runs from 0 at the nose to the length at the tail. The nose is pointed, a(0) = b(0) = 0, or blunt; neither sheds a
+wake.
 """
 
 import os
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache, cached_property, lru_cache, partial
 from pathlib import Path
 from typing import Any
@@ -22,8 +23,10 @@ from eel_gaits.sources.tables import read_table
 from numpy.typing import ArrayLike
 
 from eel_model.body.along import AlongBody, HalfAxis
+from eel_model.body.appendages import APART, Appendage, checked_appendages
 from eel_model.body.body_picture import lines_of_body, picture_of_body
 from eel_model.body.grid import Grid
+from eel_model.body.hull import BY_SHAPE, attached, cross_flow_by_shape, crossings, roundness_squared
 from eel_model.body.moments import with_moments
 from eel_model.body.panels import panels_of
 from eel_model.body.shapes import KINKS, NamedHalfAxis
@@ -31,13 +34,16 @@ from eel_model.equality import same
 
 PANEL_OF_NOSE = 0.05  # of the length, where a body names no kinks
 LONGEST = 100.0  # m, of a body from a file; one that is longer may be in mm
-DRAGS = ("roll_drag", "lateral_drag", "vertical_drag", "friction_factor", "lateral_added_mass")
-NUMBERS = ("density", "nose_added_mass", "nose_drag", *DRAGS)
+PROFILES = ("lateral_drag", "vertical_drag", "lateral_added_mass")  # coefficients that may go along the body
+DRAGS = ("roll_drag", "friction_factor", "round_added_mass", "joint_drag", "base_drag", "appendage_factor")
+NUMBERS = ("density", "nose_added_mass", "nose_drag", *DRAGS, *PROFILES)
 COLUMNS, WHAT = ("x", "half_width", "half_height"), "body file "  # of a body in a file; WHAT begins an error
 MASSES = "mass_per_length", "centre_of_mass_offset"  # columns that it may have besides
 WATER = 1000.0  # kg/m^3, density of a body that gives none
 THICK = 0.25  # of the greatest area: in thinner sections, which weigh little, the centre of mass may lie outside
 LARGEST = 1e6  # m, of a number in it
+POINTED_NOSE, BLUNT_NOSE = (0.32, 0.036), (4.0 / (3.0 * np.pi), 0.4)  # k and c_p: as printed; of a disc on one side
+# (Lamb, Hydrodynamics, art. 102), and of a blunt cylinder along the flow less friction and base (Hoerner)
 SHARP = 1e-3  # of the body's greatest half-axis: a half-axis at the tail that counts as none
 
 
@@ -53,19 +59,32 @@ class Body:
         x: [m], shape (M,), M >= 4, rising from 0 to the length; with arrays only.
         kinks: X [m] inside (0, length) where a half-axis or one of its derivatives jumps.
         nose: half-axes and length (a_o, b_o, c_o) [m] of the cap in m_o = rho_f pi k a_o b_o c_o and
-            k_o = pi c_p a_o b_o; by default the half-axes at the end of the first panel, and its length.
+            k_o = pi c_p a_o b_o; by default the half-axes at the end of the first panel, and its length. Of a blunt
+            nose those at X = 0, and sqrt(a_o b_o).
+        blunt_nose: the section at X = 0 need not be 0. It sheds no wake: the water before it has no momentum, so the
+            face takes the force - V1 M_f V of the water that it sets in motion, and the internal force at X = 0 is
+            that less the nose's load.
         density: [kg/m^3], of a homogeneous body; by default that of water, 1000.
         mass_per_length: m(X) [kg/m] in place of a density: a number, a function of X that is smooth between the kinks,
             or an array at `x`. Each section's mass lies as that of a homogeneous one.
         centre_of_mass_offset: h(X) [m], how far the centre of mass lies below the section's centre, along its axis 3;
             likewise. Gravity acts on it in a `Scene(weight=True)`; what it means for the inertia holds always.
-        nose_added_mass: k.
-        nose_drag: c_p.
-        roll_drag, lateral_drag, vertical_drag: c_1, c_2, c_3.
+        nose_added_mass: k; by default 0.32, of a blunt nose 4/(3 pi), that of a disc on one side.
+        nose_drag: c_p; by default 0.036, of a blunt nose 0.4.
+        roll_drag, lateral_drag, vertical_drag: c_1, c_2, c_3. The last two may go along the body as a mass per length
+            may, or be "by shape": by the roundness of each section (eel_model/body/hull.py).
         friction_factor: times the friction of a smooth plate at rest: a body that beats has a thinner boundary layer
             (Lighthill, Proc. R. Soc. B 179 (1971): up to 4), and joints and gaps are rough.
         lateral_added_mass: times that of the ellipse, along axis 2: below 1 for gaps between links and round ends, 1.51
-            for a square section in place of the circle within it (Newman, Marine Hydrodynamics, 1977, table 4.3).
+            for a square section in place of the circle within it (Newman, Marine Hydrodynamics, 1977, table 4.3). It
+            may go along the body.
+        round_added_mass: C_a, of a circular section by that of potential flow, along axes 2 and 3; a section between
+            plate and circle has 1 - (1 - C_a) s^2 with its roundness s. 1 where the flow is attached; 0.2 in separated
+            cross flow.
+        joint_drag, link_length: c_s and p [m] of the drag of links, -1/2 rho_f c_s (A / p) |V| V1 per length: 0 for one
+            smooth body, 0.87 where each link is a blunt cylinder alone.
+        base_drag: c_b, of the area at the tail's end, -1/2 rho_f c_b A(l) V1|V1| there.
+        appendages: `Appendage`s, drag areas fixed to sections. appendage_factor: times all of these areas.
         name: what messages call the body.
     """
 
@@ -81,13 +100,20 @@ class Body:
         density: float | None = None,
         mass_per_length: Any = None,
         centre_of_mass_offset: Any = 0.0,
-        nose_added_mass: float = 0.32,
-        nose_drag: float = 0.036,
+        nose_added_mass: float | None = None,
+        nose_drag: float | None = None,
         roll_drag: float = 1.0,
-        lateral_drag: float = 1.98,
-        vertical_drag: float = 1.0,
+        lateral_drag: Any = 1.98,
+        vertical_drag: Any = 1.0,
         friction_factor: float = 1.0,
-        lateral_added_mass: float = 1.0,
+        lateral_added_mass: Any = 1.0,
+        round_added_mass: float = 1.0,
+        joint_drag: float = 0.0,
+        link_length: float | None = None,
+        base_drag: float = 0.0,
+        appendage_factor: float = 1.0,
+        blunt_nose: bool = False,
+        appendages: Iterable[Appendage] = (),
         name: str = "body",
     ) -> None:
         if x is not None:
@@ -108,25 +134,42 @@ class Body:
         self._density = positive("body density", WATER if density is None else density, "kg/m^3")
         self.name = checked_instance("body name", name, str)
         self.kinks = self._checked_kinks(kinks)
-        self.panel_ends = (*(self.kinks or (PANEL_OF_NOSE * self.length,)), self.length)
-        bounds = (0.0, *self.panel_ends)
-        self._half_width = HalfAxis("half_width", half_width, x, bounds)
-        self._half_height = HalfAxis("half_height", half_height, x, bounds)
+        self.blunt_nose = bool(checked_instance("body blunt_nose", blunt_nose, (bool, np.bool_)))
+        self.appendages = checked_appendages(appendages, self.length)
+        bounds = (0.0, *(self.kinks or (PANEL_OF_NOSE * self.length,)), self.length)
+        self._half_width = HalfAxis("half_width", half_width, x, bounds, self.blunt_nose)
+        self._half_height = HalfAxis("half_height", half_height, x, bounds, self.blunt_nose)
         self._mass: AlongBody | None = None
         if mass_per_length is not None:
             self._mass = AlongBody("body mass_per_length", "kg/m", mass_per_length, x, bounds, 0.0)
         self._offset = AlongBody("body centre_of_mass_offset", "m", centre_of_mass_offset, x, bounds)
         self.offset = self._checked_offset()
-        self.nose = self._checked_nose(nose)
-        self.nose_added_mass = number("body nose_added_mass", nose_added_mass, minimum=0.0)
-        self.nose_drag = number("body nose_drag", nose_drag, minimum=0.0)
+        self.nose = self._checked_nose(nose, bounds[1])
+        k, c_p = BLUNT_NOSE if self.blunt_nose else POINTED_NOSE
+        self.nose_added_mass = number(
+            "body nose_added_mass", k if nose_added_mass is None else nose_added_mass, minimum=0.0
+        )
+        self.nose_drag = number("body nose_drag", c_p if nose_drag is None else nose_drag, minimum=0.0)
         self.roll_drag = number("body roll_drag", roll_drag, minimum=0.0)
-        self.lateral_drag = number("body lateral_drag", lateral_drag, minimum=0.0)
-        self.vertical_drag = number("body vertical_drag", vertical_drag, minimum=0.0)
         self.friction_factor = number("body friction_factor", friction_factor, minimum=0.0)
-        self.lateral_added_mass = number("body lateral_added_mass", lateral_added_mass, minimum=0.0)
-        numbers = tuple(getattr(self, name) for name in NUMBERS[1:])
-        self._hash = hash((self.name, self.length, self.kinks, self.nose, self._density, numbers))
+        self.round_added_mass = number("body round_added_mass", round_added_mass, minimum=0.0, maximum=1.0)
+        self.joint_drag = number("body joint_drag", joint_drag, minimum=0.0)
+        self.link_length = None if link_length is None else positive("body link_length", link_length, "m")
+        if self.joint_drag and self.link_length is None:
+            raise ValueError(f"body joint_drag needs a link_length, in m, got {self.joint_drag:g} and none")
+        self.base_drag = number("body base_drag", base_drag, minimum=0.0)
+        self.appendage_factor = number("body appendage_factor", appendage_factor, minimum=0.0)
+        self._profiles = {
+            name: None
+            if isinstance(given, str) and given == BY_SHAPE
+            else AlongBody(f"body {name}", "", given, x, bounds, 0.0)
+            for name, given in zip(PROFILES, (lateral_drag, vertical_drag, lateral_added_mass), strict=True)
+        }
+        if self._profiles["lateral_added_mass"] is None:
+            raise ValueError(f"body lateral_added_mass must be numbers, got {shown(BY_SHAPE)}: see round_added_mass")
+        self.panel_ends = self._panel_ends(bounds)
+        numbers = tuple(getattr(self, name) for name in ("nose_added_mass", "nose_drag", *DRAGS, "link_length"))
+        self._hash = hash((self.name, self.length, self.kinks, self.nose, self._density, numbers, self.appendages))
 
     def plot(self) -> Any:
         """A matplotlib figure of the outlines, from above and from the side. `ImportError` without matplotlib."""
@@ -142,6 +185,75 @@ class Body:
     def half_height(self, x: ArrayLike) -> np.ndarray:
         """a(X) [m] along E3 at `x` [m]."""
         return np.asarray(np.sqrt(self._half_height.square(np.asarray(x, dtype=float))))
+
+    @property
+    def lateral_drag(self) -> Any:
+        """c_2 as it was given."""
+        return self._given("lateral_drag")
+
+    @property
+    def vertical_drag(self) -> Any:
+        """c_3 as it was given."""
+        return self._given("vertical_drag")
+
+    @property
+    def lateral_added_mass(self) -> Any:
+        """The factor on the added mass along axis 2, as it was given."""
+        return self._given("lateral_added_mass")
+
+    def _given(self, name: str) -> Any:
+        profile = self._profiles[name]
+        return BY_SHAPE if profile is None else profile.given
+
+    def cross_flow(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """c_2 and c_3 (n,) of the sections at `x` (n,) [m]."""
+        lateral, vertical = self._profiles["lateral_drag"], self._profiles["vertical_drag"]
+        if lateral is not None and vertical is not None:
+            return lateral(x), vertical(x)
+        by_shape = cross_flow_by_shape(*self._squares_behind(x))
+        return by_shape[0] if lateral is None else lateral(x), by_shape[1] if vertical is None else vertical(x)
+
+    def added_mass_factors(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """By how much the added mass along axes 2 and 3 differs from the ellipse's, (n,) each, at `x` (n,) [m]."""
+        beta = (
+            attached(self.round_added_mass, *self._squares_behind(x))
+            if self.round_added_mass != 1.0
+            else np.ones(len(x))
+        )
+        factor = self._profiles["lateral_added_mass"]
+        assert factor is not None
+        return factor(x) * beta, beta
+
+    def added_mass_slopes(
+        self, x: np.ndarray, squares: tuple[np.ndarray, ...], swapped: bool
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives by X of squares of half-axes times `added_mass_factors`, (n,) each [m], at `x` (n,) [m].
+
+        The square of the half-height goes with axis 2, and that of the half-width with axis 3; the other way round
+        where they are `swapped`. squares: those of `squares`, at `x`.
+        """
+        a, b, a_slope, b_slope = squares
+        along2, along3 = ((b, b_slope), (a, a_slope)) if swapped else ((a, a_slope), (b, b_slope))
+        factor = self._profiles["lateral_added_mass"]
+        assert factor is not None
+        slopes2, slopes3 = along2[1], along3[1]
+        if self.round_added_mass != 1.0:
+            near = self._squares_behind(x)
+            most, s_squared = np.maximum(*near), roundness_squared(*near)
+            beta = attached(self.round_added_mass, *near)
+            least_slope, most_slope = np.where(near[0] < near[1], (a_slope, b_slope), (b_slope, a_slope))
+            # square d(s^2)/dX with d(s^2)/dX = (least' - s^2 most') / most
+            change = (1.0 - self.round_added_mass) * (least_slope - s_squared * most_slope)
+            slopes2 = slopes2 * beta - (near[1] if swapped else near[0]) / most * change
+            slopes3 = slopes3 * beta - (near[0] if swapped else near[1]) / most * change
+        else:
+            beta = np.ones(len(x))
+        return factor(x) * slopes2 + factor.slope(x) * along2[0] * beta, slopes3
+
+    def _squares_behind(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """a^2 and b^2 [m^2] at `x` (n,) [m], or right behind the nose, whose ratio has a limit there."""
+        behind = np.maximum(x, 1e-9 * self.length)
+        return self._half_height.square(behind), self._half_width.square(behind)
 
     def mass_per_length(self, x: ArrayLike, density: float | None = None) -> np.ndarray:
         """m(X) [kg/m] at `x` [m]; `density` [kg/m^3]: of a scene, in place of a homogeneous body's own."""
@@ -213,9 +325,9 @@ class Body:
         shape = self.half_axes
         if len(self.breaks):
             shape = {"x": shape["half_width"][0], **{name: values[1] for name, values in shape.items()}}
-        shape |= {name: getattr(self, name) for name in ("length", "kinks", "nose")}
+        shape |= {name: getattr(self, name) for name in ("length", "kinks", "nose", "blunt_nose")}
         shape |= {"density": self._density if self._mass is None else None}
-        own = {name: getattr(self, name) for name in (*NUMBERS[1:], "name")}
+        own = {name: getattr(self, name) for name in (*NUMBERS[1:], "link_length", "appendages", "name")}
         masses = {"mass_per_length": self._mass and self._mass.given, "centre_of_mass_offset": self._offset.given}
         return shape | own | masses
 
@@ -277,6 +389,15 @@ class Body:
         )
 
     @staticmethod
+    def of_links(
+        length: float, number: int, half_width: float, half_height: float, *, joints: Any, **others: Any
+    ) -> "Body":
+        """A body of `number` links of one section, with the hull numbers of such a robot: `body_of_links`."""
+        from eel_model.body.links import body_of_links
+
+        return body_of_links(length, number, half_width, half_height, joints=joints, **others)
+
+    @staticmethod
     def named(name: str) -> "Body":
         """The body called `name`: boyer2010 or kern2006. `ValueError` for another name."""
         if name not in NAMED:
@@ -325,9 +446,23 @@ class Body:
             )
         return bool(h.any())
 
-    def _checked_nose(self, nose: ArrayLike | None) -> tuple[float, float, float]:
+    def _panel_ends(self, bounds: tuple[float, ...]) -> tuple[float, ...]:
+        """The kinks; where appendages lie; and where sections by shape change from high to wide."""
+        ends = list(bounds[1:])
+        by_shape = self.round_added_mass != 1.0 or None in self._profiles.values()
+        for place in (
+            *(each.x for each in self.appendages if any(each.drag)),
+            *(crossings(self, bounds) if by_shape else ()),
+        ):
+            if min(abs(place - end) for end in (0.0, *ends)) > APART * self.length:
+                ends.append(place)
+        return tuple(sorted(ends))
+
+    def _checked_nose(self, nose: ArrayLike | None, end: float) -> tuple[float, float, float]:
+        if nose is None and self.blunt_nose:
+            a, b = float(self.half_height(0.0)), float(self.half_width(0.0))
+            return a, b, float(np.sqrt(a * b))
         if nose is None:
-            end = self.panel_ends[0]
             return float(self.half_height(end)), float(self.half_width(end)), float(end)
         values = checked_row("body nose", nose, None)
         if values.shape != (3,) or np.any(values < 0.0):
@@ -343,11 +478,6 @@ def checked_body(body: Any) -> Body:
             "such as Body.kern2006()"
         )
     return Body.boyer2010() if body is None else checked_instance("body", body, Body)
-
-
-def body_of(text: str) -> Body:
-    """The body called `text`, or in that file. `ValueError` if there is none; `OSError`: not readable."""
-    return Body.from_file(text) if Path(text).suffix else Body.named(text)
 
 
 def _named_shape(name: str, length: float) -> dict[str, Any]:

@@ -53,13 +53,18 @@ class PolynomialAlong:
         return piecewise(series, self.bounds, np.asarray(x, dtype=float))
 
 
+@dataclass(frozen=True)
 class PolynomialHalfAxis(PolynomialAlong):
-    """A half-axis whose square is such a polynomial, with coefficients [m^2]."""
+    """A half-axis whose square is such a polynomial, with coefficients [m^2]; 0 at the nose unless that is `blunt`."""
+
+    blunt: bool = False
 
     def __call__(self, x: ArrayLike) -> np.ndarray:
-        """[m] at `x` [m]; 0 at the nose."""
+        """[m] at `x` [m]."""
         x = np.asarray(x, dtype=float)
         square = super().__call__(x)
+        if self.blunt:
+            return np.asarray(np.sqrt(np.maximum(square, 0.0)))
         square -= np.where(x <= self.bounds[1], super().__call__(0.0), 0.0)
         least = np.finfo(float).tiny  # no section inside is singular by round-off
         return np.asarray(np.sqrt(np.where(x > 0.0, np.maximum(square, least), 0.0)))
@@ -98,9 +103,11 @@ FUNCTIONS = {
 }
 
 
-def polynomials_through(half_axis: Callable[[np.ndarray], np.ndarray], bounds: tuple[float, ...]) -> PolynomialHalfAxis:
+def polynomials_through(
+    half_axis: Callable[[np.ndarray], np.ndarray], bounds: tuple[float, ...], blunt: bool = False
+) -> PolynomialHalfAxis:
     """Polynomials through the square of a `half_axis` (function of X [m] that returns m) between the `bounds` [m]."""
-    return PolynomialHalfAxis(tuple(bounds), coefficients_of(lambda x: half_axis(x) ** 2, bounds))
+    return PolynomialHalfAxis(tuple(bounds), coefficients_of(lambda x: half_axis(x) ** 2, bounds), blunt)
 
 
 def coefficients_of(

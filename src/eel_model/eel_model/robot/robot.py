@@ -144,16 +144,19 @@ class Robot:
         return Robot(READY[name](), name=name)
 
     @staticmethod
-    def from_file(path: str | os.PathLike[str], servo: Servo | None = None) -> "Robot":
+    def from_file(path: str | os.PathLike[str], servo: Servo | None = None, joints: Any = None) -> "Robot":
         """The robot in a .yaml file (`robot_file` has the keys) or in a URDF, with its body.
 
-        servo: gains of the motors of a URDF, which does not hold them. `ValueError` in one line names file and place.
+        servo: gains of the motors of a URDF, which does not hold them. joints: of a URDF, the drag of its links:
+        "flush", or a coefficient from 0 to 0.87 (`body_of_links`). `ValueError` in one line names file and place.
         """
         if not isinstance(path, (str, os.PathLike)):
             raise ValueError(f"robot file must be a path, got {shown(path)}")
         with reading(f"robot file {shown(str(path))}"):
             if Path(path).suffix in (".urdf", ".xml"):
-                return Robot(**robot_in_urdf(path, servo))
+                return Robot(**robot_in_urdf(path, servo, joints))
+            if joints is not None:
+                raise ValueError(f"joints belong to a URDF, got {shown(joints)}")
             if Path(path).suffix in (".yaml", ".yml"):
                 return Robot(**robot_in_yaml(path))
         raise ValueError(f"robot file must be .yaml, .yml, .urdf or .xml, got {shown(str(path))}")
@@ -170,10 +173,18 @@ SORTS: dict[str, Callable[[Any], bool]] = {  # kinds of parts by name
 
 
 def robot_of(text: str) -> Robot | None:
-    """The robot called `text`, or in that file; None for an empty text. `ValueError` if there is none."""
+    """The robot called `text`, or in that file; None for an empty text. `ValueError` if there is none.
+
+    A URDF needs the drag of its links, such as "chain.urdf joints=flush", or a coefficient from 0 to 0.87.
+    """
     if not text:
         return None
-    return Robot.from_file(text) if Path(text).suffix else Robot.named(text)
+    if Path(text).suffix and Path(text).is_file():
+        return Robot.from_file(text)
+    file, joints, value = text.rpartition(" joints=")
+    if not joints:
+        return Robot.from_file(text) if Path(text).suffix else Robot.named(text)
+    return Robot.from_file(file.strip(), joints=value)
 
 
 def checked_robot(robot: Any) -> Robot | None:

@@ -4,8 +4,9 @@
 Links become the body's sections, joints its joints. In the zero configuration the joints must lie on a line; the
 body's E1 runs along it from the nose to the tail, E3 is the base link's z. A link's half-axes are half of the height
 and width of its collision shapes (or its visual ones), a mesh's follow from its moments of inertia. They change
-smoothly from the middle of one link to that of the next, and a rounded nose is put ahead. The body is homogeneous: its
-density is such that the mass is that of all links.
+smoothly from the middle of one link to that of the next; both ends are blunt. The hull numbers are those of a body of
+links (`body_of_links`), whose `joints` a URDF does not tell. The body is homogeneous: its density is such that the mass
+is that of all links.
 
 Motors have the `servo`'s gains, with the joint's own effort and velocity as limits, and the reduction of a
 transmission. Angles keep the URDF's sign. What is not kept is listed, in the robot's `notes`.
@@ -22,6 +23,7 @@ from eel_base.files.xml_tree import Element, read_xml
 from eel_base.wording import shown
 
 from eel_model.body.body import Body
+from eel_model.body.links import BASE, OF_LINKS, joint_drag_of
 from eel_model.robot.actuators import Servo
 from eel_model.robot.joint import LONGEST_NAME, Joint
 from eel_model.robot.urdf_chain import ChainJoint, UrdfChain
@@ -34,25 +36,25 @@ MASS_OFF = 0.05  # of a link's mass: a greater difference is noted
 UNUSED = ("gazebo", "ros2_control", "safety_controller", "calibration")
 
 
-def robot_in_urdf(path: str | os.PathLike[str], servo: Servo | None = None) -> dict[str, Any]:
+def robot_in_urdf(path: str | os.PathLike[str], servo: Servo | None = None, joints: Any = None) -> dict[str, Any]:
     """The arguments of the `Robot`, with its body, in a URDF. `ValueError` names line and element.
 
-    servo: of every joint; None: a `Servo()`.
+    servo: of every joint; None: a `Servo()`. joints: "flush", or the drag coefficient of a link by itself.
     """
-    found = UrdfReader(read_xml(path), Servo() if servo is None else servo).arguments()
+    found = UrdfReader(read_xml(path), Servo() if servo is None else servo, joints).arguments()
     return found | {"name": found["name"] or Path(path).stem}
 
 
 class UrdfReader:
     """Makes the arguments of a `Robot` of the root element of a URDF."""
 
-    def __init__(self, root: Element, servo: Servo) -> None:
+    def __init__(self, root: Element, servo: Servo, joints: Any) -> None:
         if root.tag != "robot":
             fail(root, "robot", f"must be the root, got {shown(root.tag)}")
         if any("xacro:" in each.tag for each in root.children):
             fail(root, "robot", "holds xacro: expand it with xacro first")
         chain = UrdfChain(root)
-        self._root, self._servo, self._notes = root, servo, chain.notes
+        self._root, self._servo, self._joints_drag, self._notes = root, servo, joints, chain.notes
         along = _direction(chain)
         self._from_tail = bool(along[0] > ALIGNED)
         """Whether the base link is the tail: the chain leads along its x."""
@@ -92,15 +94,15 @@ class UrdfReader:
         for link, (width, height) in zip(self._links, half, strict=True):
             if not link.corners:
                 self._notes.append(f"link {shown(link.name)}: half-axes {width:.3g}, {height:.3g} m from its inertia")
-        cap = min(0.5 * places[0], float(np.max(half[0])))
-        rounded = np.array([0.0, 1.0 / 9.0, 4.0 / 9.0, 1.0]) * cap
-        behind = middles > cap * 1.01
-        x = np.concatenate((rounded, middles[behind], [end]))
-        width, height = (
-            np.concatenate((column[0] * np.sqrt(rounded / cap), column[behind], column[-1:])) for column in half.T
-        )
+        x = np.concatenate(([0.0], middles, [end]))
+        width, height = (np.concatenate((column[:1], column, column[-1:])) for column in half.T)
         name = self._root.attributes.get("name", "urdf")
-        body = Body(x=x, half_width=width, half_height=height, kinks=(cap,), name=name)
+        hull = OF_LINKS | {
+            "joint_drag": joint_drag_of(self._joints_drag),
+            "link_length": end / len(self._links),
+            "base_drag": BASE,
+        }
+        body = Body(x=x, half_width=width, half_height=height, blunt_nose=True, name=name, **hull)
         mass = sum(link.mass for link in self._links)
         if not mass > 0.0:
             self._notes.append(f"no link has a mass: the density is that of water, {body.density:g} kg/m^3")

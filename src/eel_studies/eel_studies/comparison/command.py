@@ -19,7 +19,8 @@ from eel_base.files.output_file import written_as
 from eel_dynamics.analysis.measures import MEASURES, measures_of
 from eel_dynamics.commands.options import add_options, scene_of, set_numbers
 from eel_dynamics.runs.settled_duration import until_settled
-from eel_model.body.body import Body, body_of
+from eel_model.body.body import Body
+from eel_model.body.text import body_of
 
 from eel_dynamics import Run, Scene, simulate
 from eel_gaits import gait

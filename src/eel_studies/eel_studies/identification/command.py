@@ -21,7 +21,7 @@ from eel_base.command.progress import Progress
 from eel_base.wording import shown
 from eel_dynamics.commands.options import add_options, add_repeated, scene_of, set_numbers
 from eel_dynamics.runs.storage.tables import write_columns
-from eel_model.body.body import body_of
+from eel_model.body.text import body_of
 from eel_model.robot.robot import robot_of
 
 from eel_dynamics import Scene

@@ -13,7 +13,7 @@ from eel_base.quantity import checked_instance, checked_row, number, positive
 from eel_base.quantity import numbers as real_numbers
 from eel_base.wording import shown
 
-FEWEST_SAMPLES = 8  # of a path
+FEWEST_SAMPLES = 4  # of a path: a coast may have few
 
 
 @dataclass(frozen=True, eq=False)

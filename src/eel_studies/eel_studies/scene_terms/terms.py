@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 from eel_dynamics.runs.swim import AT_REST, Swim
+from eel_model.body.hull import BY_SHAPE, EDGE_ON, PLATE
 
 from eel_dynamics import Gust, Joint, Robot, Uniform
 from eel_gaits import Law
@@ -19,6 +20,20 @@ Off = Callable[[Swim], Swim]  # a swim -> the same without the term
 
 def _scene(**fields: Any) -> Off:
     return lambda swim: swim._replace(scene=replace(swim.scene, **fields))
+
+
+def _body(**fields: Any) -> Off:
+    def off(swim: Swim) -> Swim:
+        changed = swim.body.changed(**fields)
+        return swim if changed == swim.body else swim._replace(body=changed)
+
+    return off
+
+
+def _as_plates(swim: Swim) -> Swim:
+    """The `swim` of a body whose cross flow by shape is that of plates."""
+    plates = {"lateral_drag": PLATE, "vertical_drag": EDGE_ON}
+    return _body(**{name: value for name, value in plates.items() if getattr(swim.body, name) is BY_SHAPE})(swim)
 
 
 def _joints(**fields: Any) -> Off:
@@ -70,6 +85,11 @@ TERMS: dict[str, Off] = {
     "friction": _scene(friction="none"),
     "turbulence of the friction": _scene(friction="laminar"),
     "nose": _scene(nose=False),
+    "cross flow by shape": _as_plates,
+    "separation of the added mass": _body(round_added_mass=1.0),
+    "drag of the links": _body(joint_drag=0.0),
+    "drag of the base": _body(base_drag=0.0),
+    "appendages": _body(appendages=()),
     "righting moment": _scene(metacentric_height=0.0),
     "weight": _scene(weight=False),
     "mass off the axis": _on_the_axis,
@@ -86,6 +106,7 @@ TERMS: dict[str, Off] = {
     "higher modes": _one_mode,
 }
 WITHIN = {  # what goes with a term
+    "cross-flow drag": ("cross flow by shape",),
     "friction": ("turbulence of the friction",),
     "inertia of the water": ("wake", "momentum of the added mass", "gradient of the flow", "added mass of the fins"),
     "flow": ("gradient of the flow",),
@@ -117,6 +138,11 @@ def _physics(swim: Swim) -> tuple[Any, ...]:
         scene = replace(scene, flow_gradient=True)
     if not scene.resistive:
         scene = replace(scene, cross_flow=False, friction="none")
+        swim = _body(joint_drag=0.0, base_drag=0.0, appendages=())(swim)
+    if not (scene.resistive and scene.cross_flow):
+        swim = _body(lateral_drag=PLATE, vertical_drag=EDGE_ON)(swim)
+    if not scene.reactive:
+        swim = _body(round_added_mass=1.0)(swim)
     if not (scene.reactive or scene.resistive):
         scene = replace(scene, nose=False)
     if scene.planar:

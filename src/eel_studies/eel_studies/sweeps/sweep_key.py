@@ -12,7 +12,7 @@ from eel_dynamics.runs.storage.netcdf import software
 from eel_dynamics.runs.storage.plain import plain_of, plain_robot
 from eel_dynamics.runs.storage.tables import needed
 from eel_dynamics.runs.swim import Swim
-from eel_model.body.body import DRAGS, MASSES, Body
+from eel_model.body.body import DRAGS, MASSES, PROFILES, Body
 from eel_model.body.shapes import NamedHalfAxis
 from eel_model.flow.flow import Flow, parts_of
 from eel_model.flow.functions import FlowField
@@ -95,10 +95,13 @@ def _content_of_body(body: Body) -> bytes:
     numbers = body.length, body.density, *body.nose, body.nose_added_mass, body.nose_drag
     drags = [getattr(body, name) for name in DRAGS]
     content = np.concatenate((body.half_width(x), body.half_height(x), body.kinks, numbers, drags)).tobytes()
+    content += repr((body.blunt_nose, body.link_length, body.appendages)).encode()
     masses = {name: body.arguments[name] for name in MASSES if np.any(body.arguments[name])}
     for name in masses:
         content += np.asarray(getattr(body, name)(x)).tobytes()
-    of_functions = {name: given for name, given in masses.items() if callable(given)}
+    content += np.concatenate((*body.cross_flow(x), *body.added_mass_factors(x))).tobytes()
+    given_along = masses | {name: body.arguments[name] for name in PROFILES}
+    of_functions = {name: given for name, given in given_along.items() if callable(given)}
     for name, given in (body.half_axes | of_functions).items():
         content += given.tobytes() if isinstance(given, np.ndarray) else _content_of_function(f"body {name}", given)
     return content

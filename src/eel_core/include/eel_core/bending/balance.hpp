@@ -242,6 +242,18 @@ class BentBody {
             mode_load_[m] =
                 columns.work_of(m, load_) + dot(own.omega.node(tail), torque) + dot(own.velocity.node(tail), force);
         }
+        if (!work.appendages.empty()) add_appendages();
+    }
+
+    EEL_CORE_APART void add_appendages()
+    {
+        for (std::size_t i = 0; i < swimmer_->appendages.size(); ++i) {
+            const std::size_t node = swimmer_->appendages[i].node;
+            if (node == Appendage::nose) continue;  // ahead of all modes
+            const AppendageMotion<M>& now = work.appendages[i];
+            for (std::size_t m = 0; m < modes_->modes; ++m)
+                mode_load_[m] += columns.work_at(node, m, {cross(now.arm, now.force), now.force});
+        }
     }
 
     // What the flow and the fins add to the rates of the modes' momenta.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Drag of the water along the body, section 7.2.1:
 //
-//     n = -1/2 rho_f (k1 V1|V1|, k2 V2|V2|, k3 V3|V3|)        c1 = -1/2 rho_f k4 Omega1|Omega1|
+//     n = -1/2 rho_f (k1 V1|V1| + k5 |V| V1, k2 V2|V2|, k3 V3|V3|)        c1 = -1/2 rho_f k4 Omega1|Omega1|
 //
-// k1 is a friction law: model/friction.hpp. Another law of cross flow (k2, k3) or of roll (k4) is a change of
+// k1 is a friction law: model/friction.hpp. k5 is the drag of a robot's links, each a blunt body in oblique flow; ours,
+// not the paper's. |V| V1 has no kink where a component of V changes its sign alone, so it goes with the laminar part
+// of the friction. Another law of cross flow (k2, k3) or of roll (k4) is a change of
 // `resistive_load` here, of its kinks (drag_kinks.hpp), and of `sections_of` in
 // eel_model/section_data.py. Where a speed changes its sign within a panel, the load has a kink there; `drag_kinks`
 // integrates it exactly. The nose's drag stands in tail_and_nose.hpp, that of fins in fins.hpp; march/missed.hpp knows
@@ -14,10 +16,18 @@
 
 namespace eel_core {
 
+// Friction of sections with the drag of their links, by their velocity v through the water, in their axes.
+inline AxialFriction axial_drag(const Swimmer& swimmer, const DragSection<Lanes>& section, const auto& v)
+{
+    AxialFriction friction = axial_friction(section, swimmer.friction, v);
+    if (swimmer.segmented) friction.laminar += section.segment * sqrt(dot(v, v));
+    return friction;
+}
+
 // Signs (+-1), or signs times quadrature weights [m].
 template <Number T>
 struct LoadSigns {
-    T laminar;  // 1: the friction by the laminar law always opposes V1
+    T laminar;  // 1: the friction by the laminar law, and the drag of the links, always oppose V1
     T excess;   // part of the turbulent law in the friction
     T lateral, vertical, roll;
 
@@ -93,8 +103,7 @@ void set_load_weights(const Swimmer& swimmer, Workspace<M>& work)
 {
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
         const Lanes weight = swimmer.grid.weight[k];
-        const AxialFriction friction =
-            axial_friction(swimmer.sections.drag(k), swimmer.friction, speeds_from(work, width * k));
+        const AxialFriction friction = axial_drag(swimmer, swimmer.sections.drag(k), speeds_from(work, width * k));
         work.friction_laminar.store(k, friction.laminar);
         work.friction_excess.store(k, friction.excess);
         work.turbulent_share.store(k, friction.turbulent_share);

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "eel_core/loads/moving_water.hpp"
+#include "eel_core/loads/point_wrenches.hpp"
 
 namespace eel_core {
 
@@ -35,7 +36,7 @@ inline Vector3<double> steady_force(const Fin& fin, const Vector3<double>& norma
 
 inline Wrench<Space, double> at_fin(const FinMotion& fin, const Vector3<double>& force)
 {
-    return {cross(fin.position, force), force};
+    return force_at<Space>(fin.position, force);
 }
 
 // Places and angles of the fins in a configured body, in state y; with the flow there.
@@ -162,15 +163,9 @@ inline Wrench<Space, Lanes> fins_ahead(const Swimmer& swimmer, const Workspace<S
                                        std::size_t Fin::* behind,
                                        Vector3<double> FinMotion::* vector = &FinMotion::whole)
 {
-    Wrench<Space, Lanes> sum{};
-    for (std::size_t i = 0; i < swimmer.fins.size(); ++i) {
-        const std::size_t first = swimmer.fins[i].*behind, start = width * block;
-        const Lanes here = select(Mask::below(first > start ? first - start : 0), 0.0, 1.0);
-        const Wrench<Space, double> wrench = at_fin(work.fins[i], work.fins[i].*vector);
-        sum += {{here * wrench.angular.x, here * wrench.angular.y, here * wrench.angular.z},
-                {here * wrench.linear.x, here * wrench.linear.y, here * wrench.linear.z}};
-    }
-    return sum;
+    return sum_ahead(
+        swimmer.fins.size(), block, [&](std::size_t i) { return swimmer.fins[i].*behind; },
+        [&](std::size_t i) { return at_fin(work.fins[i], work.fins[i].*vector); });
 }
 
 // Adds what the acceleration of the head is of the forces, where these are those without.

@@ -20,23 +20,24 @@ class Instant {
         return work_.inertia;
     }
 
-    // Wrenches of wake and drag on the body for a given twist of the head, in still water.
+    // Wrenches of wake and drag, appendages included, on the body for a given twist of the head, in still water.
     std::array<Wrench<Space, double>, 2> loads(const LawOnGrid& law, double time, const Twist<Space, double>& twist)
     {
         move(law, time, twist);
-        return {work_.tail, work_.drag};
+        return {work_.tail, work_.drag + work_.appendage_load};
     }
 
-    // Powers of the axial friction, the lateral and vertical drag, and the roll drag, for a given twist of the head in
-    // the state y, whose momentum is not read. `modes`: of the last rows of the law, their factors, then the rates.
-    std::array<double, 4> drag_powers(const LawOnGrid& law, double time, const Twist<Space, double>& twist,
+    // Powers of the axial friction, the lateral and vertical drag, the roll drag, the drag of the links, and that of
+    // the base of the tail, for a given twist of the head in the state y, whose momentum is not read. `modes`: of the
+    // last rows of the law, their factors, then the rates.
+    std::array<double, 6> drag_powers(const LawOnGrid& law, double time, const Twist<Space, double>& twist,
                                       const Water& water, const State& y, std::span<const double> modes)
     {
         const std::size_t rows = law.tables->rows(), count = modes.size() / 2;
         work_.factor.resize(rows);
         for (std::size_t m = 0; m < count; ++m) work_.factor[rows - count + m] = {modes[m], modes[count + m], 0.0};
         move(law, time, twist, water, y);
-        std::array<Lanes, 4> sum;
+        std::array<Lanes, 5> sum;
         sum.fill(Lanes(0.0));
         for (std::size_t k = 0; swimmer_->resistive && k < swimmer_->grid.blocks; ++k) {
             auto v = speeds_from(work_, width * k);
@@ -47,12 +48,19 @@ class Instant {
                 v += frame.local(work_.flow[k].u);
                 turning += 0.5 * work_.flow[k].g.curl_along(frame.t1());
             }
+            if (swimmer_->segmented) {
+                const auto w = speeds_from(work_, width * k);
+                const Lanes weight = swimmer_->grid.weight[k] * swimmer_->sections.drag(k).segment;
+                sum[4] -= weight * sqrt(dot(w, w)) * w.x * v.x;
+            }
             sum[0] += load.linear.x * v.x;
             sum[1] += load.linear.y * v.y;
             sum[2] += load.linear.z * v.z;
             sum[3] += roll_torque(load) * turning;
         }
-        return {total(sum[0]), total(sum[1]), total(sum[2]), total(sum[3])};
+        const double links = total(sum[4]),
+                     base = work_.appendages.empty() ? 0.0 : appendage_powers(*swimmer_, work_)[1];
+        return {total(sum[0]) - links, total(sum[1]), total(sum[2]), total(sum[3]), links, base};
     }
 
     // Rate of the momentum along the body for a given twist and acceleration of the head.

@@ -34,7 +34,8 @@ class MissedWrench {
         const std::size_t used = swimmer.resistive ? Part::count : Part::drag2;
         for (std::size_t part = 0; part < used; ++part)
             if ((part == Part::displaced && !work.flowing) || (part == Part::net && swimmer.gravity == 0.0) ||
-                (part == Part::lever && swimmer.righting == 0.0 && !swimmer.offset))
+                (part == Part::lever && swimmer.righting == 0.0 && !swimmer.offset) ||
+                (part == Part::segment && !swimmer.segmented))
                 continue;
             else if ((Part::inertia1 <= part && part < Part::displaced) || part == Part::drag_roll)  // without a force
                 swimmer.missed[part].add<Vector3<double>>(unit_[part], factor_[part], integral);
@@ -67,7 +68,7 @@ class MissedWrench {
     void set_drag_units(const Swimmer& swimmer, const Workspace<Space>& work)
     {
         for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-            const DragSection<Lanes> rough{0.0, 0.0, 0.0, 1.0, 1.0, swimmer.sections.drag(k).by_critical_speed};
+            const DragSection<Lanes> rough{0.0, 0.0, 0.0, 1.0, 1.0, swimmer.sections.drag(k).by_critical_speed, 0.0};
             const auto v = speeds_from(work, width * k);
             const AxialFriction friction = axial_friction(rough, swimmer.friction, v);
             const Lanes turned = jumps(swimmer.friction) ? Lanes(1.0) : friction.turbulent_share;
@@ -78,9 +79,10 @@ class MissedWrench {
                                                  roll_from(work, width * k));
                 unit_[part].store(k, -about_head<Space>(work.frame[k], work.position[k], load));
             };
-            store(Part::drag2, {1.0, 0.0, 0.0, 0.0, 0.0, 0.0}, 0.0);
-            store(Part::drag3, {0.0, 1.0, 0.0, 0.0, 0.0, 0.0}, 0.0);
-            store(Part::drag_roll, {0.0, 0.0, 1.0, 0.0, 0.0, 0.0}, 0.0);
+            store(Part::drag2, {1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, 0.0);
+            store(Part::drag3, {0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0}, 0.0);
+            store(Part::drag_roll, {0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0}, 0.0);
+            if (swimmer.segmented) store(Part::segment, {}, sqrt(dot(v, v)));
             if (swimmer.friction == Friction::taylor) {  // a root of a sum of squares: its derivatives by both parts
                 const DragSection<Lanes> own = swimmer.sections.drag(k);
                 const Lanes all = axial_friction(own, swimmer.friction, v).laminar + 1e-300;
@@ -122,6 +124,7 @@ class MissedWrench {
             const Vector3<Lanes> v = there.local(velocity[k]);
             const Lanes share = axial_friction(swimmer.at_station.drag(k), swimmer.friction, v).turbulent_share;
             for (std::size_t part = 0; part < Part::drag2; ++part) factor_[part].store(k, 1.0);
+            factor_[Part::segment].store(k, 1.0);
             factor_[Part::drag2].store(k, with_sign_of(1.0, v.y));
             factor_[Part::drag3].store(k, with_sign_of(1.0, v.z));
             factor_[Part::drag_roll].store(k, with_sign_of(1.0, dot(there.axis1, omega[k])));

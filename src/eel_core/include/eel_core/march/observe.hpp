@@ -214,6 +214,7 @@ class Observer {
             Wrench<Space, Lanes> integral = here.integral[k];
             if (!work.fins.empty())  // those ahead of a station, and at it, are no part of what lies behind
                 integral = integral - fins_ahead(swimmer_, work, k, &Fin::station_behind);
+            if (!work.appendages.empty()) integral = integral - appendages_ahead(swimmer_, work, k);
             const auto wrench =
                 internal_wrench<Space>(swimmer_, work, integral, frame, here.position[k], swimmer_.at_station[k],
                                        frame.local(through_water(work, here)[k]), frame.local(here.omega[k]));
@@ -272,16 +273,18 @@ class Observer {
             Vector3<Lanes> resistive{};
             if (swimmer_.resistive) {
                 const DragSection<Lanes> drag = swimmer_.at_station.drag(k);
-                const AxialFriction friction = axial_friction(drag, swimmer_.friction, v);
+                const AxialFriction friction = axial_drag(swimmer_, drag, v);
                 const auto sign = local_signs<Space>(friction.turbulent_share, v, turning);
                 resistive = resistive_load(drag, friction.laminar, friction.excess, sign, v, turning).linear;
             }
             show(Profiles::resistive_force, k, resistive);
             show(Profiles::fluid_force, k, force + resistive);
         }
-        at(Profiles::tail_force)[0] = swimmer_.distributed_pressure ? 0.0 : -work.tail_energy;
-        at(Profiles::nose_force)[0] = work.nose_force;
         const auto tail = work.frame.node(swimmer_.grid.nodes - 1);
+        at(Profiles::tail_force)[0] = swimmer_.distributed_pressure ? 0.0 : -work.tail_energy;
+        for (std::size_t i = 0; i < swimmer_.appendages.size(); ++i)
+            if (swimmer_.appendages[i].of_body) at(Profiles::tail_force)[0] += tail.local(work.appendages[i].force).x;
+        at(Profiles::nose_force)[0] = work.nose_force;
         put(-tail.local(work.tail.linear), at(Profiles::wake_momentum_rate));
     }
 

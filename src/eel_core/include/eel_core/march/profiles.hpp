@@ -17,7 +17,7 @@ struct Profiles {
         head_acceleration,    // (T, 6) rad/s^2, m/s^2, true acceleration of the head, its axes
         center_of_mass,       // (T, 3) m, world
         energies,             // (T, 3) J, kinetic of body and of water, potential
-        powers,               // (T, 6) W, actuators, wake, nose, drag, flow, fins
+        powers,               // (T, 7) W, actuators, wake, nose, drag, flow, fins, appendages
         closure,              // (T, 2) N m, N: what is left of the internal wrench at the nose
         backbone,             // (T, M, 3) m, world
         section_orientation,  // (T, M, 4) x y z w, world from section
@@ -34,7 +34,7 @@ struct Profiles {
         fin_force,           // (T, F, 3) N, of the water on each fin, axes of its section
         quantities
     };
-    static constexpr std::size_t width_of[quantities] = {3, 4, 6, 6, 3, 3, 6, 2, 3, 4, 3, 3, 3, 3, 3, 3, 3, 3, 3, 1, 3};
+    static constexpr std::size_t width_of[quantities] = {3, 4, 6, 6, 3, 3, 7, 2, 3, 4, 3, 3, 3, 3, 3, 3, 3, 3, 3, 1, 3};
 
     std::size_t samples, stations, fins;
     bool wrench, load;

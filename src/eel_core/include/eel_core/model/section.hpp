@@ -85,7 +85,7 @@ struct Section {
     }
 };
 
-// Resistive coefficients of a section: n = -1/2 rho_f (k1 V1|V1|, k2 V2|V2|, k3 V3|V3|), c1 = -1/2 rho_f k4
+// Resistive coefficients of a section: n = -1/2 rho_f (k1 V1|V1| + k5 |V| V1, k2 V2|V2|, k3 V3|V3|), c1 = -1/2 rho_f k4
 // Omega1|Omega1|.
 template <Number T>
 struct DragSection {
@@ -93,9 +93,10 @@ struct DragSection {
     T drag_roll;           // [kg], 1/2 rho_f k4
     T laminar, turbulent;  // friction per V1: laminar |V1|^(1/2), turbulent (Re / 8e4)^(4/5), or Taylor's, |Vn|^(1/2)
     T by_critical_speed;   // [s/m], Re / 8e4 per |V1|
-    static constexpr std::tuple members{&DragSection::drag2,     &DragSection::drag3,
-                                        &DragSection::drag_roll, &DragSection::laminar,
-                                        &DragSection::turbulent, &DragSection::by_critical_speed};
+    T segment;             // [kg/m^2], 1/2 rho_f k5, of a robot's links
+    static constexpr std::tuple members{&DragSection::drag2,   &DragSection::drag3,     &DragSection::drag_roll,
+                                        &DragSection::laminar, &DragSection::turbulent, &DragSection::by_critical_speed,
+                                        &DragSection::segment};
 };
 
 // The sections at the nodes, or at the stations.

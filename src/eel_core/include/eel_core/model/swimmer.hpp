@@ -2,6 +2,7 @@
 // What a run never writes: body and water at the nodes and stations, and which physics is on.
 #pragma once
 
+#include "eel_core/model/appendage.hpp"
 #include "eel_core/model/fin.hpp"
 #include "eel_core/model/friction.hpp"
 #include "eel_core/model/grid.hpp"
@@ -18,7 +19,7 @@ struct SectionPart {
     // clang-format off
     enum : std::size_t {
         mass, added2, added3, lever, net, inertia1, inertia2, inertia3, displaced,
-        drag2, drag3, drag_roll, laminar, turbulent, count
+        drag2, drag3, drag_roll, laminar, turbulent, segment, count
     };
     // clang-format on
 };
@@ -28,6 +29,7 @@ struct Swimmer {
     Sections sections;
     Friction friction = Friction::printed;
     bool resistive = true;                // drag along the body
+    bool segmented = false;               // the links have a drag of their own, `DragSection::segment`
     std::size_t first_watched = lateral;  // from this `Speed` on, changes of sign are integrated exactly
     double wake = 1.0;                    // 0 where no water is swept past the sections
     double inertia_of_water = 1.0;        // 0 where the sections of the nodes have no water
@@ -42,6 +44,8 @@ struct Swimmer {
 
     std::vector<Fin> fins;         // in space alone
     std::vector<FinServo> servos;  // of the fins
+
+    std::vector<Appendage> appendages;  // and the base of a blunt tail
 
     bool weighs() const { return righting != 0.0 || gravity != 0.0; }
 

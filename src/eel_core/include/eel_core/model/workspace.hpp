@@ -45,7 +45,7 @@ struct Workspace {
         friction_laminar = friction_excess = turbulent_share = turbulent_weight = Row(n);
         for (Row& row : speed) row = Row(n);
         for (const Speed each : {lateral, vertical, roll}) load_weight[each] = Row(n);
-        fins.resize(swimmer.fins.size());
+        fins.resize(swimmer.fins.size()), appendages.resize(swimmer.appendages.size());
         if (!fins.empty()) fin_places = Field<Vector3<double>>(blocks_of(fins.size()));
     }
 
@@ -82,9 +82,13 @@ struct Workspace {
     std::array<double, state_space> servo_rate{};  // [rad/s], in their slots of the state
     Wrench<Space, double> fin_load{};              // what the fins add to the rate of the momentum
 
+    std::vector<AppendageMotion<M>> appendages;
+    Wrench<M, double> appendage_load{};  // their sum
+
     // Drag, in section axes:
     std::array<Row, speeds> speed;          // see `Speed`
-    Row friction_laminar, friction_excess;  // [kg/m/s], friction per V1 by the laminar law, and what turbulence adds
+    Row friction_laminar, friction_excess;  // [kg/m/s], friction per V1 by the laminar law, with the drag of the links;
+                                            // and what turbulence adds
     Row turbulent_share;                    // of the friction, 0 to 1
     Row turbulent_weight;                   // [m], integration weights of the excess
     std::array<Row, 4> load_weight;         // [m], of the other loads, with their signs; none for `axial`

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Works of actuators, wake, nose, drag, flow and fins along the way: integrals of their powers, by the Lobatto points
-// of each step.
+// Works of actuators, wake, nose, drag, flow, fins and appendages along the way: integrals of their powers, by the
+// Lobatto points of each step.
 #pragma once
 
 #include "eel_core/internal_wrench.hpp"
 
 namespace eel_core {
 
-using WorkDone = Powers;  // [J], of actuators, wake, nose, drag, flow and fins since the start
+using WorkDone = Powers;  // [J], of actuators, wake, nose, drag, flow, fins and appendages since the start
 
 // Lobatto's points, as fractions of the step.
 inline constexpr std::array<double, 4> lobatto{0.0, 0.276393202250021030, 0.723606797749978970, 1.0};

@@ -140,16 +140,16 @@ def _acceleration(time: np.ndarray, twist: np.ndarray) -> np.ndarray:
 
 
 def _energy(rows: dict[str, list[Any]], time: np.ndarray) -> EnergyLedger | None:
-    """The ledger. An older bag has no powers of flow and fins, and no works: they are those since its first sample."""
+    """The ledger. An older bag has fewer powers, or no works: they are those since its first sample."""
     if "energy" not in rows:
         return None
-    older = not hasattr(rows["energy"][0], "drag_work")
+    first = rows["energy"][0]
     ledger = dict.fromkeys(LATER_ENERGY_FIELDS, np.zeros_like(time)) | {
         name: np.array([getattr(each, name) for each in rows["energy"]])
         for name in ENERGY_FIELDS
-        if not (older and name in LATER_ENERGY_FIELDS)
+        if hasattr(first, name) or name not in LATER_ENERGY_FIELDS
     }
-    if older:
+    if not hasattr(first, "drag_work"):
         for part in WORKS:
             total = _spline(time, ledger[f"{part}_power"]).antiderivative()
             ledger[f"{part}_work"] = total(time) - total(time[0])

@@ -16,7 +16,9 @@ from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.body.body import MASSES, Body
+from eel_model.body.appendages import Appendage, plain_appendages
+from eel_model.body.body import MASSES, PROFILES, Body
+from eel_model.body.links import LinkHalfAxis
 from eel_model.body.shapes import (
     NamedHalfAxis,
     PolynomialAlong,
@@ -36,7 +38,7 @@ from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 HALF_AXES = ("half_width", "half_height")
-FUNCTIONS = {"named": NamedHalfAxis, "polynomial": PolynomialHalfAxis}
+FUNCTIONS = {"named": NamedHalfAxis, "polynomial": PolynomialHalfAxis, "links": LinkHalfAxis}
 ROWS, OF_ROWS = ("time", "x", "values"), ("name", "transition", "about")  # arrays of a `SampledLaw`; its other values
 OF_STOP = "time", "quantity", "value", "hint"  # arguments of `SimulationStopped`
 AS_EXACT = 1e-9  # of the body's length, by which a polynomial may miss a half-axis without a warning
@@ -83,15 +85,18 @@ def _plain_body(body: Body) -> dict[str, Any]:
             kind = next((kind for kind, each in FUNCTIONS.items() if type(value) is each), None)
             function = _polynomial(body, name) if kind is None else value
             plain[name] = {"kind": kind or "polynomial", **asdict(function)}
-        elif name in MASSES and callable(value):
-            plain[name] = asdict(PolynomialAlong(bounds, coefficients_of(getattr(body, name), bounds)))
+        elif name in (*MASSES, *PROFILES) and callable(value):
+            plain[name] = asdict(PolynomialAlong(bounds, coefficients_of(value, bounds)))
+        elif name == "appendages":
+            plain[name] = plain_appendages(value)
     return plain
 
 
 def body_of(plain: dict[str, Any]) -> Body:
     """The body that has become plain values."""
     arguments = dict(plain)
-    for name in (*HALF_AXES, *MASSES):
+    arguments["appendages"] = [Appendage(*row) for row in plain.get("appendages", ())]
+    for name in (*HALF_AXES, *MASSES, *PROFILES):
         if isinstance(given := plain.get(name), dict):
             numbers = {key: _tuples(value) for key, value in given.items() if key != "kind"}
             kind = FUNCTIONS[given["kind"]] if name in HALF_AXES else PolynomialAlong
@@ -160,7 +165,7 @@ def row_of(plain: Any, made: Callable[[Any], Any]) -> tuple[Any, ...]:
 
 
 def _polynomial(body: Body, name: str) -> PolynomialHalfAxis:
-    found = polynomials_through(getattr(body, name), (0.0, *body.panel_ends))
+    found = polynomials_through(getattr(body, name), (0.0, *body.panel_ends), body.blunt_nose)
     x = np.linspace(0.0, body.length, 1001)
     missed = float(np.max(np.abs(found(x) - getattr(body, name)(x))))
     if missed > AS_EXACT * body.length:

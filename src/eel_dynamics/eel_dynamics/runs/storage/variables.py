@@ -84,7 +84,7 @@ def arrays_of(
 ) -> dict[str, np.ndarray]:
     """The arrays of a run by their names in `VARIABLES`, but time and x. What was not asked for is left out.
 
-    out, works (T, 6) [J], start [J]: what was observed, the works since the start and the energy there. joints: the
+    out, works (T, 7) [J], start [J]: what was observed, the works since the start and the energy there. joints: the
     motion of a robot's. done: the first so many of the instants.
     """
     arrays = {name: array[:done] for name, array in out.arrays().items()}
@@ -111,7 +111,10 @@ def fields_of_arrays(arrays: dict[str, np.ndarray], robot: Any) -> dict[str, Any
     energy: EnergyLedger | None = None
     if ENERGY + "residual" in arrays:
         none = np.zeros_like(arrays[ENERGY + "residual"])
-        later = "flow_power", "flow_work", "fins_power", "fins_work", *OF_LEDGER
+        later = (
+            *(f"{part}_{what}" for part in ("flow", "fins", "appendages") for what in ("power", "work")),
+            *OF_LEDGER,
+        )
         absent = {name: none for name in later if ENERGY + name not in arrays}
         energy = EnergyLedger(**absent | {name: arrays[ENERGY + name] for name in LEDGER if name not in absent})
     if robot is not None:

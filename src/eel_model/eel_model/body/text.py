@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bodies as texts, for commands, scene files and nodes: a name, a file or links, and what differs from it.
+
+boyer2010
+fish.csv base_drag=0.2 appendages=arms.csv
+links length=1.62 number=9 half_width=0.05 half_height=0.055 joints=0.65 mass=7.2
+
+What may follow a name or file are the numbers of `Body`, joints (flush, or a number) with link_length, and appendages:
+a .csv file with the columns x, y, z, drag1, drag2, drag3 and law; what is left out is 0, and law axis.
+"""
+
+import csv
+import io
+import os
+import re
+from pathlib import Path
+from typing import Any
+
+from eel_base.files.input_file import InputFile, reading
+from eel_base.quantity import is_finite
+from eel_base.wording import did_you_mean, not_one_of, shown
+
+from eel_model.body.appendages import MOST_APPENDAGES, Appendage
+from eel_model.body.body import NAMED, NUMBERS, PROFILES, Body
+from eel_model.body.hull import BY_SHAPE
+from eel_model.body.links import body_of_links, joint_drag_of
+
+LINKS = "links"
+OF_LINKS = "length", "number", "half_width", "half_height", "joints", "nose", "tail", "mass"
+REQUIRED = OF_LINKS[:5]
+OTHERS = (*NUMBERS, "link_length", "joints", "appendages")
+LARGEST = 1_000_000  # bytes of a file of appendages
+COLUMNS = "x", "y", "z", "drag1", "drag2", "drag3", "law"
+
+
+def body_of(text: str) -> Body:
+    """The body of a `text`. `ValueError` names what does not fit; `OSError`: not readable."""
+    if text in NAMED or Path(text).is_file():
+        return _plain_body(text)
+    what, *fields = re.split(r"\s+(?=\w+=)", text.strip())
+    values: dict[str, Any] = {}
+    for each in fields:
+        name, _, value = each.partition("=")
+        known = (*OF_LINKS, *OTHERS) if what == LINKS else OTHERS
+        if name not in known or name in values:
+            raise ValueError(
+                f"body {shown(what)} must have NAME=VALUE of {', '.join(known)}, each once, got {shown(each)}"
+                f"{did_you_mean(name, known)}"
+            )
+        values[name] = _value(name, value)
+    if what != LINKS:
+        body = _plain_body(what)
+        return body.changed(**arguments_of(values), name=text) if values else body
+    for name in REQUIRED:
+        if name not in values:
+            raise ValueError(f"body links must have {name}, got {shown(text)}{_about(name)}")
+    if "joint_drag" in values:
+        raise ValueError(f"body links has joints in place of joint_drag, got {shown(text)}")
+    if "appendages" in values:
+        values["appendages"] = appendages_from_file(values["appendages"])
+    return body_of_links(**{"number": values.pop("number"), **values}, name=text)
+
+
+def arguments_of(values: dict[str, Any]) -> dict[str, Any]:
+    """Arguments of `Body` from these `values` by name: joints becomes joint_drag, and a file of appendages these."""
+    found = dict(values)
+    if "joints" in found:
+        found["joint_drag"] = joint_drag_of(found.pop("joints"))
+    if "appendages" in found:
+        found["appendages"] = appendages_from_file(found["appendages"])
+    return found
+
+
+def appendages_from_file(path: str | os.PathLike[str]) -> tuple[Appendage, ...]:
+    """The appendages of a .csv file, a row each. `ValueError` names line and column."""
+    with reading(f"appendages {shown(str(path))}"):
+        with InputFile(path, LARGEST) as file:
+            rows = csv.DictReader(io.StringIO(file.read().decode("utf-8-sig"), newline=""))
+        for name in rows.fieldnames or ():
+            if name not in COLUMNS:
+                raise ValueError(
+                    f"column {shown(name)}{did_you_mean(name, COLUMNS)} must be one of {', '.join(COLUMNS)}"
+                )
+        if "x" not in (rows.fieldnames or ()):
+            raise ValueError(f"it must have a column x, got {shown(','.join(rows.fieldnames or ()))}")
+        found: list[Appendage] = []
+        for line, row in enumerate(rows, 2):
+            if len(found) == MOST_APPENDAGES:
+                raise ValueError(f"it must have {MOST_APPENDAGES} rows at most")
+            try:
+                given = {name: value for name, value in row.items() if value not in (None, "")}
+                if None in row:
+                    raise ValueError("more cells than columns")
+                numbers = {name: _value(name, value) for name, value in given.items()}
+                found.append(Appendage(**numbers))
+            except (ValueError, TypeError, csv.Error) as error:
+                raise ValueError(f"line {line}: {error}") from None
+    return tuple(found)
+
+
+def _plain_body(text: str) -> Body:
+    if text in NAMED:
+        return Body.named(text)
+    if not Path(text).suffix:
+        raise ValueError(not_one_of("body", text, (*NAMED, f"{LINKS} with its numbers", "a file")))
+    return Body.from_file(text)
+
+
+def _value(name: str, text: str) -> Any:
+    """A number; or the words that some may be."""
+    if name in ("appendages", "law") or (name in PROFILES and text == BY_SHAPE):
+        return text
+    try:
+        value = float(text)
+    except ValueError:
+        if name in ("joints", "nose", "tail"):
+            return text
+        value = float("nan")
+    if not is_finite(value):
+        raise ValueError(f"body {name} must be a number, got {shown(text)}")
+    return value
+
+
+def _about(name: str) -> str:
+    return "" if name != "joints" else ": flush, or the drag coefficient of a link by itself, 0 to 0.87"
