@@ -2,7 +2,7 @@
 """`python evidence/robot_log.py`: swim by the log of a robot's joints, with bands.
 
 python evidence/robot_log.py log.csv --links 0.18x9 --section 0.055,0.05 --joint-drag 0.65 --mass 7.2
-python evidence/robot_log.py amphibot.csv --columns 8-13 --units deg --links 0.094x7 --section 0.0275,0.0165 --joint-drag 0
+python evidence/robot_log.py amphibot.csv --columns 8-13 --units deg --links 0.094x7 --section 0.03,0.02 --joint-drag 0
 python evidence/robot_log.py bag/ --topic joint_states --body robot.csv --links 0.2,0.1,0.1,0.2 --out path.png
 """
 

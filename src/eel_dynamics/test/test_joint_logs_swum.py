@@ -60,12 +60,13 @@ def test_friction_and_added_mass_by_factors_act_as_they_say():
     scene = Scene(planar=True, friction="laminar")
     still = Law(Term(amplitude=(0.0,), period=1.0))
     glide = {"scene": scene, "accuracy": 1e-3, "twist": (0.0, 0.0, 0.0, 0.5, 0.0, 0.0)}
+    bare = body.changed(nose_drag=0.0, base_drag=0.0)
     lost = [
-        0.5 - simulate(still, 0.2, body=body.changed(friction_factor=factor, nose_drag=0.0, base_drag=0.0), **glide).twist[-1, 3]
+        0.5 - simulate(still, 0.2, body=bare.changed(friction_factor=factor), **glide).twist[-1, 3]
         for factor in (1.0, 2.0)
     ]
     assert lost[1] == pytest.approx(2.0 * lost[0], rel=0.03)
-    high = replace(body.arguments["half_height"], size=np.sqrt(2.0) * HALF_HEIGHT)  # an ellipse of twice the added mass, at the same mass
+    high = replace(body.arguments["half_height"], size=np.sqrt(2.0) * HALF_HEIGHT)  # twice the added mass
     flat = body.changed(half_height=high, density=body.density / np.sqrt(2.0))
     dry = {"scene": Scene(planar=True, resistive=False, nose=False), "accuracy": 1e-4, "stations": 5}
     heavy = simulate(WAVE, 2.0, body=body.changed(lateral_added_mass=2.0), **dry)

@@ -196,8 +196,8 @@ def _law(options: argparse.Namespace, body: Body, beat: Beat | None, robot: Logg
     of_log = options.columns, options.topic, options.tail_first, options.links, options.section, options.mass
     if robot is None and (any(of_log) or options.joint_drag is not None or options.clock != 1.0):
         raise ValueError(
-            "--columns, --topic, --tail-first, --links, --section, --joint-drag, --clock and --mass belong to --joints, "
-            "which is not given"
+            "--columns, --topic, --tail-first, --links, --section, --joint-drag, --clock and --mass belong to "
+            "--joints, which is not given"
         )
     given = [name for name in ("midlines", "joints", "file", "sequence") if getattr(options, name) is not None]
     if not given:
