@@ -27,6 +27,7 @@ from eel_model.body.appendages import APART, Appendage, checked_appendages
 from eel_model.body.body_picture import lines_of_body, picture_of_body
 from eel_model.body.grid import Grid
 from eel_model.body.hull import BY_SHAPE, attached, cross_flow_by_shape, crossings, roundness_squared
+from eel_model.body.links import BLUNT, arguments_of_links
 from eel_model.body.moments import with_moments
 from eel_model.body.panels import panels_of
 from eel_model.body.shapes import KINKS, NamedHalfAxis
@@ -390,12 +391,28 @@ class Body:
 
     @staticmethod
     def of_links(
-        length: float, number: int, half_width: float, half_height: float, *, joints: Any, **others: Any
+        length: float,
+        number: int,
+        half_width: float,
+        half_height: float,
+        *,
+        joints: Any,
+        nose: Any = BLUNT,
+        tail: Any = BLUNT,
+        mass: float | None = None,
+        **others: Any,
     ) -> "Body":
-        """A body of `number` links of one section, with the hull numbers of such a robot: `body_of_links`."""
-        from eel_model.body.links import body_of_links
+        """A body of `number` links of one section, `length` [m] long in all, with the hull numbers of such a robot.
 
-        return body_of_links(length, number, half_width, half_height, joints=joints, **others)
+        half_width, half_height: along axes 2 and 3 [m]. joints: "flush", or the drag coefficient c_s of a link by
+        itself, 0 to 0.87; there is no default, as nothing but a test tells it (`eel identify`). nose: "blunt", or the
+        length [m] of a quarter ellipse. tail: "blunt", or the length [m] over which its width falls to an edge. mass:
+        [kg]; None: that of the water in its place. others: further arguments of `Body`, which take the place of its
+        own. `ValueError` names what does not fit.
+        """
+        own = arguments_of_links(length, number, half_width, half_height, joints, nose, tail)
+        body = Body(**own | others)
+        return body if mass is None else body.changed(density=positive("body mass", mass, "kg") / body.volume)
 
     @staticmethod
     def named(name: str) -> "Body":

@@ -11,11 +11,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import number, positive
+from eel_base.quantity import is_finite, number, positive
 from eel_base.wording import shown
 from numpy.typing import ArrayLike
 
-from eel_model.body.body import Body
 from eel_model.body.hull import BY_SHAPE, SEPARATED
 
 FLUSH, ALONE = "flush", 0.87  # joints between which no link drags by itself; c_s of blunt cylinders alone
@@ -56,39 +55,33 @@ def joint_drag_of(joints: Any) -> float:
         ) from None
 
 
-def body_of_links(
+def arguments_of_links(
     length: float,
     number: int,
     half_width: float,
     half_height: float,
-    *,
     joints: Any,
     nose: Any = BLUNT,
     tail: Any = BLUNT,
-    mass: float | None = None,
-    name: str = "links",
-    **others: Any,
-) -> Body:
-    """A body of `number` links of one section, `length` [m] long in all.
-
-    half_width, half_height: along axes 2 and 3 [m]. joints: "flush", or a number up to 0.87; there is no default, as
-    nothing but a test tells it (`eel identify`). nose: "blunt", or the length [m] of a quarter ellipse. tail: "blunt",
-    or the length [m] over which its width falls to an edge. mass: [kg]; None: that of the water in its place. others:
-    further arguments of `Body`. `ValueError` names what does not fit.
-    """
+) -> dict[str, Any]:
+    """The arguments of a `Body` of links, those of `Body.of_links`. `ValueError` names what does not fit."""
     length, half_width = positive("body length", length, "m"), positive("body half_width", half_width, "m")
     half_height = positive("body half_height", half_height, "m")
-    if isinstance(number, bool) or number != int(number) or not 1 <= number <= MOST_LINKS:
+    if not is_finite(number) or number != int(number) or not 1 <= number <= MOST_LINKS:
         raise ValueError(f"body number of links must be a whole number, 1 to {MOST_LINKS}, got {shown(number)}")
     cap, edge = (_end(what, given, length) for what, given in (("nose", nose), ("tail", tail)))
-    ends = {"blunt_nose": not cap, "base_drag": 0.0 if edge else BASE}
-    kinks = (*((cap,) if cap else ()), *((length - edge,) if edge else ()))
-    given = OF_LINKS | ends | {"joint_drag": joint_drag_of(joints), "link_length": length / number} | others
-    body = Body(
-        length=length, half_width=LinkHalfAxis(half_width, length, cap, edge),
-        half_height=LinkHalfAxis(half_height, length, cap), kinks=kinks, name=name, **given,
-    )  # fmt: skip
-    return body if mass is None else body.changed(density=positive("body mass", mass, "kg") / body.volume)
+    return {
+        "length": length,
+        "half_width": LinkHalfAxis(half_width, length, cap, edge),
+        "half_height": LinkHalfAxis(half_height, length, cap),
+        "kinks": (*((cap,) if cap else ()), *((length - edge,) if edge else ())),
+        "blunt_nose": not cap,
+        "base_drag": 0.0 if edge else BASE,
+        "joint_drag": joint_drag_of(joints),
+        "link_length": length / number,
+        "name": "links",
+        **OF_LINKS,
+    }
 
 
 def _end(what: str, given: Any, length: float) -> float:

@@ -23,7 +23,7 @@ from eel_base.wording import did_you_mean, not_one_of, shown
 from eel_model.body.appendages import MOST_APPENDAGES, Appendage
 from eel_model.body.body import NAMED, NUMBERS, PROFILES, Body
 from eel_model.body.hull import BY_SHAPE
-from eel_model.body.links import body_of_links, joint_drag_of
+from eel_model.body.links import joint_drag_of
 
 LINKS = "links"
 OF_LINKS = "length", "number", "half_width", "half_height", "joints", "nose", "tail", "mass"
@@ -58,7 +58,7 @@ def body_of(text: str) -> Body:
         raise ValueError(f"body links has joints in place of joint_drag, got {shown(text)}")
     if "appendages" in values:
         values["appendages"] = appendages_from_file(values["appendages"])
-    return body_of_links(**{"number": values.pop("number"), **values}, name=text)
+    return Body.of_links(**values, name=text)
 
 
 def arguments_of(values: dict[str, Any]) -> dict[str, Any]:

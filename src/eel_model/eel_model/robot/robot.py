@@ -148,7 +148,7 @@ class Robot:
         """The robot in a .yaml file (`robot_file` has the keys) or in a URDF, with its body.
 
         servo: gains of the motors of a URDF, which does not hold them. joints: of a URDF, the drag of its links:
-        "flush", or a coefficient from 0 to 0.87 (`body_of_links`). `ValueError` in one line names file and place.
+        "flush", or a coefficient from 0 to 0.87 (`Body.of_links`). `ValueError` in one line names file and place.
         """
         if not isinstance(path, (str, os.PathLike)):
             raise ValueError(f"robot file must be a path, got {shown(path)}")

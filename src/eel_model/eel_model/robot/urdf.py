@@ -5,7 +5,7 @@ Links become the body's sections, joints its joints. In the zero configuration t
 body's E1 runs along it from the nose to the tail, E3 is the base link's z. A link's half-axes are half of the height
 and width of its collision shapes (or its visual ones), a mesh's follow from its moments of inertia. They change
 smoothly from the middle of one link to that of the next; both ends are blunt. The hull numbers are those of a body of
-links (`body_of_links`), whose `joints` a URDF does not tell. The body is homogeneous: its density is such that the mass
+links (`Body.of_links`), whose `joints` a URDF does not tell. The body is homogeneous: its density is such that the mass
 is that of all links.
 
 Motors have the `servo`'s gains, with the joint's own effort and velocity as limits, and the reduction of a
