@@ -4,6 +4,7 @@
 import array
 import copy
 import importlib
+import itertools
 import math
 import re
 import sys
@@ -124,6 +125,22 @@ def stamped(message):
         stamp = other.clock if hasattr(other, "clock") else other.header.stamp
         stamp.sec, stamp.nanosec = seconds, nanoseconds
         yield other
+
+
+def for_names(kind: type, known: tuple[str, ...]):
+    """Messages of the type for names that a node knows, with each extreme, and each length that does not fit.
+
+    kind: of a message with `name` and sequences of numbers, as JointState.
+    """
+    fields = [name for name, field in kind.get_fields_and_field_types().items() if element_of(field) == ("double", 0)]
+    for names in ((known[0],), known, (*known, "nobody"), (known[0], known[0]), ("nobody",)):
+        for count in sorted({0, 1, len(names), len(names) + 1, 1000}):
+            yield kind(name=names, **{fields[0]: [0.1] * count})
+            yield kind(name=names, **{field: [0.1] * count for field in fields})
+    for field, value in itertools.product(fields, FLOATS):
+        yield kind(name=known, **{field: [value] * len(known)})
+        yield kind(name=known[:1], **{field: [value]})
+    yield from stamped(kind(name=known, **{fields[0]: [0.1] * len(known)}))
 
 
 def huge(kind: type):

@@ -14,15 +14,17 @@ from eel_gaits.ros.messages import law_to_message
 from eel_ros.testing.node_process import PROMPT
 from eel_ros.testing.service_call import answer_of
 from eel_viz.recording.reading import read
-from extreme_messages import broken, extremes, get_message, get_service, huge, stamped
+from extreme_messages import broken, extremes, for_names, get_message, get_service, huge, stamped
 from fake_swimmer import TOPICS, body_message, messages
 from gait_client import GaitClient
+from geometry_msgs.msg import Vector3Stamped
 from made_up import Swimmer
 from nav_msgs.msg import Odometry, Path
 from rclpy.duration import Duration
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
 from swim_client import LIMIT, SwimClient, is_finite, nanoseconds
 from visualization_msgs.msg import MarkerArray
 
@@ -203,6 +205,64 @@ def test_the_dynamics_node_stands_any_message(start, network, fresh_domain, swim
     swim.until(lambda: own() and own()[-1].message.startswith(good), "good diagnostics")
     swim.close()
     assert node.interrupt() == 0 and "Traceback" not in node.output()
+
+
+TAIL = """
+joints:
+  - {position: 0.4, name: hip, servo: {kp: 14, kd: 0.4, torque_limit: 3, speed_limit: 8}}
+  - {position: 0.7, name: tail, stiffness: 0.1, damping: 0.01}
+"""
+FIN = "left name={} station={} area=0.001 aspect_ratio=2.5 angle=commanded time_constant=0.1"
+PARTS = {  # names of what there is with each robot, and with each fin
+    "joint_commands": (("joint_1", "joint_8"), ("hip", "tail"), ("joint_3", "hip")),
+    "fin_command": (("rudder",), ("keel",), ("rudder", "keel")),
+}
+
+
+@pytest.mark.fault(
+    "samples",
+    "commands of joints and fins, and currents, with any extreme, wrong lengths, unknown names and bad stamps, while "
+    "running, paused, and after a reset with another robot and other fins",
+    "refused, or acted on within the limits; the node publishes as before",
+)
+@pytest.mark.parametrize("factor", ["1.0", "0.0"])
+def test_the_dynamics_node_stands_any_command(start, network, fresh_domain, tmp_path, factor):
+    other = tmp_path / "tail.yaml"
+    other.write_text(TAIL)
+    swim = SwimClient(domain=fresh_domain, topics=("head_pose",))
+    swim.laws.publish(law_to_message(falling()))
+    words = ("robot:=eight_servos", f"fins:={FIN.format('rudder', 0.5)}", "accuracy:=draft", "estimate_error:=false")
+    words = (*words, f"real_time_factor:={factor}", "subscriber_timeout:=0.2", "rate:=20")
+    node = start("dynamics", "--ros-args", *(word for each in words for word in ("-p", each)))
+    swim.until_time(0.2)
+
+    def send():
+        for topic, sets in PARTS.items():
+            for known in sets:
+                network.send(topic, JointState, for_names(JointState, known), node)
+            network.send(topic, JointState, broken(JointState), node)
+        network.send("current", Vector3Stamped, [*extremes(Vector3Stamped), *stamped(Vector3Stamped())], node)
+
+    def goes_on():
+        swim.received["head_pose"].clear()
+        swim.until(lambda: swim.received["head_pose"], "a sample")
+        swim.until_time(1e-9 * swim.newest("head_pose") + 0.5)
+        assert all(is_finite(message) for message in swim.received["head_pose"]), node.output()[-3000:]
+
+    for robot, fins in (("eight_servos", FIN.format("rudder", 0.5)), (str(other), FIN.format("keel", 0.7))):
+        assert all(answer.successful for answer in swim.set(robot=robot, fins=fins)) and swim.reset().success
+        goes_on()
+        send()
+        goes_on()
+        assert swim.pause(True).success
+        send()
+        assert swim.pause(False).success
+        goes_on()
+        assert swim.reset().success
+        goes_on()
+    assert node.interrupt() == 0, node.output()[-3000:]
+    assert not any(word in node.output() for word in ("Traceback", "FATAL", "the run stopped", "a request is refused"))
+    assert "simulation stopped" not in node.output(), node.output()[-3000:]
 
 
 @pytest.mark.fault(

@@ -253,3 +253,40 @@ def test_a_robot_that_does_not_fit_ends_the_start(start_in_turn):
     lines = [["--ros-args", *(word for each in given for word in ("-p", each))] for given in cannot_be]
     for told, (status, said) in zip(cannot_be.values(), start_in_turn("eel_dynamics.ros.node", lines), strict=True):
         assert status == 2 and said.count("\n") == 1 and told in said, said
+
+
+@pytest.mark.fault(
+    "samples",
+    "a command for a joint without a servo, or for one that has gone since a reset with another robot",
+    "refused with the joint, once; the node goes on, and takes commands for the joints and fins that there are now",
+)
+def test_commands_are_checked_against_the_robot_that_there_is_now(start, client, tmp_path):
+    tail = tmp_path / "tail.yaml"
+    tail.write_text(
+        "joints:\n  - {position: 0.4, name: hip, servo: {kp: 14, kd: 0.4, torque_limit: 3, speed_limit: 8}}\n"
+        "  - {position: 0.7, name: tail, stiffness: 0.1, damping: 0.01}\n"
+    )
+    swim = client(topics=("joint_states",))
+    node = start("dynamics", *ROBOT, "-p", "command_interfaces:=[position]")
+    sender = publisher(swim)
+    sender.publish(command(0.0, position=[0.1] * 8))
+    swim.until_time(0.1, "joint_states")
+    fins = "left station=0.5 area=0.001 aspect_ratio=2.5 angle=commanded time_constant=0.1"
+    assert all(answer.successful for answer in swim.set(robot=str(tail), fins=fins))
+    assert swim.reset().success
+    swim.until(lambda: node.output().count("waiting for curvature_law") == 2, "a start without commands")
+    sender.publish(command(0.0, name=["joint_1"], position=[0.2]))
+    node.wait_for_output("joint command refused: joint must be one of hip, tail, got 'joint_1'")
+    sender.publish(command(0.0, name=["hip", "tail"], position=[0.2, 0.2]))
+    node.wait_for_output("joint command refused: joint 'tail' cannot be commanded: it has no servo")
+    sender.publish(command(0.0, name=["hip"], position=[0.2]))
+    swim.until(lambda: swim.received["joint_states"][-1].position[0] > 0.15, "the position of the hip")
+    commands = swim.node.create_publisher(JointState, "fin_command", 10)
+    swim.listen("fin_states", JointState)
+    swim.until(commands.get_subscription_count, "the subscription of the new fin")
+    commands.publish(JointState(name=["left"], position=[0.3]))
+    swim.until(lambda: swim.received["fin_states"] and swim.received["fin_states"][-1].position[0] > 0.2, "its angle")
+    (answer,) = swim.set(robot="")
+    assert answer.successful and swim.reset().success
+    swim.until(lambda: sender.get_subscription_count() == 0, "an end of the subscription")
+    assert node.interrupt() == 0 and "FATAL" not in node.output() and "Traceback" not in node.output()

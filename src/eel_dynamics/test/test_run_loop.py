@@ -12,8 +12,9 @@ from eel_ros.loop.diagnostics import ERROR, OK, WARN, Report
 from eel_ros.loop.requests import Answer
 from eel_ros.testing.log import Log
 from fake_publishers import FakeInbox, fake_publishers, run_loop
+from sensor_msgs.msg import JointState
 
-from eel_dynamics import Simulation
+from eel_dynamics import Robot, Simulation
 from eel_gaits import falling, straight
 
 
@@ -220,11 +221,14 @@ def test_a_controller_whose_stamps_are_rounded_down_is_not_waited_for_in_vain(ra
     def publish(snapshot, nanoseconds):
         seconds, rest = divmod(nanoseconds + period, 1_000_000_000)
         waiting.append(samples_at(seconds + 1e-9 * rest))
-        run.requests.put(run.take_command, nanoseconds // 1_000_000_000 + 1e-9 * (nanoseconds % 1_000_000_000), {})
+        command = JointState(name=["joint_1"], position=[0.1])
+        command.header.stamp.sec, command.header.stamp.nanosec = divmod(nanoseconds, 1_000_000_000)
+        run.requests.put(run.take_command, run.inputs.joints, command)
 
     inbox.take = take
     values = {"real_time_factor": 0.0, "rate": rate, "duration": 2.0, "subscriber_timeout": 0.02}
-    run = run_loop(Simulation(accuracy=1e-2), fake_publishers(publish), Report(log), inbox, **values)
+    swimmer = Simulation(accuracy=1e-2, robot=Robot.named("eight_servos"))
+    run = run_loop(swimmer, fake_publishers(publish), Report(log), inbox, **values)
     run.run()
     assert [text for level, text in log.lines if level != "info"] == [] and run.time == 2.0
 
@@ -315,3 +319,73 @@ def test_repeated_answers_to_sample_0_change_nothing_though_they_come_late():
     run.run()
     refused = [text for level, text in log.lines if level != "info"]
     assert len(refused) == 1 and "got 0.01 s" in refused[0], "only the one with other values"
+
+
+def joint_command(stamp, **angles):
+    """A message with the stamp [s]."""
+    message = JointState(name=[*angles], position=[*angles.values()])
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(round(1e9 * stamp), 1_000_000_000)
+    return message
+
+
+@pytest.mark.fault(
+    "samples",
+    "commands at 700 Hz during a pause of 20 s",
+    "the last of each joint acts; the others take no room and no time; each call is answered",
+)
+def test_of_the_commands_of_a_pause_the_last_of_each_joint_acts():
+    given, log = [], Log()
+    simulation = Simulation(accuracy=1e-2, robot=Robot.named("eight_servos"), law=straight())
+    simulation.command = lambda joint, **value: given.append((joint, value))
+    run = run_loop(simulation, fake_publishers(lambda *_: None), Report(log), real_time_factor=0.0, duration=0.03)
+    for k in range(14_000):
+        run.take_command(run.inputs.joints, joint_command(0.0, joint_1=1e-5 * k))
+    for k in range(100):
+        run.take_command(run.inputs.joints, joint_command(0.015, joint_1=0.2, joint_2=0.01 * k))
+    run.run()
+    assert given == [
+        ("joint_1", {"position": 0.13999}),
+        ("joint_1", {"position": 0.2}),
+        ("joint_2", {"position": 0.99}),
+    ]
+    for k in range(20_000):
+        run.take_command(run.inputs.joints, joint_command(run.time + 1e-4 + 2e-4 * k, joint_1=0.0))
+    refused = {text for level, text in log.lines if level == "error"}
+    assert "joint command refused: at most 10000 of different stamps can wait ahead of t = 0.03 s" in refused
+
+
+@pytest.mark.fault(
+    "ending", "an error in the run loop that nobody foresaw", "the run stops, said once, and a reset starts it again"
+)
+def test_an_unforeseen_error_ends_no_node():
+    log, stamps, broken = Log(), [], threading.Event()
+
+    def publish(snapshot, nanoseconds):
+        if nanoseconds == 50_000_000 and not broken.is_set():
+            broken.set()
+            raise KeyError("nobody foresaw it")
+        stamps.append(nanoseconds)
+
+    run = run_loop(Simulation(accuracy=1e-2, law=straight()), fake_publishers(publish), Report(log), duration=0.1)
+    thread = threading.Thread(target=run.run)
+    thread.start()
+    assert broken.wait(60.0)
+    assert run.requests.put(run.reset).done.wait(60.0)
+    thread.join(60.0)
+    told = [text for level, text in log.lines if level == "error"]
+    assert told == ["the run stopped at t = 0.04 s: KeyError: 'nobody foresaw it'; reset starts it again"]
+    assert stamps[-11:] == [10_000_000 * k for k in range(11)]
+
+
+def test_a_command_that_fits_no_more_when_it_acts_is_told_and_left_out():
+    log, simulation = Log(), Simulation(accuracy=1e-2, robot=Robot.named("eight_servos"), law=straight())
+
+    def refuse(joint, **value):
+        raise ValueError(f"joint {joint} has gone")
+
+    run = run_loop(simulation, fake_publishers(lambda *_: None), Report(log), real_time_factor=0.0, duration=0.05)
+    run.take_command(run.inputs.joints, joint_command(0.015, joint_1=0.2))
+    simulation.command = refuse
+    run.run()
+    assert run.time == 0.05
+    assert [text for level, text in log.lines if level == "error"] == ["joint command refused: joint joint_1 has gone"]

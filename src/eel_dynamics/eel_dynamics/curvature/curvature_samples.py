@@ -19,6 +19,8 @@ POINTS_PER_WAVE = 8
 MOST_POINTS = int(POINTS_PER_WAVE * MOST_WAVES) + 1  # of one sample
 MOST_AHEAD, MOST_POINTS_AHEAD = 10_000, 1_000_000  # of the simulation: 50 MB of samples
 SAMPLES_OF_A_GRID = 100  # ahead, for which a grid is chosen, so that it does not change with every one
+MOST_TURNS = MOST_WAVES, 1e3 * MOST_WAVES, 1e6 * MOST_WAVES  # of the body, and by s, s^2: as from rest within 1 ms
+GENTLE = 1e5  # of the sum of squares [1/m, by s and s^2] by length: nothing in it exceeds that
 QUANTITIES = "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"
 TIME_OF = attrgetter("time")
 
@@ -58,7 +60,7 @@ class CurvatureSample(NamedTuple):
         if not (type(x) is np.ndarray and x.dtype == float and x.ndim == 1):
             x = checked_row("curvature samples x", x, None)
         x = _checked_x(x.tobytes(), length)
-        values = _checked_values(rows, len(x))
+        values = _checked_values(rows, len(x), length)
         if planar and values[0].any():
             raise ValueError("curvature samples pitch must be 0 in a planar scene")
         if not is_finite(time):
@@ -87,14 +89,22 @@ def _checked_x(content: bytes, length: float) -> np.ndarray:
     return x
 
 
-def _checked_values(rows: Any, points: int) -> np.ndarray:
-    """The six rows of a sample as an array (2, 3, points) of finite floats. Rows of floats are checked all at once."""
+def _checked_values(rows: Any, points: int, length: float) -> np.ndarray:
+    """The six rows of a sample as an array (2, 3, points) of floats that a body of this `length` [m] can have.
+
+    Rows of floats are checked all at once.
+    """
     if all(type(row) is np.ndarray and row.dtype == float and row.shape == (points,) for row in rows):
         values = np.concatenate(rows)
-        if math.isfinite(values.dot(values)):
-            return values.reshape(2, 3, points)
+        with np.errstate(over="ignore"):
+            if values.dot(values) * length**2 < GENTLE:
+                return values.reshape(2, 3, points)
     named = zip(QUANTITIES, rows, strict=True)
     values = np.array([checked_row(f"curvature samples {name}", row, points) for name, row in named])
+    for name, row, turns in zip(QUANTITIES, values, (*MOST_TURNS, *MOST_TURNS), strict=True):
+        if (most := float(np.abs(row).max())) > 2.0 * math.pi * turns / length:
+            limit = 2.0 * math.pi * turns / length
+            raise ValueError(f"curvature samples {name} must be at most {limit:.3g} in size, got {most:.3g}")
     return values.reshape(2, 3, points)
 
 

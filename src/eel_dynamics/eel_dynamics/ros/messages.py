@@ -298,13 +298,13 @@ def samples_from_message(data: bytes, now: float) -> dict[str, Any]:
 def current_from_message(message: Vector3Stamped, now: float, world_frame: str) -> tuple[float, np.ndarray]:
     """Stamp [s] and velocity (3,) [m/s], world, of a current that comes at simulation time `now` [s].
 
-    `ValueError` for a stamp or a frame that does not fit. A stamp of 0 is now.
+    `ValueError` for a stamp or a frame that does not fit.
     """
     frame, stamp = message.header.frame_id, stamped(message.header.stamp, now)
     if frame not in ("", world_frame):
         raise ValueError(f"header.frame_id must be {world_frame}, got {shown(frame)}")
     velocity = np.array([message.vector.x, message.vector.y, message.vector.z])
-    return stamp or now, velocity
+    return stamp, velocity
 
 
 def refused(error: Exception, driven: bool = False) -> str:

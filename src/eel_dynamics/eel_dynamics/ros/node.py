@@ -16,6 +16,7 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from eel_base.command.command_line import one_line_warnings
 from eel_base.wording import one_line
+from eel_model.robot.robot import Robot
 from eel_model.scene import Scene
 from eel_ros.headers import stamp_of
 from eel_ros.loop.diagnostics import Report
@@ -33,10 +34,11 @@ from rclpy.qos import QoSProfile
 from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
+from eel_dynamics.ros.command_messages import interfaces_of
+from eel_dynamics.ros.command_subscriptions import CommandSubscriptions
 from eel_dynamics.ros.current_subscription import CurrentSubscription
 from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration
-from eel_dynamics.ros.joint_command import FinSubscription, JointCommandSubscription, interfaces_of
 from eel_dynamics.ros.law_subscription import LawSubscription
 from eel_dynamics.ros.loop.run_loop import RunLoop
 from eel_dynamics.ros.messages import diagnostic_array, root_message, state_from_message, values_of_status
@@ -44,7 +46,6 @@ from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.publishers import Publishers
 from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
 from eel_dynamics.ros.status import Status
-from eel_dynamics.simulation.simulation import Simulation
 from eel_msgs.srv import SetState, Step
 
 NAME = "dynamics"
@@ -79,8 +80,8 @@ class DynamicsNode(ParameterNode):
         self._ended: float | None = None  # s, steady clock: when the end of the run was seen
         self._laws = LawSubscription(self, self.run_loop, self._report)
         self._current = CurrentSubscription(self, self.run_loop, self.parameters.values.world_frame, self._report)
-        self._subscribe_to_commands(simulation)
-        self._fins = FinSubscription(self, self.run_loop, self._report) if self.parameters.values.fins else None
+        self._commands = CommandSubscriptions(self, self.run_loop)
+        self._tell_of(simulation.robot)
         pace, requests = self.run_loop.pace, self.run_loop.requests
         self._followed_clock = ClockSubscription(self, pace, requests) if isinstance(pace, FollowedClock) else None
         self._other_nodes = OtherNodes(self, self.resolve_topic_name("head_pose"), Identity.own(), self._report)
@@ -96,12 +97,9 @@ class DynamicsNode(ParameterNode):
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
 
-    def _subscribe_to_commands(self, simulation: Simulation) -> None:
-        """Take commands for the joints of a robot, in the interfaces that they have from now on."""
-        given, robot = self.parameters.values.command_interfaces, simulation.robot
+    def _tell_of(self, robot: Robot | None) -> None:
+        """Log what has to be known of the `robot`."""
         if robot is not None:
-            interfaces = interfaces_of(tuple(joint.name for joint in robot.joints), given)
-            JointCommandSubscription(self, self.run_loop, interfaces, self._report)
             for note in robot.notes:
                 self.get_logger().info(f"robot {robot.name}: {note}")
 
@@ -121,6 +119,7 @@ class DynamicsNode(ParameterNode):
         if not self._thread.is_alive():
             return self._end()
         self._inbox.look()
+        self._commands.look()
         self._look_at_neighbours()
         self._publish_root()
         if self._followed_clock is not None:
@@ -190,10 +189,12 @@ class DynamicsNode(ParameterNode):
         if self.parameters.pending:
             try:
                 new = simulation_from_parameters(values, self.parameters.next_scene)
+                interfaces_of(new.robot, values.command_interfaces)
             except (ValueError, OSError) as error:
                 response.message = f"reset refused: {one_line(error)}"
                 self.get_logger().error(response.message)
                 return response
+            self._tell_of(new.robot)
         answer = self.run_loop.requests.put(self.run_loop.reset, new, values, urgent=True)
         return await answered(response, answer, "reset")
 

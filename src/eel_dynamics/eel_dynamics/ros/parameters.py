@@ -76,6 +76,7 @@ class DynamicsParameters(Quantities):
         ("position",),
         "",
         "what joint_commands drive: position, velocity or effort, for all joints or for each in their order",
+        **LATER,
     )
     command_timeout: float = quantity(
         0.5,

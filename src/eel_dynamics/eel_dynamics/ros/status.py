@@ -10,6 +10,7 @@ from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.loop.run_loop import RunLoop
 
 OVERDUE = 3.0  # s of wall time for one sample of a paced run, after which an error is reported
+MANY = 100  # commands in one sample, which then are why it takes long
 PERIOD = 1.0  # s of wall time, and of simulation time, after which /diagnostics is published again
 
 
@@ -39,10 +40,12 @@ class Status:
         else:
             self._report.end("laws", "no more than one publisher of curvature_law again")
         if run.overdue > OVERDUE:
+            acted = run.inputs.acted
+            cause = f"for which {acted} commands have acted" if acted > MANY else "which takes too many steps"
             self._report.begin(
                 "overdue",
-                f"no sample for {run.overdue:.0f} s after t = {run.time:g} s, which takes too many steps: another "
-                "law, reset and pause are served",
+                f"no sample for {run.overdue:.0f} s after t = {run.time:g} s, {cause}: another law, reset and pause "
+                "are served",
                 ERROR,
             )
         else:
@@ -59,7 +62,8 @@ class Status:
             "late": max(0.0, run.pace.lost(run.samples_published)),
             **run.output.totals.values(),
             **run.output.errors.values,
-            **run.commands.values(),
+            **run.inputs.joints.values(),
+            **run.inputs.fins.values(),
             **(run.output.saturation.values() if run.output.saturation is not None else {}),
             "samples_published": run.samples_published,
             "publishers_of_laws": publishers_of_laws,

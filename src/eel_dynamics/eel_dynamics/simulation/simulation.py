@@ -14,7 +14,7 @@ from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.body.body import Body
 from eel_model.fins.fins import checked_commands
 from eel_model.flow.flow import Flow
-from eel_model.flow.stream import LATEST, CurrentStream
+from eel_model.flow.stream import FASTEST, LATEST, CurrentStream
 from eel_model.initial_state import checked_state
 from eel_model.robot.actuators import Servo
 from eel_model.robot.robot import Robot
@@ -111,9 +111,10 @@ class Simulation(Present):
         blend = positive("transition", transition or own, "s")
         if self._started:
             self._on_both(lambda march: march.change_law(law, origin, blend, needs))
+            self._meter.keep_apart(self._march)
         else:
-            self._on_both(lambda march: March(march.setup, law, origin, march.settings))
-        self._meter.keep_apart(self._march)
+            self._march = March(self._march.setup, law, origin)
+            self._meter = ErrorMeter(self._march, self._meter.wanted)
         self.ready = True
 
     def add_samples(
@@ -168,6 +169,8 @@ class Simulation(Present):
         if time > LATEST:
             raise ValueError(f"current time must be <= {LATEST:g} s, got {shown(time)} s")
         row = checked_row("current velocity", velocity, 3)
+        if np.abs(row).max() > FASTEST:
+            raise ValueError(f"current velocity must be at most {FASTEST:g} m/s in size, got {shown(row.tolist())}")
         if self.scene.planar and row[2] != 0.0:
             raise ValueError(f"current velocity must have no part along z in a planar scene, got {row[2]:g} m/s")
         if (course := self.currents.add(self.time, float(time), row)) is None:
@@ -192,11 +195,7 @@ class Simulation(Present):
         A velocity moves the reference of the position. All are limited by the servo. The sign is the joint's.
         `ValueError` for an unknown joint, one without a servo, a number that is not finite, or several at once.
         """
-        robot = self.robot
-        if robot is None:
-            raise ValueError(f"joint {shown(joint)} cannot be commanded: there is no robot")
-        if not isinstance(robot.joint(joint).actuator, Servo):
-            raise ValueError(f"joint {shown(joint)} cannot be commanded: it has no servo")
+        self.check_driven(joint)
         given = {"angle": ("position", position), "rate": ("velocity", velocity), "torque": ("effort", effort)}
         wanted = [(kind, name, value) for kind, (name, value) in given.items() if value is not None]
         if len(wanted) > 1:
@@ -207,6 +206,13 @@ class Simulation(Present):
         value = number(f"{name} of joint {shown(joint)}", value)
         self._on_both(lambda march: march.command(joint, kind, value))
         self._meter.due = True
+
+    def check_driven(self, joint: str) -> None:
+        """`ValueError` for the name of a `joint` that cannot be commanded."""
+        if self.robot is None:
+            raise ValueError(f"joint {shown(joint)} cannot be commanded: there is no robot")
+        if not isinstance(self.robot.joint(joint).actuator, Servo):
+            raise ValueError(f"joint {shown(joint)} cannot be commanded: it has no servo")
 
     def _on_both(self, action: Callable[[March], March | None]) -> None:
         """Do it to the march and, where the error is measured, to its companion, at the same time.
@@ -275,12 +281,12 @@ class Simulation(Present):
         self._march.set_state(checked_state(self.scene.planar, position, orientation, twist))
         self._meter.begin_again(self._march)
 
-    def reset(self) -> None:
-        """Reset state and time to the start. The last law stays, with its own t = 0 at 0.
+    def reset(self, keep_law: bool = True) -> None:
+        """Reset state and time to the start. The last law stays, with its own t = 0 at 0, unless `keep_law` is false.
 
         `ValueError` for a law that cannot begin from the initial state; the simulation then stays as it is.
         """
-        self._march = March(self._setup, self.law)
+        self._march = March(self._setup, self.law if keep_law else None)
         self.currents = CurrentStream(self._setup.default_transition)
         self.ready, self._started = self.law is not None, False
         self._meter = ErrorMeter(self._march, self._meter.wanted)

@@ -275,12 +275,17 @@ def given_angles(fins: tuple[Fin, ...], commands: dict[str, float]) -> list[tupl
     ]
 
 
+def commanded_names(fins: tuple[Fin, ...]) -> tuple[str, ...]:
+    """Names of the `fins` that follow commands."""
+    return tuple(fin.name for fin in fins if isinstance(fin.angle, str) and fin.angle == COMMANDED)
+
+
 def checked_commands(fins: tuple[Fin, ...], commands: Any) -> dict[str, float]:
     """Angles [rad] by the names of commanded `fins`. `ValueError` for another name, or an angle that is no number."""
-    known = [fin.name for fin in fins if fin.angle == COMMANDED]
+    known = commanded_names(fins)
     for name in commands:
         if name not in known:
-            raise ValueError(not_one_of("commanded fin", name, tuple(known)))
+            raise ValueError(not_one_of("commanded fin", name, known))
     return {name: number(f"angle of fin {name}", angle, "rad") for name, angle in commands.items()}
 
 

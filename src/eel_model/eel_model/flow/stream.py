@@ -17,6 +17,7 @@ from eel_model.flow.flow import Flow, FlowTraits
 SHORTEST = 1e-3  # s, of an interval
 LONGEST = 10.0  # s, of one: a sample after a longer silence begins anew
 LATEST = 1e12  # s, of a stamp: numbers do not carry an interval beyond it
+FASTEST = 100.0  # m/s along an axis: no water flows like that, and far beyond it no march can follow
 PERIODS = 4.0  # intervals in the shortest period that samples can show
 
 

@@ -91,6 +91,11 @@ class Robot:
         terms = (term for part in self.parts if isinstance(part, Muscle) for term in part.moment.terms)
         return sorted({time for term in terms for ramp in term.envelope for time in (ramp.start, ramp.end)})
 
+    @property
+    def driven_names(self) -> tuple[str, ...]:
+        """Names of the joints that have a servo."""
+        return tuple(joint.name for joint in self.joints if isinstance(joint.actuator, Servo))
+
     def changed(self, part: str | None = None, **changes: Any) -> "Robot":
         """The same robot with other fields of one `part`, or of all parts that have them; fields of an actuator too.
 

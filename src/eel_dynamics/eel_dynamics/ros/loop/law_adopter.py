@@ -2,7 +2,6 @@
 """Passes laws, and a controller's samples of laws, to the simulation; logs refusals, and when samples run out."""
 
 import math
-import time
 from typing import Any
 
 import numpy as np
@@ -11,11 +10,11 @@ from eel_gaits.laws.law import Law
 from eel_ros.loop.diagnostics import ERROR, WARN, Report
 
 from eel_dynamics.curvature.curvature_samples import LateSample
+from eel_dynamics.ros.loop.awaited import Echo
 from eel_dynamics.ros.messages import refused
 from eel_dynamics.simulation.simulation import Simulation
 
 LONGEST_WAY = 5.0  # s from the last sample, or from the simulation, to the next one: it is not on the same way
-ECHO = 2.0  # s after a reset, within which samples that were sent before it may come
 REFUSALS = ValueError, ArithmeticError, MemoryError  # errors with which the simulation refuses laws and samples
 
 
@@ -35,9 +34,9 @@ class LawAdopter:
             float, int
         ] = {}  # time [s] of the instants that were added at the start, and a hash of the values
         self._driven = False  # whether a controller's samples drove the swimmer when it was last looked at
-        self._farthest = 0.0  # s: the greatest time by which a sample lay ahead of the simulation
+        self._again = False  # whether samples drove the swimmer before the last reset, and none has come since
+        self._echo = Echo()
         self._missing_since = math.inf  # s, steady clock: since when samples are missing; -inf: no longer waited for
-        self._echo_until = 0.0  # s, steady clock: until when samples from before the last reset may come
 
     @property
     def name(self) -> str:
@@ -59,7 +58,7 @@ class LawAdopter:
         except REFUSALS as error:
             self._report.event("law", f"law {shown(law.name)} refused: {error}", ERROR, differing=True)
             return
-        self._origin, self._driven = origin, False
+        self._origin, self._driven, self._again = origin, False, False
         self._report.end("resting")
         self._report.note("law adopted", f"law {shown(law.name)} adopted at t = {simulation.time:g} s")
         if until is not None and until > simulation.time:
@@ -77,7 +76,7 @@ class LawAdopter:
         swing of the body once they run out, and is refused.
         """
         ahead = samples["time"] - self.simulation.time
-        if ahead > 2.0 * self._farthest and time.monotonic() < self._echo_until:
+        if self._echo.holds(ahead):
             self._report.note("echo", f"curvature samples of {samples['time']:g} s left out: sent before the reset")
             return
         if samples["time"] in self._first and self._first[samples["time"]] == _hash(samples):
@@ -93,9 +92,24 @@ class LawAdopter:
             driven = self.simulation.sampled or self.simulation.resting
             self._report.event("samples", refused(error, driven), level)
         else:
-            self._farthest = max(self._farthest, ahead)
+            self._again = False
+            self._echo.take(ahead)
             if self.simulation.time == 0.0:
                 self._first[samples["time"]] = _hash(samples)
+
+    def waits_again(self, now: float, timeout: float) -> bool:
+        """Whether to wait at the start for samples, which drove the swimmer before the reset.
+
+        For `timeout` [s] at most; now: [s, steady clock].
+        """
+        if not self._again:
+            return False
+        self._missing_since = min(self._missing_since, now)
+        if now - self._missing_since >= timeout:
+            self._again, self._missing_since = False, math.inf
+            text = f"no curvature sample since the reset within {timeout:g} s: the law goes on alone"
+            self._report.event("missing samples", text)
+        return self._again
 
     def waits_for_samples(self, instant: float, period: float, now: float, timeout: float) -> bool:
         """Whether to wait for samples up to `instant` [s], a `period` [s] ahead, for `timeout` [s] at most in each gap.
@@ -120,10 +134,10 @@ class LawAdopter:
 
     def reset(self) -> None:
         """Set the law's own t = 0 back to simulation time 0."""
+        self._again, self._missing_since = self._driven, math.inf
         self._origin, self._driven = 0.0, False
         self._first.clear()
-        if self._farthest > 0.0:
-            self._echo_until = time.monotonic() + ECHO
+        self._echo.reset()
         self._report.end("resting")
 
     def report_samples(self, instant: float) -> None:

@@ -37,7 +37,8 @@ class RunGate:
         if self.failed:
             return f"stopped at t = {simulation_time:g} s until it is reset"
         if not self.simulation.ready:
-            return WAITING
+            robot = self.simulation.robot
+            return WAITING if robot is None or not robot.driven_names else f"{WAITING}, or joint_commands"
         if not self._subscribers_complete:
             self._subscribers_complete = self._publishers.subscribers_complete(self._wanted, time.monotonic())
             if not self._subscribers_complete:

@@ -27,8 +27,8 @@ from eel_ros.loop.requests import Answer, RequestQueue
 
 from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration
-from eel_dynamics.ros.loop.current_taker import CurrentTaker
-from eel_dynamics.ros.loop.joint_commander import JointCommander, Joints
+from eel_dynamics.ros.loop.command_queue import STAND_IN, CommandQueue
+from eel_dynamics.ros.loop.inputs import Inputs
 from eel_dynamics.ros.loop.law_adopter import LawAdopter
 from eel_dynamics.ros.loop.run_gate import RunGate
 from eel_dynamics.ros.loop.sample_output import SampleOutput, nanoseconds
@@ -56,8 +56,8 @@ class RunLoop:
         standing: what the simulation waits for, as text; empty while it runs.
         requests: RequestQueue, for other threads.
         wall_time: [s] spent on samples.
-        gate: RunGate. laws: LawAdopter. commands: JointCommander. servo_limit: ServoLimit. output: SampleOutput.
-        pace: Pace.
+        gate: RunGate. laws: LawAdopter. inputs: Inputs. servo_limit: ServoLimit.
+        output: SampleOutput. pace: Pace.
     """
 
     def __init__(
@@ -75,8 +75,8 @@ class RunLoop:
         self.gate = RunGate(simulation, publishers, values.wait_for_subscribers)
         self.pace = (FollowedClock if values.follow_clock else Pace)(1.0 / values.rate, values.real_time_factor)
         self._lateness = Lateness(report)
-        self.laws, self._current = LawAdopter(simulation, report), CurrentTaker(report)
-        self.commands, self.servo_limit = JointCommander(simulation, report), ServoLimit(simulation, report)
+        self.laws, self.inputs = LawAdopter(simulation, report), Inputs(simulation, values.command_interfaces, report)
+        self.servo_limit = ServoLimit(simulation, report)
         self.output = SampleOutput(simulation, parameters, publishers, report)
         self._sample_begun: float | None = None  # s, steady clock: when the computation of the next sample began
         self.time, self.samples_published, self.standing = 0.0, 0, ""
@@ -99,23 +99,33 @@ class RunLoop:
         """Run the loop: the thread's function."""
         self.pace.restart(0, time.monotonic())
         while not self.requests.stopped and self.samples_published <= self._last_sample and not self.given_up:
-            for samples in self._inbox.take(self.time):
-                samples["time"] = self._meant(samples["time"])
-                self._execute(self.laws.add_samples, samples, self.pace.period)
-            for request in self.requests.take():
-                request.answer.give(*self._execute(request.action, *request.arguments))
-            if self._parameters.values.servo_torque_limit != self.servo_limit.present:
-                self._execute(self._limit_servos, self._parameters.values.servo_torque_limit)
-            reason = self.gate.held_by(self.time) or self.pace.held_by(self.samples_published)
-            if reason:
-                self._idle(reason)
-            elif self._wait_for_turn():
-                self._next_sample()
+            try:
+                self._turn()
+            except SimulationStopped as error:
+                self._fail(f"simulation {error}")
+            except Exception as error:  # unforeseen: the last good state is kept, and the node goes on
+                self._fail(f"the run stopped at t = {self.time:g} s: {unforeseen(error)}")
+                self.requests.wait(TICK)
         self.output.end()
         self._lateness.end(self.time)
         if self.samples_published > self._last_sample:
             self._report.info(f"finished at t = {self.time:g} s")
         self.gate.end_steps(self.time, "the run has ended")
+
+    def _turn(self) -> None:
+        """Take what has come, then wait, or go on to the next sample."""
+        for samples in self._inbox.take(self.time):
+            samples["time"] = self._meant(samples["time"])
+            self._execute(self.laws.add_samples, samples, self.pace.period)
+        for request in self.requests.take():
+            request.answer.give(*self._execute(request.action, *request.arguments))
+        if self._parameters.values.servo_torque_limit != self.servo_limit.present:
+            self._execute(self._limit_servos, self._parameters.values.servo_torque_limit)
+        reason = self.gate.held_by(self.time) or self._awaited_at_start() or self.pace.held_by(self.samples_published)
+        if reason:
+            self._idle(reason)
+        elif self._wait_for_turn():
+            self._next_sample()
 
     def _execute(self, action: Callable[..., None], *arguments: Any) -> tuple[float, str]:
         """Execute `action(*arguments)`; returns the simulation time [s] afterwards, and why it was refused."""
@@ -123,11 +133,11 @@ class RunLoop:
         try:
             action(*arguments)
         except SimulationStopped as error:
-            self._fail(error)
+            self._fail(f"simulation {error}")
         except ValueError as error:
             failure = str(error)
         except Exception as error:  # unforeseen: whoever asked is told, and the run goes on
-            failure = f"{type(error).__name__}: {one_line(error)}"
+            failure = unforeseen(error)
             self._report.event("request", f"a request is refused: {failure}", ERROR)
         return self.time, failure
 
@@ -140,11 +150,17 @@ class RunLoop:
         now = time.monotonic()
         self.output.clock.repeat(self._stamp, now)
         if self.samples_published == 0 and self.output.start_is_due(now) and self.gate.start_may_be_shown(now):
-            try:
-                self.output.show_start(now)
-            except SimulationStopped as error:
-                self._fail(error)
+            self.output.show_start(now)
         self.requests.wait(TICK)
+
+    def _awaited_at_start(self) -> str:
+        """What a run as fast as possible waits for after a reset, as text: the first of all that came before it."""
+        if self.samples_published or self.pace.factor > 0.0:
+            return ""
+        now, timeout = time.monotonic(), self._parameters.values.subscriber_timeout
+        topics = self.inputs.missing(0.0, now, timeout)
+        topics += ["curvature_samples"] if self.laws.waits_again(now, timeout) else []
+        return f"waiting for {', '.join(topics)}" if topics else ""
 
     def _wait_for_turn(self) -> bool:
         """Wait until the next sample is due; False if a request or a tick comes first."""
@@ -156,7 +172,7 @@ class RunLoop:
             self.pace.restart(self.samples_published, now, values.real_time_factor)
         next_time, period, timeout = self._next_time, self.pace.period, values.subscriber_timeout
         if self.pace.factor == 0.0 and (
-            self.laws.waits_for_samples(next_time, period, now, timeout) or self.commands.waits(now, timeout)
+            self.laws.waits_for_samples(next_time, period, now, timeout) or self.inputs.missing(self.time, now, timeout)
         ):
             self.output.clock.repeat(self._stamp, now)
             self.requests.wait(TICK)
@@ -174,19 +190,15 @@ class RunLoop:
 
     def _next_sample(self) -> None:
         """Advance to the next sample and publish it."""
-        try:
-            if self._next_time > self._simulation.time and not self._advance():
-                return
-            if self.samples_published > 0 or not self.output.start_is_known:
-                self.output.publish(self.samples_published, last=self.samples_published == self._last_sample)
-        except SimulationStopped as error:
-            self._fail(error)
+        if self._next_time > self._simulation.time and not self._advance():
             return
+        if self.samples_published > 0 or not self.output.start_is_known:
+            self.output.publish(self.samples_published, last=self.samples_published == self._last_sample)
         self.time, now = self._next_time, time.monotonic()
         self.wall_time, self._lap = self.wall_time + now - self._lap, now
         self.laws.report_samples(self.time)
-        self.commands.check(self._parameters.values.command_timeout)
-        self._current.look(self._simulation)
+        self.inputs.joints.check(self._parameters.values.command_timeout)
+        self.inputs.current.look(self._simulation)
         self._lateness.check(self.pace, self.samples_published, self.time, now)
         if self.samples_published > 0:
             self.gate.count_step(self.time)
@@ -197,22 +209,23 @@ class RunLoop:
         if self._sample_begun is None:
             self._sample_begun = time.monotonic()
         since, requests = self._sample_begun, self.requests
-        while True:  # a step ends where a command takes effect
-            instant = self.commands.next_instant(self._next_time)
-            until = self._next_time if instant is None else instant
-            if not self._simulation.advance(until, lambda: requests.interrupt(since)):
+        while True:  # a step ends where commands take effect
+            instant = self.inputs.next_instant(self._next_time)
+            if not self._simulation.advance(instant, lambda: requests.interrupt(since)):
                 return False
-            if instant is None:
+            if instant == self._next_time:
                 break
-            self.commands.execute()
-        self._sample_begun = None
+            self.inputs.act()
+            if requests.interrupt(since):
+                return False
+        self._sample_begun, self.inputs.acted = None, 0
         return True
 
-    def _fail(self, error: SimulationStopped) -> None:
+    def _fail(self, reason: str) -> None:
         self.gate.failed, self._sample_begun = True, None
-        self.gate.end_steps(self.time, f"simulation {error}")
+        self.gate.end_steps(self.time, reason)
         then = "this run ends here, with status 1" if self.given_up else "reset starts it again"
-        self._report.begin("stopped", f"simulation {error}; {then}", ERROR)
+        self._report.begin("stopped", f"{reason}; {then}", ERROR)
 
     @property
     def _last_sample(self) -> float:
@@ -241,24 +254,25 @@ class RunLoop:
         self.output.forget_start()
 
     def take_current(self, stamp: float, velocity: np.ndarray) -> None:
-        """Take a sample of a current, as `Simulation.add_current` does."""
-        self._current.take(self._simulation, stamp, velocity)
+        """Take a sample of a current, as `Simulation.add_current` does; a `stamp` of 0 is the present time.
+
+        As fast as possible, one without a stamp that comes where a stamped one is awaited answers a repeated sample 0.
+        """
+        if stamp == 0.0 < self.time and self.pace.factor == 0.0 and self.inputs.current.awaited.late(self.time):
+            return
+        self.inputs.current.take(self._simulation, stamp, velocity)
         self.output.forget_start()
 
-    def take_command(self, stamp: float, joints: Joints) -> None:
-        """Have `joints` of the robot do so from `stamp` [s] on."""
-        self.commands.add(self._meant(stamp), joints)
+    def take_command(self, queue: CommandQueue, message: Any) -> None:
+        """Put the command in a `message` into a `queue`; log a refusal."""
+        try:
+            stamp, values = queue.read(message)
+            queue.add(self._meant(stamp), values)
+        except ValueError as error:
+            self._report.event(queue.topic, f"{queue.what} refused: {error}", ERROR, differing=True)
 
     def _limit_servos(self, torque: float) -> None:
         self.servo_limit.change(torque)
-        self.output.forget_start()
-
-    def command_fins(self, commands: dict[str, float]) -> None:
-        """Have fins follow these angles [rad], as `Simulation.command_fins` does."""
-        try:
-            self._simulation.command_fins(commands)
-        except ValueError as error:
-            self._report.event("fin command", f"fin_command refused: {error}", ERROR)
         self.output.forget_start()
 
     def pause(self, paused: bool) -> None:
@@ -283,11 +297,12 @@ class RunLoop:
 
         simulation, values: of a new run, with other parameters.
         """
+        law = self._simulation.law
         try:
             if simulation is None:
-                self._simulation.reset()
-            elif self._simulation.law is not None:
-                simulation.adopt(self._simulation.law)
+                self._simulation.reset(keep_law=law != STAND_IN)
+            elif law is not None and law != STAND_IN:
+                simulation.adopt(law)
         except ValueError as error:  # a law that could be blended into may not begin from the initial state
             self._report.event("reset", f"reset refused: {error}", ERROR)
             raise
@@ -295,8 +310,7 @@ class RunLoop:
         if simulation is not None and values is not None:
             self._parameters.begin(values, simulation.scene)
             self._publishers.begin(simulation)
-            self._simulation = self.gate.simulation = simulation
-            self.laws.simulation = self.commands.simulation = simulation
+            self._simulation = self.gate.simulation = self.laws.simulation = simulation
             self.servo_limit.begin(simulation)
             self.pace.period = 1.0 / values.rate
         self._lateness.end(self.time)
@@ -308,5 +322,10 @@ class RunLoop:
         self._report.end("stopped")
         self.pace.restart(0, now)
         self.laws.reset()
-        self.commands.reset()
+        self.inputs.begin(self._simulation, self._parameters.values.command_interfaces)
         self._report.info("reset to t = 0 s")
+
+
+def unforeseen(error: Exception) -> str:
+    """An `error` that no argument explains, in one line with its kind."""
+    return f"{type(error).__name__}: {one_line(error)}"

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A controller in lockstep, whatever it sends: each run after a reset is the first one again, to the last bit."""
+
+import hashlib
+import itertools
+import math
+
+import numpy as np
+import pytest
+from eel_gaits.ros.messages import law_to_message, samples_to_message, stamp_of
+from eel_ros.testing.service_call import answer_of
+from geometry_msgs.msg import Vector3Stamped
+from nav_msgs.msg import Odometry
+from rclpy.duration import Duration
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import JointState
+from std_srvs.srv import Trigger
+from swim_client import LIMIT, LOSSLESS, nanoseconds
+
+from eel_gaits import straight
+from eel_msgs.msg import CurvatureSamples
+
+PERIOD, SAMPLES, RESETS = 0.02, 15, 5
+TOPICS = "head_pose", "odom", "energy"
+X = np.linspace(0.0, 1.0, 5)
+FAST = ("--ros-args", "-p", "real_time_factor:=0", "-p", f"rate:={1.0 / PERIOD}", "-p", "subscriber_timeout:=60")
+RUDDER = "left station=0.5 area=0.001 aspect_ratio=2.5 dihedral=1.2 angle=commanded time_constant=0.1"
+
+
+def bend(time):
+    """A swing that begins from rest, by sample [1]."""
+    return min(1.0, 2.0 * time) ** 2 * math.sin(8.0 * time)
+
+
+def curvature(time):
+    """Up to two samples ahead, as a controller sends it that answers."""
+    times = [time + k * PERIOD for k in ((0, 1, 2) if time == 0.0 else (2,))]
+    for each in times:
+        rows = np.zeros((6, len(X)))
+        rows[3] = 0.3 * bend(each)
+        yield samples_to_message(each, X, rows)
+
+
+def angles(*names):
+    """Of joints or fins, at the time of the sample that is answered."""
+
+    def answer(time):
+        message = JointState(name=names, position=[0.2 * bend(time - 0.05 * k) for k in range(len(names))])
+        message.header.stamp = stamp_of(time)
+        yield message
+
+    return answer
+
+
+def current(time):
+    message = Vector3Stamped()
+    message.header.stamp, message.vector.y = stamp_of(time), 0.1 * bend(time)
+    yield message
+
+
+SAMPLED = [("curvature_samples", CurvatureSamples, LOSSLESS, curvature)]
+CASES = {
+    "samples": ((), SAMPLED),
+    "samples after a law": (
+        ("wait_for_subscribers:=2",),
+        [("curvature_samples", CurvatureSamples, LOSSLESS, curvature)],
+    ),
+    "joints": (("robot:=eight_servos",), [("joint_commands", JointState, LOSSLESS, angles("joint_1", "joint_5"))]),
+    "joints of two publishers": (
+        ("robot:=eight_servos",),
+        [("joint_commands", JointState, LOSSLESS, angles(name)) for name in ("joint_1", "joint_5")],
+    ),
+    "fins with a law": ((f"fins:={RUDDER}",), [("fin_command", JointState, LOSSLESS, angles("left"))]),
+    "current with a law": ((), [("current", Vector3Stamped, qos_profile_sensor_data, current)]),
+}
+
+
+def runs_of(swim):
+    """The messages of each topic, run by run, by sample."""
+    found = []
+    for topic in TOPICS:
+        runs, last = [[]], 0
+        for message in swim.received[topic]:
+            stamp = nanoseconds(message.header.stamp)
+            if stamp < last:
+                runs.append([])
+            runs[-1].append(message)
+            last = stamp
+        found.append(runs)
+    return found
+
+
+@pytest.mark.fault(
+    "time",
+    "resets in the midst of a run in lockstep with samples, commands of joints or fins, or currents",
+    "no run goes on before its first message; each is the first one again, to the last bit",
+)
+@pytest.mark.parametrize("case", CASES)
+def test_each_run_after_a_reset_is_the_first_one_again(start, client, case):
+    """The reset comes while the controller answers, so that what it sent before comes after it."""
+    parameters, sent = CASES[case]
+    swim = client(topics=TOPICS)
+    node = start("dynamics", *FAST, *(word for each in parameters for word in ("-p", each)))
+    publishers = [(swim.node.create_publisher(kind, topic, quality), answer) for topic, kind, quality, answer in sent]
+    for publisher, _ in publishers:
+        swim.until(publisher.get_subscription_count, "the node's subscription")
+    reset = swim._service(Trigger, "dynamics/reset")
+    swim.acquaint(reset, Trigger.Request())
+    seen = answers = 0
+
+    def answered():
+        """Answer what has come; the number of answers."""
+        nonlocal seen, answers
+        odoms = swim.received["odom"]
+        arrived = odoms[seen:] or odoms[-1:] * (len(odoms) > 0 and nanoseconds(odoms[-1].header.stamp) == 0)
+        for message, (publisher, answer) in itertools.product(arrived, publishers):
+            for each in answer(1e-9 * nanoseconds(message.header.stamp)):
+                publisher.publish(each)
+        seen, answers = len(odoms), answers + len(arrived)
+        return answers
+
+    if case.endswith("with a law"):
+        swim.until(lambda: answered() > 3, "answers before the law")
+        swim.until(lambda: all(each.wait_for_all_acked(Duration(seconds=LIMIT)) for each, _ in publishers), "receipts")
+    if "law" in case:
+        swim.laws.publish(law_to_message(straight()))
+    if case == "samples after a law":  # the run waits for another subscriber until they are there
+        node.wait_for_output("law 'straight' adopted")
+        for message in curvature(0.0):
+            publishers[0][0].publish(message)
+        assert publishers[0][0].wait_for_all_acked(Duration(seconds=LIMIT))
+        swim.listen("odom", Odometry, name="gate")
+    for run in range(RESETS + 1):
+        swim.until(
+            lambda run=run: answered() and all(len(each) > run and len(each[-1]) > SAMPLES for each in runs_of(swim)),
+            f"run {run}",
+        )
+        if run < RESETS:
+            answer = answer_of(reset, Trigger.Request())
+            swim.until(lambda answer=answer: answered() and answer(), "an answer to the call")
+            assert answer().success
+    digests = [
+        hashlib.sha256("".join(repr(each[1 : SAMPLES + 1]) for each in run).encode()).hexdigest()
+        for run in zip(*runs_of(swim), strict=True)
+    ]
+    assert len(digests) == RESETS + 1 and len(set(digests)) == 1, (digests, node.output()[-2000:])
+    assert "ERROR" not in node.output() and " s of wall time" not in node.output(), node.output()[-2000:]
+    assert node.interrupt() == 0
