@@ -173,6 +173,7 @@ def counted(found: list[Outcome]) -> str:
     "with 1e30 elements, variables over one another, ...",
     "one line of at most 300 characters, within 200 MB",
 )
+@pytest.mark.timeout(1200)
 def test_a_crafted_file_is_one_line_and_takes_little_memory(good, tmp_path):
     found = outcomes(tmp_path, {reader: good[reader] for reader in QUICK}, crafted)
     assert not [each for each in found if not each.fits]
