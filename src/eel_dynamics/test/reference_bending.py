@@ -115,9 +115,12 @@ class BentReference(Reference):
                     strict=False,
                 ):
                     if beyond:
-                        torque += part.stop_stiffness * (angle - limit) + part.stop_damping * rate
+                        spring = part.stop_stiffness * (angle - limit)
+                        damper = part.stop_damping * abs(angle - limit) / 0.01 * rate  # by the depth over 0.01 rad
+                        stop = spring + damper if (spring + damper) * spring > 0.0 else 0.0  # it does not pull
+                        torque += stop
                         ledger.elastic += part.stop_stiffness * (angle - limit) ** 2 / 2
-                        ledger.lost += part.stop_damping * rate**2
+                        ledger.lost += (stop - spring) * rate
                 servo = _servo(part)
                 if servo and m in self.series:
                     s = self.series.index(m)

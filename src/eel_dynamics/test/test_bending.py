@@ -61,6 +61,29 @@ def test_internal_torque_on_each_joint_is_that_of_spring_and_motor():
     assert greatest(mean + now.joints["joint_torque"] * -1.0) > 0.01  # the rotors' inertia is no small part
 
 
+@pytest.mark.parametrize("damping", [0.0, 0.1, 2.0])
+def test_a_stop_s_torque_grows_from_zero_never_pulls_and_gives_back_no_more_than_it_took(damping):
+    """A spring throws the joint against its stop, again and again; the moment less the spring's is that of the stop."""
+    joint = Joint(0.5, "-yaw", 0.1, 0.2, rest_angle=-0.6, initial_angle=0.2, limits=(-0.1, 0.3), stop_damping=damping)
+    simulation = Simulation(robot=Robot([joint]), law=straight(), scene=SMOOTH, accuracy=1e-6)
+    core, seen = simulation._march.core, []
+    row = np.zeros((1, max(end for _, end in core.row.values())))
+    for time in np.arange(1, 201) * 5e-3:
+        simulation.advance(time)
+        now = simulation.observe(load=False)
+        assert core.observe(now.whole, row, True, False)
+        moment = row[0, core.row["moment"][0]]
+        angle, rate = now.joints["joint_angle"][0], now.joints["joint_rate"][0]
+        seen.append((angle, rate, moment - joint.stiffness * (angle - joint.rest_angle), now.energy.damping_work))
+    angle, rate, torque, work = np.array(seen).T
+    beyond = angle - np.clip(angle, *joint.limits)
+    deeper = np.sign(beyond) * rate
+    assert torque == pytest.approx(beyond * np.maximum(0.0, 100.0 + damping / 0.01 * deeper), abs=1e-12)
+    assert (beyond < 0.0).sum() > 5 and (torque * beyond).min() > -1e-12
+    assert np.diff(work).max() < 2e-6  # J: of the quadrature
+    assert greatest(now.energy.residual) < 1e-5 and (work[-1] < -1e-3) == (damping > 0.0)
+
+
 @pytest.mark.parametrize(
     ("kd", "least", "greatest_errors"), [(0.02, 2.7, (4e-5, 8e-6, 1e-6)), (1.0, 2.0, (2.3e-4, 2.7e-5, 3.5e-6))]
 )

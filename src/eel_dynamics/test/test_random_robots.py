@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from random_robots import drawn
+from random_robots import drawn, drawn_at_stops
 from random_scenes import with_weight_and_fins
 
 from eel_dynamics import Accuracy, SimulationStopped, simulate, simulate_batch
@@ -62,11 +62,10 @@ def test_many_random_robots_keep_their_target_or_tell(seeds):
     told = [index for index in swum if runs[index].error_estimate.worst > target]
     print(f"{len(seeds)} robots, {len(swum)} compared, {len(missed)} above the target, {len(told)} told")
     silent = [seeds[index] for index in missed if index not in told]
-    if silent:  # the torque jumps at stops: the reference itself may be late there
+    if silent:  # the reference itself may be late at a stop
         runs, exact = swum_together(silent, target), swum_together(silent, EXACT, estimate=False)
     unseen = [seed for index, seed in enumerate(silent) if error_of(runs[index], exact[index]) > target]
-    # 12 of 5,000: ten of robots with stops, where a torque jumps and both are late alike; two of five steps.
-    assert len(unseen) <= 2 * (len(seeds) // 100), unseen  # none of the 50 that are swum each time
+    assert not unseen
 
 
 def swum(seed: int, accuracy, estimate: bool = True):
@@ -79,6 +78,37 @@ def swum(seed: int, accuracy, estimate: bool = True):
 # Seeds that have missed their target unseen, before: motors and stops at their limits between two samples, a companion
 # that was as exact as the run by chance (158), and a torque at the start that was off by the grid (1206, 1430).
 SEEN = [(seed, 1e-3) for seed in (158, 200, 1430)] + [(seed, 1e-2) for seed in (1032, 1206, 1442)]
+
+
+# Seeds that missed their target unseen where the damper of a stop had its whole torque at contact, by up to 0.24.
+AT_STOPS = 0, 5, 16, 45, 122, 176
+LONG_AT_STOPS = [pytest.param(range(first, first + 100), marks=pytest.mark.soak) for first in range(0, 1000, 100)]
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("seeds", [AT_STOPS, *LONG_AT_STOPS], ids=lambda seeds: f"{seeds[0]}-{seeds[-1]}")
+def test_robots_that_swing_into_their_stops_keep_their_target_or_tell(seeds):
+    target, told, met, missed = 0.03, 0, 0, []
+    for seed in seeds:
+        draw = drawn_at_stops(seed)
+        swim = {"robot": draw.robot, "scene": draw.scene, "stations": 5, "sample_period": 1e-3}
+        run = simulate(draw.law, 0.2, accuracy=target, **swim)
+        error = error_of(run, simulate(draw.law, 0.2, accuracy=ROUGH, estimate=False, **swim))
+        if error > 0.5 * target:
+            if run.accuracy.tolerance < EXACT.tolerance:
+                continue  # the reference errs more: the motion between the stops is chaotic
+            error = error_of(run, simulate(draw.law, 0.2, accuracy=EXACT, estimate=False, **swim))
+        above = run.error_estimate.worst > target
+        told, met = told + above, met + any_stop_met(run)
+        if error > target and not above:
+            missed.append((seed, error))
+    print(f"{len(seeds)} robots, {met} at stops, {told} told")
+    assert not missed and met > 0.8 * len(seeds) and told <= 0.02 * len(seeds)
+
+
+def any_stop_met(run) -> bool:
+    low, high = np.array([joint.limits for joint in run.robot.joints]).T
+    return bool(((run.joint_angle < low) | (run.joint_angle > high)).any())
 
 
 @pytest.mark.filterwarnings("ignore")

@@ -176,7 +176,8 @@ def torques_of_table(table, time, law, q, qdot, th, thdot):
     x, xdot, M = np.concatenate((q, th)), np.concatenate((qdot, thdot)), len(table)
     Q = table.stiffness @ (x - table.rest) + table.damping @ xdot
     low, high = np.minimum(q - table.limits[:, 0], 0.0), np.maximum(q - table.limits[:, 1], 0.0)
-    Q[:M] += table.stop_stiffness * (low + high) + table.stop_damping * qdot * ((low < 0.0) | (high > 0.0))
+    inwards = table.stop_damping * qdot * np.where(low < 0.0, -1.0, 1.0)
+    Q[:M] += (low + high) * np.maximum(0.0, table.stop_stiffness + inwards)
     value, rate, _ = law.curvature(time, table.points)
     reference, reference_rate = (np.sum(table.projection * each[:, table.axis].T, axis=1) for each in (value, rate))
     for mode, torque in table.torques:

@@ -70,8 +70,9 @@ FEW_POINTS, FEWER_OF_FEW = 22.0, 0.6
 FINE, LOOSER_THAN_FINE = 1e-6, 20.0
 # The errors of a robot's steps go with the tolerance itself, so that the distance to a companion of ten times the
 # tolerance is some nine times the error. Half of it is a safe estimate. No less is one for a companion that is looser
-# still: where motors and stops reach their limits, it may be as exact as the run by chance.
-ROBOT_LOOSER, ROBOT_SAFETY = 10.0, 4.5
+# still: where motors and stops reach their limits, it may be as exact as the run by chance. Steps that growth alone
+# bounds, as the first ones, make ten times the error too where they are longer by the cube root of ten.
+ROBOT_LOOSER, ROBOT_SAFETY, ROBOT_LONGER_STEPS = 10.0, 4.5, 2.15
 LEAST_ROBOT_TIGHTER = 1.0 / 4.0
 ADAMS_ERROR = 3.0  # some times that of the embedded pair at the same tolerance
 # What a tightened run changes with the ratio r < 1 of the wanted error to the measured one: the tolerance with r^1.2,
@@ -225,7 +226,12 @@ class Accuracy:
         looser = LOOSER if self.tolerance > FINE else LOOSER_THAN_FINE
         looser = ROBOT_LOOSER if self.method == ROBOTS else looser
         fewer = FEWER_POINTS if self.resolution >= FEW_POINTS else FEWER_OF_FEW
-        return self._changed(looser, fewer, LONGER_STEPS)
+        return self._changed(looser, fewer, self._longer_steps)
+
+    @property
+    def _longer_steps(self) -> float:
+        """Times that the longest step of a companion is longer."""
+        return ROBOT_LONGER_STEPS if self.method == ROBOTS else LONGER_STEPS
 
     def by_adams(self) -> "Accuracy":
         """Settings with some such error by Adams' method, where these are those of the embedded pair."""
@@ -238,7 +244,7 @@ class Accuracy:
         ratio = max(ratio, LEAST_TIGHTENED)
         looser, denser, longer = ratio**TIGHTER, ratio**-DENSER, ratio**SHORTER
         least = LEAST_ROBOT_TIGHTER if self.method == ROBOTS else LEAST_TIGHTER
-        changes = min(looser, least), max(denser, LEAST_DENSER), min(longer, 1.0 / LONGER_STEPS)
+        changes = min(looser, least), max(denser, LEAST_DENSER), min(longer, 1.0 / self._longer_steps)
         return variant(self._changed(*changes), kinks="all")
 
     def with_other_points(self) -> "Accuracy":

@@ -68,6 +68,10 @@ class ErrorEstimate:
         """The greater of those of position and torque."""
         return max(self.position, self.torque or 0.0)
 
+    def with_torque(self, least: float) -> "ErrorEstimate":
+        """The same, with no error of the torque below `least`, where there is one."""
+        return self if self.torque is None else replace(self, torque=max(self.torque, least))
+
     def at_least(self, share: float, other: "ErrorEstimate") -> "ErrorEstimate":
         """The same, with no error below `share` of that of `other`, where this is known."""
         least = {name: value for name, value in other.errors.items() if np.isfinite(value)}

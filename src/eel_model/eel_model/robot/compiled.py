@@ -20,7 +20,7 @@ from eel_model.body.body import Body
 from eel_model.body.shapes import values_along
 from eel_model.robot.actuators import Servo, Torque
 from eel_model.robot.continuous import Muscle, PassiveTail
-from eel_model.robot.joint import Joint
+from eel_model.robot.joint import STOP_DEPTH, Joint
 from eel_model.robot.part import AXES
 from eel_model.robot.robot import Robot
 
@@ -70,7 +70,7 @@ class ModeTable:
     initial: np.ndarray  # (M,) rad, of q at the start; NaN where it is not given
     limits: np.ndarray  # (M, 2) rad, of q, infinite where there are none
     stop_stiffness: np.ndarray  # (M,) N m/rad
-    stop_damping: np.ndarray  # (M,) N m s/rad
+    stop_damping: np.ndarray  # (M,) N m s/rad^2, by the depth
     motors: tuple[Motor, ...]  # the servos
     torques: tuple[tuple[int, Torque], ...]  # of joints whose torque is given over time: the mode, and that
     muscles: tuple[MuscleTable, ...]
@@ -160,7 +160,7 @@ def mode_table(robot: Robot, body: Body, planar: bool = False) -> ModeTable:
         initial=sign * column("initial_angle", np.nan),
         limits=np.sort(sign[:, None] * column("limits", (-np.inf, np.inf)), axis=1),
         stop_stiffness=column("stop_stiffness", 0.0),
-        stop_damping=column("stop_damping", 0.0),
+        stop_damping=column("stop_damping", 0.0) / STOP_DEPTH,
         motors=motors,
         torques=tuple((mode, part.actuator) for part, mode in placed if isinstance(_actuator(part), Torque)),
         muscles=tuple(_muscle(part, first) for part, first in placed if isinstance(part, Muscle)),

@@ -6,9 +6,14 @@ joint becomes a hinge, and the motion converges to that of rigid links. The torq
 
     stiffness (angle - rest_angle) + damping rate - tau,
 
-tau of the motor, and beyond a limit also the stop's stop_stiffness (angle - limit) + stop_damping rate. All angles are
-positive where the body bends to the left (yaw) or up (pitch), as the gaits' `left_bend`; with the axis "-yaw" or
-"-pitch" to the right or down. A positive turn of the part behind about z is "-yaw", one about y is "pitch".
+tau of the motor, and at a depth > 0 beyond a limit also that of the stop, against the depth:
+
+    depth max(0, stop_stiffness + stop_damping depth_rate / STOP_DEPTH).
+
+It starts from zero at contact, as of Hunt and Crossley (J. Appl. Mech. 42 (1975)), so that no torque jumps; and a stop
+never pulls. All angles are positive where the body bends to the left (yaw) or up (pitch), as the gaits' `left_bend`;
+with the axis "-yaw" or "-pitch" to the right or down. A positive turn of the part behind about z is "-yaw", one about y
+is "pitch".
 """
 
 from dataclasses import dataclass
@@ -21,6 +26,7 @@ from eel_model.robot.actuators import Actuator, Servo, Torque
 from eel_model.robot.part import Part, checked_range
 
 LONGEST_NAME = 100
+STOP_DEPTH = 0.01  # rad beyond a limit, where the stop has its `stop_damping`
 
 
 @documented
@@ -43,7 +49,7 @@ class Joint(Part):
     actuator: Actuator | None = quantity(None, "", "a Servo or a Torque; None: passive", plain=True)
     name: str = quantity("", "", "in messages, commands and tables; empty: joint_1, joint_2, ...", plain=True)
     stop_stiffness: float = quantity(100.0, "N m/rad", "of the hard stops", 0.0, exclusive=True)
-    stop_damping: float = quantity(0.1, "N m s/rad", "of the hard stops", 0.0)
+    stop_damping: float = quantity(0.1, "N m s/rad", "of the hard stops, 0.01 rad beyond the limit", 0.0)
     initial_angle: float | None = quantity(
         None, "rad", "at the start, at rest; None: the servo's reference, or where the spring rests"
     )

@@ -26,11 +26,20 @@ struct Servo {
     double torque_limit, speed_limit;  // [N m], [rad/s]; infinite: none
 };
 
-// A spring and damper beyond the limits of a mode.
+// What holds a mode beyond its limits: stiffness depth + damping depth d(depth)/dt, as of Hunt and Crossley (J. Appl.
+// Mech. 42 (1975)). It starts from zero at contact, so that no force jumps; and it never pulls.
 struct Stop {
     std::size_t mode;
     double low, high;  // [rad], or rad/m
-    double stiffness, damping;
+    double stiffness;  // [N m/rad]
+    double damping;    // [N m s/rad^2]
+
+    double beyond(double x) const { return x > high ? x - high : x < low ? x - low : 0.0; }  // < 0 below the lower one
+    // Force by `beyond`: the spring's and the damper's, >= 0.
+    double hardness(double beyond, double rate) const
+    {
+        return std::max(0.0, stiffness + damping * std::copysign(1.0, beyond) * rate);
+    }
 };
 
 // A torque that is given over time.
@@ -170,11 +179,10 @@ inline void set_forces(const Modes& modes, const std::vector<Target>& target, co
     }
     for (const Stop& stop : modes.stops) {
         const std::size_t m = stop.mode;
-        const double beyond = x[m] > stop.high ? x[m] - stop.high : x[m] < stop.low ? x[m] - stop.low : 0.0;
-        if (beyond == 0.0) continue;
-        forces.total[m] += stop.stiffness * beyond + stop.damping * rate[m];
+        const double beyond = stop.beyond(x[m]), force = stop.hardness(beyond, rate[m]) * beyond;
+        forces.total[m] += force;
         forces.elastic += 0.5 * stop.stiffness * beyond * beyond;
-        forces.damping_power -= stop.damping * rate[m] * rate[m];
+        forces.damping_power -= (force - stop.stiffness * beyond) * rate[m];
     }
     for (std::size_t s = 0; s < modes.servos.size(); ++s) {
         const Servo& servo = modes.servos[s];
@@ -186,16 +194,14 @@ inline void set_forces(const Modes& modes, const std::vector<Target>& target, co
     }
 }
 
-// Derivatives of the forces by coordinates and rates, and of what a reference that moves adds to their rate.
+// Derivatives of the forces, but of stops, by coordinates and rates, and of what a reference that moves adds to their
+// rate.
 inline void linearise(const Modes& modes, const std::vector<Target>& target, const double* x, const double* rate,
                       std::vector<double>& stiffness, std::vector<double>& damping, std::vector<double>& in_time)
 {
     const std::size_t n = modes.coordinates;
     stiffness = modes.stiffness, damping = modes.damping;
     std::fill(in_time.begin(), in_time.end(), 0.0);
-    for (const Stop& stop : modes.stops)
-        if (const std::size_t m = stop.mode; x[m] > stop.high || x[m] < stop.low)
-            stiffness[m * n + m] += stop.stiffness, damping[m * n + m] += stop.damping;
     for (std::size_t s = 0; s < modes.servos.size(); ++s) {
         const Servo& servo = modes.servos[s];
         const std::size_t i = servo.coordinate;
@@ -209,6 +215,18 @@ inline void linearise(const Modes& modes, const std::vector<Target>& target, con
         } else if (const double slope = wanted >= high ? by : -by; 0.0 < slope && slope < 1.0) {
             damping[i * n + i] += servo.torque_limit / servo.speed_limit;
         }
+    }
+}
+
+// Adds the stops to `linearise`.
+inline void linearise_stops(const Modes& modes, const double* x, const double* rate, std::vector<double>& stiffness,
+                            std::vector<double>& damping)
+{
+    for (const Stop& stop : modes.stops) {
+        const std::size_t m = stop.mode, place = m * modes.coordinates + m;
+        const double beyond = stop.beyond(x[m]), hardness = stop.hardness(beyond, rate[m]);
+        if (beyond == 0.0 || hardness == 0.0) continue;
+        stiffness[place] += hardness, damping[place] += stop.damping * std::abs(beyond);
     }
 }
 

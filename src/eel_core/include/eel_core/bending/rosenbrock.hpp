@@ -61,6 +61,7 @@ struct BentPoint {
     State head_rate{};
     std::vector<double> momentum_rate, rate, drift, force;
     std::vector<double> stiffness, damping, in_time;  // of the forces
+    std::vector<double> damping_but_stops;            // theirs grows from zero, so that no acceleration jumps
     Frame<M, double> head{};                          // axes of the head
     Definite mass;
     BentPowers powers{};
@@ -227,6 +228,8 @@ class BentStepper {
         point.mass = body_.columns.mass;
         linearise(*modes_, body_.target, point.y.x.data(), point.rate.data(), point.stiffness, point.damping,
                   point.in_time);
+        point.damping_but_stops = point.damping;
+        linearise_stops(*modes_, point.y.x.data(), point.rate.data(), point.stiffness, point.damping);
         if (settings.ledger) point.powers = with_dampers(body_.powers(), body_.forces.damping_power);
         return true;
     }
@@ -236,7 +239,7 @@ class BentStepper {
     // is filtered by (M + g D + g^2 K)^-1 g D, which is small where dampers are not stiff. False without such ends.
     bool smooth_rates(const BentPoint<M>& point)
     {
-        if (known_ends_ < 2 || before_.damping != damping_of_ends_) return false;
+        if (known_ends_ < 2 || before_.damping_but_stops != damping_of_ends_) return false;
         constexpr std::size_t head = M::freedoms;
         const std::size_t c = modes_->coordinates;
         const std::array<double, 4> time{ends_[1].time, ends_[0].time, before_.time, point.time};
@@ -274,8 +277,8 @@ class BentStepper {
     // Makes the start of the last step one of the past ends.
     void remember_end()
     {
-        if (known_ends_ > 0 && before_.damping != damping_of_ends_) known_ends_ = 0;
-        damping_of_ends_ = before_.damping;
+        if (known_ends_ > 0 && before_.damping_but_stops != damping_of_ends_) known_ends_ = 0;
+        damping_of_ends_ = before_.damping_but_stops;
         known_ends_ = std::min(known_ends_ + 1, ends_.size());
         std::rotate(ends_.begin(), ends_.end() - 1, ends_.end());
         ends_[0].time = before_.time, ends_[0].x = before_.y.x;
@@ -461,7 +464,7 @@ class BentStepper {
     };
     std::array<End, 3> ends_;  // of the steps before the last, the latest first
     std::size_t known_ends_ = 0;
-    std::vector<double> damping_of_ends_;  // linear in the rates, of the forces there
+    std::vector<double> damping_of_ends_;  // `damping_but_stops` there
     Definite matrix_;                      // of the last step, factored
     std::array<State, Tableau::stages> step_head_{};
     std::array<std::vector<double>, Tableau::stages> step_x_, step_p_, step_u_;
