@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The node's log and its content of /diagnostics."""
 
+import pytest
 from eel_ros.loop.diagnostics import ERROR, OK, WARN, Report
 from eel_ros.testing.log import Log
 
@@ -36,3 +37,20 @@ def test_differing_events_are_all_logged_if_asked():
         report.event("law", text, ERROR, differing=True)
     assert log.lines == [("error", "one"), ("error", "two")]
     assert report.state()[0] == ERROR
+
+
+@pytest.mark.parametrize("differing", [False, True])
+def test_the_same_event_is_logged_once_while_it_lasts(differing):
+    now, log = [0.0], Log()
+    report = Report(log, lambda: now[0])
+    for step in range(100):
+        now[0] = 0.1 * step
+        report.event("command", "neck is no joint", ERROR, differing)
+    assert log.lines == [("error", "neck is no joint")] and report.state() == (ERROR, ["neck is no joint"])
+    now[0] += 1.0
+    report.event("command", "neck is no joint", ERROR, differing)
+    assert len(log.lines) == 2
+    for _ in range(15):  # another one that could not be told at once is told
+        now[0] += 0.1
+        report.event("command", "hip is no joint", ERROR, differing)
+    assert [text for _, text in log.lines] == ["neck is no joint"] * 2 + ["hip is no joint"]

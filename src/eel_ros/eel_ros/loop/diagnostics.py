@@ -29,7 +29,7 @@ class Event:
 
     level: int = OK
     text: str = ""
-    logged: float = -math.inf  # s
+    told: str = ""  # the text that was logged last
     seen: float = -math.inf  # s
     begin: float = -math.inf  # s
     lines: int = 0
@@ -68,12 +68,13 @@ class Report:
         return kind in self._lasting
 
     def event(self, kind: str, text: str, level: int = WARN, differing: bool = False) -> None:
-        """Log an event; at most one a second of one kind, or with `differing` up to `BURST` different texts."""
+        """Log an event: the same text once while it comes again within a second, each time.
+
+        Of other texts of one kind one a second, or with `differing` up to `BURST`.
+        """
         event, now = self._events.setdefault(kind, Event()), self._now()
-        if not differing:
-            self._record(event, level, text, 1)
-        elif text != event.text or now - event.logged >= REPEAT:
-            self._record(event, level, text, BURST)
+        if text != event.told or now - event.seen >= REPEAT:
+            self._record(event, level, text, BURST if differing else 1)
         event.level, event.text, event.seen = level, text, now
 
     def state(self) -> tuple[int, list[str]]:
@@ -92,7 +93,7 @@ class Report:
             event.left_out += 1
             return
         more = f" (and {event.left_out} more before, not shown)" if event.left_out and most > 1 else ""
-        event.logged, event.lines, event.left_out = now, event.lines + 1, 0
+        event.told, event.lines, event.left_out = text, event.lines + 1, 0
         self._log(level, text + more)
 
     def _log(self, level: int, text: str) -> None:
