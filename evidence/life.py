@@ -2,7 +2,7 @@
 """`python evidence/life.py`: filmed swimmers beside what was measured on them.
 
 python evidence/life.py lamprey docs/data/lamprey_midlines.csv --widths docs/data/widths.csv --out lamprey.png
-python evidence/life.py robot docs/data/tendon_fish_?.??Hz.csv --body docs/data/tendon_fish_body.csv --rigid 0.5
+python evidence/life.py robot docs/data/tendon_fish_hinges_?.??Hz.csv --body docs/data/tendon_fish_body.csv --rigid 0.64
 """
 
 import argparse

@@ -56,7 +56,7 @@ def test_options_of_films_need_a_film_and_a_body_its_length(tmp_path, capsys):
     assert "--midlines takes the place of a gait" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("name", sorted(each.name for each in LAMPREY.parent.glob("tendon_fish_?.??Hz.csv")))
+@pytest.mark.parametrize("name", sorted(each.name for each in LAMPREY.parent.glob("tendon_fish_hinges_*.csv")))
 def test_the_films_of_a_robot_with_close_markers_are_read(name):
     found = read_film(LAMPREY.with_name(name))
     assert found.names[:2] == ("0", "1") and len(found.names) >= 6
