@@ -24,7 +24,7 @@ SCRIPTS: dict[str, tuple[str, ...]] = {  # name: arguments of each run
     "life": (
         "lamprey docs/data/lamprey_midlines.csv --widths docs/data/widths.csv --out docs/images/life_lamprey.png",
     ),
-    "robots": ("--out docs/data/robots.csv",),
+    "robot_swims": ("--out docs/data/robots.csv",),
     "robot_log": (
         "docs/data/amphibot_joints.csv --clock 1.078 --links 0.094x7 --section 0.0275,0.0165 --joint-drag flush "
         "--seen docs/data/amphibot_leds.csv --out docs/images/life_amphibot.png",

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`python evidence/robots.py`: blunt and jointed robots beside what was measured on them.
+"""`python evidence/robot_swims.py`: blunt and jointed robots beside what was measured on them.
 
-python evidence/robots.py --out docs/data/robots.csv
+python evidence/robot_swims.py --out docs/data/robots.csv
 
 Mamba swims by its published gaits and AmphiBot III by the log of its joints, on bodies of links; the tendon fish by its
 hinges, on its published sections with appendages. Nothing is fitted to a speed but c_s = 0.65, to Mamba's undulation,
@@ -41,15 +41,15 @@ MASS = 1.481  # kg, of the tendon fish
 LOWEST, HIGHEST = 127.0 / 172.0, 261.0 / 172.0  # of its drag areas: lowest and highest textbook coefficients
 FINITE = np.array([[0.0, 1.0], [0.36, 1.0], [0.378, 0.80], [0.445, 0.62], [0.482, 0.82], [0.501, 1.0], [0.52, 0.49],
                    [0.54, 0.34], [0.5594, 0.25]])  # fmt: skip
-"""X [m], and the added mass of the tendon fish's tail by that of slender sections: vortex rings on its flat planform."""
+"""X [m], and the added mass of its tail by that of slender sections: vortex rings on its flat planform."""
 NEUTRAL = {"lateral_drag": 1.98, "vertical_drag": 1.0, "round_added_mass": 1.0, "joint_drag": 0.0}
 SMOOTH_ENDS = {"nose_drag": 0.036, "base_drag": 0.0}
 
 
-@command("robots.py", "Blunt and jointed robots beside what was measured on them.",
+@command("robot_swims.py", "Blunt and jointed robots beside what was measured on them.",
          add_options=lambda parser: add_options(parser, "--out"))  # fmt: skip
 def main(options: argparse.Namespace) -> None:
-    outs = checked_outs("robots.py", options)
+    outs = checked_outs("robot_swims.py", options)
     table = Table(
         ("swimmer", "model", "speed [m/s]", "measured", "by measured", "greatest torque [N m]", "power [W]"),
         [*mamba(), *amphibot(), *tendon_fish()],
