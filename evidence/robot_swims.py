@@ -97,6 +97,7 @@ def swum(log: Any, joints: np.ndarray, body: Body) -> tuple[float, str, str]:
     """Mean speed [m/s], greatest torque of a joint [N m] and mean power [W] of a log's swim."""
     first, _, _ = replay(law_of_links(log, joints, body.length), body, joints, PLANAR, uncertain={}, accuracy=1e-2)
     later = first.run.time >= 0.5 * first.run.time[-1]
+    assert first.run.energy is not None  # the scene has it on
     work = first.run.energy.actuator_work
     power = (work[-1] - work[later][0]) / (first.run.time[-1] - first.run.time[later][0])
     return first.speed, f"{np.max(np.abs(first.torque[later])):.3g}", f"{power:.3g}"

@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 import report_tables
 import robot_log
+import robot_swims
 import steering
 from eel_gaits.gaits.registry import GAITS
 from eel_gaits.pilot.goals import Path
@@ -77,8 +78,18 @@ def test_the_street_comes_from_a_cylinder_ahead():
 def test_a_robot_log_with_its_band(tmp_path, capsys):
     data, out = ROOT / "docs/data", tmp_path / "log.csv"
     words = f"{data}/amphibot_joints.csv --links 0.094x7 --section 0.0275,0.0165 --seen {data}/amphibot_leds.csv"
+    words += " --joint-drag flush"
     assert robot_log.main([*words.split(), *f"--samples 1 --duration 1.5 --accuracy 1e-2 --out {out}".split()]) == 0
     assert "lateral_added_mass" in capsys.readouterr().out and "x_low" in out.read_text()
+
+
+def test_robots_swim_as_the_page_says():
+    rows = {row[1]: row for row in robot_swims.amphibot()}
+    before, after = rows["without the new terms"], rows["c_s 0, as its coasting says"]
+    assert float(before[2]) == pytest.approx(0.755, rel=0.02)  # m/s; the target is 1e-2
+    assert float(after[2]) == pytest.approx(0.597, rel=0.02) and 0.96 < float(after[4]) < 1.04
+    (film,) = [robot_swims.beat("2.00")]
+    assert film.measured.speed == pytest.approx(0.2021, abs=1e-4)
 
 
 def test_midlines_come_out_as_they_went_in(tmp_path, capsys):
