@@ -19,6 +19,7 @@ from eel_viz.messages import BadMessage
 UNIT_TOLERANCE = 1e-6  # of a quaternion's norm
 MOST_STATIONS = 20_000  # of a message; the dynamics node has at most half as many
 MOST_PARTS = 256  # of a kind
+MOST_APPENDAGES = 1000
 
 
 def stamp_of(message: Any) -> int:
@@ -68,7 +69,7 @@ def read_body(message: Any) -> messages.Body:
             raise BadMessage(name, f"must be > 0 and finite, got {shown(value)}")
     fins = tuple(_fin(each, message.length) for each in _few("fins", getattr(message, "fins", ())))
     joints = tuple(_joint(each, message.length) for each in _few("joints", getattr(message, "joints", ())))
-    return messages.Body(**size, x=x, **half, fins=fins, joints=joints)
+    return messages.Body(**size, x=x, **half, fins=fins, joints=joints, appendages=_appendages(message))
 
 
 def read_path(message: Any) -> np.ndarray:
@@ -213,6 +214,20 @@ def _few(name: str, values: Any) -> Any:
     if len(values) > MOST_PARTS:
         raise BadMessage(name, f"must have at most {MOST_PARTS}, got {len(values)}")
     return values
+
+
+def _appendages(message: Any) -> np.ndarray:
+    """Places [m] and drag areas [m^2], (A, 4)."""
+    if not hasattr(message, "appendages"):
+        return np.zeros((0, 4))
+    count = len(message.appendage_area)
+    if count > MOST_APPENDAGES:
+        raise BadMessage("appendages", f"must be at most {MOST_APPENDAGES}, got {count}")
+    places = _row(message, "appendages", 3 * count, "appendage_area").reshape(-1, 3)
+    area = _row(message, "appendage_area", count, "appendages")
+    if np.any(area < 0.0):
+        raise BadMessage("appendage_area", f"has negative values, the least is {area.min():g} m^2")
+    return np.column_stack((places, area))
 
 
 def _fin(message: Any, length: float) -> messages.Fin:

@@ -58,7 +58,10 @@ class Joint:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Body:
-    """`length` [m], `mass` [kg], and half axes [m], (B,) at `x` [m], (B,); what it has of fins and joints."""
+    """`length` [m], `mass` [kg], and half axes [m], (B,) at `x` [m], (B,); what it has of fins, joints, appendages.
+
+    appendages (A, 4): X, offsets along section axes 2 and 3 [m], drag area [m^2].
+    """
 
     length: float
     mass: float
@@ -67,6 +70,7 @@ class Body:
     half_height: np.ndarray
     fins: tuple[Fin, ...] = ()
     joints: tuple[Joint, ...] = ()
+    appendages: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

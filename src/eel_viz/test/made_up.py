@@ -136,9 +136,12 @@ class Swimmer:
             "fins_power": -0.04 * ramp,
             "damping_power": -0.02 * ramp,
             "elastic": 0.03 * (1 + ramp),
+            "appendages_power": -0.01 * ramp,
             **{
                 f"{part}_work": 0.1 * k * t
-                for k, part in enumerate(("actuator", "wake", "nose", "drag", "flow", "fins", "damping"), 1)
+                for k, part in enumerate(
+                    ("actuator", "wake", "nose", "drag", "flow", "fins", "damping", "appendages"), 1
+                )
             },
         }
 

@@ -14,7 +14,7 @@ from eel_viz.recording.dispatcher import Dispatcher
 from eel_viz.recording.reading import read
 from eel_viz.recording.recording_file import FileDestination
 from eel_viz.recording.recordings import Recordings
-from eel_viz.robots.part_shapes import AROUND, AXLE, EDGE, FinPlates, JointRings
+from eel_viz.robots.part_shapes import AROUND, AXLE, EDGE, AppendageBalls, FinPlates, JointRings
 from eel_viz.ros.marker_messages import FinMarker, JointMarkers
 from eel_viz.scene3d import colours
 from eel_viz.settings import Settings
@@ -75,6 +75,16 @@ def test_a_ring_lies_about_the_body_and_its_axle_along_the_axis(backbone):
         assert far.sum() == 3 and np.abs(local[far, 4 - joint.axis]).max() < 1e-9
 
 
+def test_an_appendage_is_a_ball_as_wide_as_its_drag_area_at_its_place(backbone):
+    given = np.array([[0.2, 0.03, -0.04, 2e-3], [0.5, 0.0, 0.06, 0.0]])
+    balls = AppendageBalls(replace(body(), appendages=given))
+    for place, (x, right, up, _) in zip(balls.place(backbone), given, strict=True):
+        at = int(np.searchsorted(backbone.x, x - 1e-9))
+        local = (place - backbone.position[at]) @ section_axes(backbone.orientation[at])
+        np.testing.assert_allclose(local, [0.0, right, up], atol=1e-9)
+    np.testing.assert_allclose(np.pi * balls.radii.astype(float) ** 2, given[:, 3], rtol=1e-6)
+
+
 def test_loads_are_shares_of_the_limit_and_red_at_the_limit_alone():
     motors = Motors(
         torque=np.array([0.0, -0.5, 0.999, 2.0, 0.1, 3.0]),
@@ -108,7 +118,8 @@ def record(path, *, parts, motors=MOTORS, early=0):
     for k, stamp in enumerate(STAMPS):
         if k == early:
             dispatcher.poll()
-            dispatcher.dispatch("body", message_of_parts() if parts else NS(**made_up.body()))
+            hung = {"appendages": [0.2, 0.03, -0.04], "appendage_area": [2e-3]}
+            dispatcher.dispatch("body", message_of_parts(**hung) if parts else NS(**made_up.body()))
         if k == 3:
             dispatcher.dispatch("curvature_law", NS(name="in between"))
         header = NS(stamp=NS(sec=0, nanosec=stamp))
@@ -134,6 +145,7 @@ def test_parts_are_recorded_at_every_sample(tmp_path, early):
     said = record(path, parts=True, early=early)
     assert len(said) == 1 and "saving to" in said[0]
     assert read(path, entities.FINS)["vertex_positions"].shape == (10, 2 * (EDGE + 1), 3)
+    assert read(path, entities.APPENDAGES)["positions"].shape == (10, 1, 3)
     rings = read(path, entities.JOINTS)
     assert rings.stamps.tolist() == list(STAMPS)
     red, half = (np.array(rings["colors"])[-1] >> 8).tolist()
@@ -212,6 +224,8 @@ def test_joints_are_markers_in_the_colours_of_their_loads(backbone):
 
 
 BAD = [
+    (lambda: read_body(message_of_parts(appendages=[0.1, 0.0], appendage_area=[1e-3])), "appendages", "3 numbers"),
+    (lambda: read_body(message_of_parts(appendages=[0.1, 0, 0], appendage_area=[-1.0])), "appendage_area", "negative"),
     (lambda: read_body(message_of_parts(fins=[replace(FINS[0], station=1.5)])), "fins", "station"),
     (lambda: read_body(message_of_parts(fins=[replace(FINS[0], area=-1.0)])), "fins", "area"),
     (lambda: read_body(message_of_parts(fins=[replace(FINS[0], dihedral=np.nan)])), "fins", "dihedral"),

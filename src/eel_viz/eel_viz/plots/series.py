@@ -28,7 +28,12 @@ SERIES = {  # entity: (name, colour) of each value
         ("nose", colours.ENDS),
         ("drag", colours.FORCE),
     ),
-    entities.POWER_BESIDES: (("flow", colours.FLOW), ("fins", colours.FIN), ("dampers", colours.SPRINGS)),
+    entities.POWER_BESIDES: (
+        ("flow", colours.FLOW),
+        ("fins", colours.FIN),
+        ("dampers", colours.SPRINGS),
+        ("appendages", colours.APPENDAGE),
+    ),
     entities.KINETIC: (("body", colours.PLAIN), ("water", colours.FORCE)),
     entities.STORED: (("weight", colours.FLOW), ("springs", colours.SPRINGS)),
     entities.RESIDUAL: (("residual [J]", colours.PLAIN),),
@@ -36,7 +41,7 @@ SERIES = {  # entity: (name, colour) of each value
 
 
 BESIDES = {  # curves that begin with the first value that is not 0
-    entities.POWER_BESIDES: ("flow_power", "fins_power", "damping_power"),
+    entities.POWER_BESIDES: ("flow_power", "fins_power", "damping_power", "appendages_power"),
     entities.STORED: ("potential", "elastic"),
 }
 

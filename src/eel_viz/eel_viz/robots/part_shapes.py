@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fins as half ellipses of their own area and span, turned about the hinge line at half chord; joints as rings.
+"""Fins as half ellipses of their own area and span, turned about the hinge line at half chord; joints as rings;
+appendages as balls.
 
 With the angle a, the root's normal n at rest and the section's axis E1 (towards the tail), the chord's direction
 towards the leading edge is sin(a) n - cos(a) E1, as in eel_core/fins.hpp.
@@ -45,6 +46,20 @@ class FinPlates:
         vertices = middle[:, None] + np.einsum("fij,fkj->fki", axes, local)
         normals = np.repeat(np.einsum("fij,fj->fi", axes, normal), EDGE + 1, axis=0)
         return vertices.reshape(-1, 3).astype(np.float32), normals.astype(np.float32)
+
+
+class AppendageBalls:
+    """Places the appendages of a `body`. radii: (A,) [m], of circles as large as their drag areas."""
+
+    def __init__(self, body: Body) -> None:
+        self._stations, offsets, area = body.appendages[:, 0], body.appendages[:, 1:3], body.appendages[:, 3]
+        self._offset = np.column_stack((np.zeros(len(area)), offsets))
+        self.radii = np.sqrt(area / np.pi).astype(np.float32)
+
+    def place(self, backbone: Backbone) -> np.ndarray:
+        """(A, 3) [m], in the world."""
+        middle, axes = Resampling(backbone.x, self._stations).centre_line(backbone.position, backbone.orientation)
+        return np.asarray(middle + np.einsum("aij,aj->ai", axes, self._offset))
 
 
 class JointRings:

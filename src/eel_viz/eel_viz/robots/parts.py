@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws fins, joints and motors of one swimmer, by the methods of their topics; of a body without them nothing."""
+"""Draws fins, joints, motors, appendages of one swimmer, by the methods of their topics; of a body without, nothing."""
 
 import numpy as np
 import rerun as rr
@@ -8,7 +8,7 @@ from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import AT_LIMIT, Backbone, Body, JointStates, Motors
 from eel_viz.robots.motor_plots import MotorPlots
-from eel_viz.robots.part_shapes import FinPlates, JointRings
+from eel_viz.robots.part_shapes import AppendageBalls, FinPlates, JointRings
 from eel_viz.same_stamp import SameStamp
 from eel_viz.scene3d import colours, legend
 
@@ -22,6 +22,7 @@ class Parts:
         self._stream = stream
         self._plates: FinPlates | None = None
         self._rings: JointRings | None = None
+        self._balls: AppendageBalls | None = None
         self._motors: MotorPlots | None = None
         self._joints = 0
         self._turned: SameStamp[Backbone, JointStates] = SameStamp(self._draw_fins)
@@ -30,8 +31,13 @@ class Parts:
 
     def body(self, stamp: int, body: Body) -> None:
         self._joints = len(body.joints)
-        if body.fins or body.joints:
-            legend.log_parts(self._stream, fins=bool(body.fins), joints=bool(body.joints))
+        shown = {"fins": bool(body.fins), "joints": bool(body.joints), "appendages": len(body.appendages) > 0}
+        if any(shown.values()):
+            legend.log_parts(self._stream, **shown)
+        if shown["appendages"]:
+            self._balls = AppendageBalls(body)
+            balls = rr.Points3D.from_fields(radii=self._balls.radii, colors=colours.APPENDAGE)
+            self._stream.log_static(entities.APPENDAGES, balls)
         if body.fins:
             self._plates = FinPlates(body)
             plates = rr.Mesh3D.from_fields(triangle_indices=self._plates.triangles, albedo_factor=colours.FIN)
@@ -46,6 +52,9 @@ class Parts:
             self._turned.first(stamp, backbone)
         if self._rings is not None and self._stream.drawing_due("rings", stamp):
             self._driven.first(stamp, backbone)
+        if self._balls is not None and self._stream.drawing_due("appendages", stamp):
+            places = self._balls.place(backbone).astype(np.float32)
+            self._stream.add_row(stamp, entities.APPENDAGES, rr.Points3D, positions=places)
 
     def fin_states(self, stamp: int, states: JointStates) -> None:
         self._log_states(stamp, entities.FIN_NUMBERS, states)

@@ -22,6 +22,7 @@ PATH = (150, 172, 192)  # blue-grey: of the head
 COURSE = (150, 232, 196)  # mint: way points of a goal
 SPRINGS = (176, 132, 96)  # brown: springs and dampers of joints
 FIN = (186, 214, 130)  # lime: fins, and their power
+APPENDAGE = (170, 150, 200)  # lilac: what hangs on the body, and its power
 OTHER = (244, 244, 240)  # white: the run that is laid over this one
 PLAIN = (190, 196, 202)  # a quantity that is alone in its plot
 GREY = (150, 155, 160)  # no data

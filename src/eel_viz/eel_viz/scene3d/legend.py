@@ -21,7 +21,8 @@ BAR_AT = (-0.50, -0.425)  # tangents: the middle of the bar
 BAR_SIZE = (0.27, 0.018)
 WORDS_AT = -0.42  # tangent: the height of the words
 FORCE_AT, ENDS_AT, WAKE_AT = -0.06, 0.27, 0.51  # tangents: the middles of the words
-PARTS_AT, RINGS_AT = -0.463, 0.30  # tangents: the height of the words below, and the middle of those of the rings
+PARTS_AT, RINGS_AT, BALLS_AT = -0.463, 0.30, -0.36  # tangents: the height of the words below, and the middles of
+# those of the rings and of the balls
 LETTERS = 0.020  # tangent: height of a capital
 BAND = (-0.60, -0.39)  # tangents: lower and upper edge of the ground of the legend
 STEPS = 33
@@ -60,9 +61,13 @@ def log_words(stream: BatchedStream, stamp: int) -> None:
     stream.log(stamp, entities.WAKE_LEGEND, _words(WORDS_AT, [(WAKE_AT, "wake", colours.WAKE)]))
 
 
-def log_parts(stream: BatchedStream, *, fins: bool, joints: bool) -> None:
-    """Log what plates and rings are, below the other words, valid at all times."""
-    words = {(FORCE_AT, "fins", colours.FIN): fins, (RINGS_AT, "joints, red at the limit", colours.LABEL): joints}
+def log_parts(stream: BatchedStream, *, fins: bool, joints: bool, appendages: bool) -> None:
+    """Log what plates, rings and balls are, below the other words, valid at all times."""
+    words = {
+        (FORCE_AT, "fins", colours.FIN): fins,
+        (RINGS_AT, "joints, red at the limit", colours.LABEL): joints,
+        (BALLS_AT, "appendages", colours.APPENDAGE): appendages,
+    }
     shown = [each for each, there in words.items() if there]
     stream.log_static(f"{entities.LEGEND}/parts", _words(PARTS_AT, shown))
 

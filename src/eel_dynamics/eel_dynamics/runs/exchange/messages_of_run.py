@@ -33,15 +33,18 @@ def messages_of_run(run: RunData) -> Iterator[tuple[str, SimpleNamespace]]:
 
 
 def outline(body: Body, x: np.ndarray) -> dict[str, np.ndarray]:
-    """Abscissae and half axes of the body [m], each (N,), by the field names of BodyGeometry.
+    """Abscissae and half axes of the body [m], each (N,), and its A appendages, by the field names of BodyGeometry.
 
-    The abscissae are `x` (M,) [m] and points in between, which are denser at the nose.
+    The abscissae are `x` (M,) [m] and points in between, which are denser at the nose. Of the appendages (3 A,) [m] are
+    the places, (A,) [m^2] the areas.
     """
     x = np.array(sorted({*x, *(body.length * np.linspace(0.0, 1.0, 101) ** 2)}))
     return {
         "x": x,
         "half_width": np.asarray(body.half_width(x), dtype=float),
         "half_height": np.asarray(body.half_height(x), dtype=float),
+        "appendages": np.array([[each.x, each.y, each.z] for each in body.appendages], dtype=float).ravel(),
+        "appendage_area": body.appendage_factor * np.array([max(each.drag) for each in body.appendages], dtype=float),
     }
 
 
