@@ -55,11 +55,13 @@ class Identified(EqualByFields):
         return dict(zip(self.names, self.value.tolist(), strict=True))
 
     def table(self) -> str:
-        """The parameters as lines of text."""
+        """The parameters with their standard errors and intervals, as lines of text."""
         width = max(len(name) for name in self.names)
         lines = [
-            f"{name:<{width}s}  {value:.5g}, {100.0 * self.level:.4g} % interval {low:.5g} to {high:.5g}"
-            for name, value, low, high in zip(self.names, self.value, self.low, self.high, strict=True)
+            f"{name:<{width}s}  {value:.5g} +- {error:.2g}, {100.0 * self.level:.4g} % interval {low:.5g} to {high:.5g}"
+            for name, value, error, low, high in zip(
+                self.names, self.value, self.error, self.low, self.high, strict=True
+            )
         ]
         lines.append(f"{'errors':<{width}s}  {self.noise:.3g}, each correlated with the next by {self.correlation:.2f}")
         return "\n".join(lines)
