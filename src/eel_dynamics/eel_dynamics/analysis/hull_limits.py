@@ -28,15 +28,19 @@ STRIP = np.array([[0.0, 1.0], [0.1, 0.991], [0.2, 0.969], [0.3, 0.941], [0.5, 0.
                   [1.5, 0.576], [2.0, 0.479], [3.0, 0.353], [5.0, 0.229]])  # fmt: skip
 """k a, and the added mass of an endless strip that waves so, by that of a rigid one."""
 PLACES = 33  # along the body
+COINCIDENT = 1e-9  # of the body's length, by which the last station may lie ahead of the tail
 RISEN = 0.02  # part of the rise of the height from which on it counts
 
 
 def hull_warnings(run) -> list[str]:
     """Limits of the hull's coefficients and of the slender tail that a `Run` exceeded, one line each.
 
-    Those of a motion need a gait with a period, and water that moves at most with a uniform current.
+    Those of a motion need a gait with a period, a station at the tail, and water that moves at most with a uniform
+    current.
     """
     found = [_of_rise(run)] if run.scene.reactive else []
+    if abs(run.x[-1] - run.body.length) > COINCIDENT * run.body.length:
+        return [text for text in found if text]
     try:
         analysis = Analysis(run)
     except ValueError:  # no period, or too few samples
