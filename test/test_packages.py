@@ -49,6 +49,7 @@ OPTIONAL = {
     "pytest",
     "dask",
     "distributed",
+    "h5py",
     "eel_viz",
     "gymnasium",
     "xarray",

@@ -85,9 +85,9 @@ StepBounds bounds_from(const py::kwargs& given)
     StepBounds made{};
     for (const auto& [name, member] : step_bounds) {
         const double value = made.*member = given[name].cast<double>();
-        // a fixed method has an infinite tolerance; a floor may be 0
+        // a fixed method has an infinite tolerance; a floor may be 0, or infinite where a power overflows
         const bool floor = member == &StepBounds::momentum_floor || member == &StepBounds::torque_floor;
-        if (!(floor ? value >= 0.0 : value > 0.0) || (std::isinf(value) && member != &StepBounds::tolerance))
+        if (!(floor ? value >= 0.0 : value > 0.0) || (std::isinf(value) && !floor && member != &StepBounds::tolerance))
             throw py::value_error(std::string(name) + " must be finite and > 0, got " + std::to_string(value));
     }
     return made;

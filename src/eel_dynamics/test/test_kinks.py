@@ -9,11 +9,11 @@ import eel_core
 from eel_dynamics import Accuracy, Scene, Simulation, simulate
 from eel_gaits import falling
 
-KINDS = np.array(["friction", "lateral", "vertical", "roll"])
+KINDS = np.array(["friction", "lateral", "vertical", "roll", "links", "base"])
 
 
 def drag_powers(friction: str, kinks: str) -> np.ndarray:
-    """Powers (T, 4) [W] of the four kinds of drag along the body, at some instants of one swim."""
+    """Powers (T, 6) [W] of the kinds of drag along the body, at some instants of one swim."""
     scene, law = Scene(friction=friction), falling()
     swimmer = Simulation(scene=scene, law=law, accuracy=Accuracy(name="some", resolution=13.0, tolerance=1e-4))
     other = Simulation(scene=scene, law=law, accuracy=Accuracy(name="some", resolution=13.0, kinks=kinks))
@@ -23,7 +23,7 @@ def drag_powers(friction: str, kinks: str) -> np.ndarray:
         seen.append(swimmer.observe())
     twists = np.array([each.twist for each in seen])
     poses = np.array([[*each.position, *each.orientation] for each in seen])
-    powers, instant = np.empty((len(times), 4)), eel_core.Instant(other.discretisation.swimmer)
+    powers, instant = np.empty((len(times), 6)), eel_core.Instant(other.discretisation.swimmer)
     water = other.setup.current, other.setup.core_flow
     instant.drag_powers(other.law_on_grid, times, twists, powers, *water, poses, np.empty((len(times), 2, 0)))
     return powers

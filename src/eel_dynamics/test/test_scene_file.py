@@ -114,7 +114,7 @@ def test_cross_flow_is_a_switch_of_the_scene():
         ("scene: {plane: true}", "scene has no field 'plane' (did you mean 'planar'?)"),
         ("scene: {viscosity: -1}", "scene viscosity must be >= 0 m^2/s, got -1"),
         ("scene: planar", "scene must be a Mapping, got 'planar'"),
-        ("body: eel", "body must be one of boyer2010, kern2006, a file, got 'eel'"),
+        ("body: eel", "body must be one of boyer2010, kern2006, links with its numbers, a file, got 'eel'"),
         ("body: missing.csv", "missing.csv"),
         ("accuracy: exact", "accuracy"),
         ("duration: 0", "duration must be > 0 s, got 0"),

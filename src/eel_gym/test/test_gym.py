@@ -311,7 +311,9 @@ def test_step_and_render_before_reset_are_refused():
             act()
 
 
-def test_a_swimmer_that_cannot_go_on_ends_the_episode():
+def test_a_swimmer_that_cannot_go_on_ends_the_episode(monkeypatch):
+    # samples that no body can have are refused before they stop a swim
+    monkeypatch.setattr("eel_dynamics.curvature.curvature_samples.MOST_TURNS", (np.inf,) * 3)
     env = HeadingEnv(action=KnotAction(3, greatest_rate=1e12, greatest_bend=1e12))
     env.reset(seed=1)
     terminated, info = False, {}

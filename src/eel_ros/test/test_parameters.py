@@ -4,6 +4,7 @@
 from dataclasses import dataclass, field
 
 import pytest
+from eel_base.wording import shown
 from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import declare, default_of, help_rows, take_overrides, warn_of_unknown
 from rclpy.context import Context
@@ -161,7 +162,7 @@ def test_parameters_of_another_node_are_told_at_the_start(make_node, monkeypatch
     overrides = take_overrides(node)
     own = node.get_fully_qualified_name()
     assert overrides.get("depth") == (None if told else 1.0)
-    assert lines == ([f"{words[0]} {words[1]!r} is for {told}, not for this node, {own}: ignored"] if told else [])
+    assert lines == ([f"{words[0]} {shown(words[1])} is for {told}, not for this node, {own}: ignored"] if told else [])
 
 
 def test_help_rows_are_the_fields_with_units_and_defaults():

@@ -180,7 +180,7 @@ NO_TERMS = "^gait must return a Law, whose terms are known, got SampledLaw"
             lambda: MeasuredPath(TIME, np.where(TIME[:, None] == 0.3, np.nan, PLACES)),
             r"finite, got \[nan, nan\] at index 3",
         ),
-        (lambda: MeasuredPath(TIME[:5], PLACES[:5]), "path must have 8 samples or more, got 5"),
+        (lambda: MeasuredPath(TIME[:3], PLACES[:3]), "path must have 4 samples or more, got 3"),
         (lambda: MeasuredPath(TIME[::-1], PLACES), "path time must rise from 0 s or later"),
         (lambda: MeasuredPath(TIME, PLACES[:, :1]), r"2 or 3 coordinates at each of 10 times, got \(10, 1\)"),
         (lambda: MeasuredPath(TIME, PLACES, station=-0.1), "path station must be >= 0 m, got -0.1"),

@@ -180,7 +180,7 @@ def test_angles_must_fit_the_robot():
     time = np.linspace(0.0, 1.0, 9)
     with pytest.raises(ValueError, match="angles must have a column for each of the robot's 4 joints, got 3"):
         identify(FIRST, MeasuredAngles(time, np.zeros((9, 3))), robot=MIXED)
-    with pytest.raises(ValueError, match="angles must have 8 samples or more, got 2"):
+    with pytest.raises(ValueError, match="angles must have 4 samples or more, got 2"):
         MeasuredAngles([0.0, 1.0], np.zeros((2, 3)))
     with pytest.raises(ValueError, match="robot's 0 joints"):
         identify({"robot.damping": 0.1}, MeasuredAngles(time, np.zeros((9, 1))), robot=Robot([PassiveTail(0.6, 0.3)]))

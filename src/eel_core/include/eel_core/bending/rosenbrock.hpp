@@ -69,8 +69,8 @@ struct BentPoint {
     template <class Archive>
     void pass(Archive& archive)
     {
-        archive(time, y, head_rate, momentum_rate, rate, drift, force, stiffness, damping, in_time, this->head, mass,
-                powers);
+        archive(time, y, head_rate, momentum_rate, rate, drift, force, stiffness, damping, in_time, damping_but_stops,
+                this->head, mass, powers);
     }
 };
 
