@@ -218,16 +218,12 @@ def _few(name: str, values: Any) -> Any:
 
 def _appendages(message: Any) -> np.ndarray:
     """Places [m] and drag areas [m^2], (A, 4)."""
-    if not hasattr(message, "appendages"):
-        return np.zeros((0, 4))
-    count = len(message.appendage_area)
-    if count > MOST_APPENDAGES:
-        raise BadMessage("appendages", f"must be at most {MOST_APPENDAGES}, got {count}")
-    places = _row(message, "appendages", 3 * count, "appendage_area").reshape(-1, 3)
-    area = _row(message, "appendage_area", count, "appendages")
-    if np.any(area < 0.0):
-        raise BadMessage("appendage_area", f"has negative values, the least is {area.min():g} m^2")
-    return np.column_stack((places, area))
+    rows = _finite("appendages", np.asarray(getattr(message, "appendages", ()), dtype=float))
+    if rows.size % 4 or rows.size > 4 * MOST_APPENDAGES:
+        raise BadMessage("appendages", f"must have 4 numbers for each of {MOST_APPENDAGES} at most, got {rows.size}")
+    if np.any(rows[3::4] < 0.0):
+        raise BadMessage("appendages", f"has negative areas, the least is {rows[3::4].min():g} m^2")
+    return rows.reshape(-1, 4)
 
 
 def _fin(message: Any, length: float) -> messages.Fin:

@@ -118,7 +118,7 @@ def record(path, *, parts, motors=MOTORS, early=0):
     for k, stamp in enumerate(STAMPS):
         if k == early:
             dispatcher.poll()
-            hung = {"appendages": [0.2, 0.03, -0.04], "appendage_area": [2e-3]}
+            hung = {"appendages": [0.2, 0.03, -0.04, 2e-3]}
             dispatcher.dispatch("body", message_of_parts(**hung) if parts else NS(**made_up.body()))
         if k == 3:
             dispatcher.dispatch("curvature_law", NS(name="in between"))
@@ -224,8 +224,8 @@ def test_joints_are_markers_in_the_colours_of_their_loads(backbone):
 
 
 BAD = [
-    (lambda: read_body(message_of_parts(appendages=[0.1, 0.0], appendage_area=[1e-3])), "appendages", "3 numbers"),
-    (lambda: read_body(message_of_parts(appendages=[0.1, 0, 0], appendage_area=[-1.0])), "appendage_area", "negative"),
+    (lambda: read_body(message_of_parts(appendages=[0.1, 0.0])), "appendages", "4 numbers"),
+    (lambda: read_body(message_of_parts(appendages=[0.1, 0.0, 0.0, -1.0])), "appendages", "negative"),
     (lambda: read_body(message_of_parts(fins=[replace(FINS[0], station=1.5)])), "fins", "station"),
     (lambda: read_body(message_of_parts(fins=[replace(FINS[0], area=-1.0)])), "fins", "area"),
     (lambda: read_body(message_of_parts(fins=[replace(FINS[0], dihedral=np.nan)])), "fins", "dihedral"),

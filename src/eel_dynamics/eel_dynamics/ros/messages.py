@@ -34,7 +34,7 @@ from eel_dynamics.analysis.joint_demand import Joints
 from eel_dynamics.curvature.curvature_samples import LateSample, check_points
 from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
 from eel_dynamics.runs.exchange.message_fields import FIELDS, LINEAR, OF_JOINTS
-from eel_dynamics.runs.exchange.messages_of_run import fields_of_fins, fields_of_joints, outline
+from eel_dynamics.runs.exchange.messages_of_run import fields_of_fins, fields_of_joints, numbers_of_appendages, outline
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
 from eel_msgs import msg
@@ -247,6 +247,7 @@ def body_message(simulation: Simulation, section_frame: str) -> msg.BodyGeometry
         joints=[msg.JointGeometry(**fields) for fields in fields_of_joints(simulation.robot)],
     )
     message.header.frame_id = section_frame
+    message.appendages = array.array("f", numbers_of_appendages(body))
     for name, values in outline(body, simulation.x).items():
         setattr(message, name, array.array("d", values.tolist()))
     return message

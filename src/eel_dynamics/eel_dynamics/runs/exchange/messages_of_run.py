@@ -33,19 +33,22 @@ def messages_of_run(run: RunData) -> Iterator[tuple[str, SimpleNamespace]]:
 
 
 def outline(body: Body, x: np.ndarray) -> dict[str, np.ndarray]:
-    """Abscissae and half axes of the body [m], each (N,), and its A appendages, by the field names of BodyGeometry.
+    """Abscissae and half axes of the body [m], each (N,), by the field names of BodyGeometry.
 
-    The abscissae are `x` (M,) [m] and points in between, which are denser at the nose. Of the appendages (3 A,) [m] are
-    the places, (A,) [m^2] the areas.
+    The abscissae are `x` (M,) [m] and points in between, which are denser at the nose.
     """
     x = np.array(sorted({*x, *(body.length * np.linspace(0.0, 1.0, 101) ** 2)}))
     return {
         "x": x,
         "half_width": np.asarray(body.half_width(x), dtype=float),
         "half_height": np.asarray(body.half_height(x), dtype=float),
-        "appendages": np.array([[each.x, each.y, each.z] for each in body.appendages], dtype=float).ravel(),
-        "appendage_area": body.appendage_factor * np.array([max(each.drag) for each in body.appendages], dtype=float),
     }
+
+
+def numbers_of_appendages(body: Body) -> list[float]:
+    """Of each appendage of a BodyGeometry its place, three numbers [m], and its greatest drag area [m^2]."""
+    factor = body.appendage_factor
+    return [number for each in body.appendages for number in (each.x, each.y, each.z, factor * max(each.drag))]
 
 
 def fields_of_fins(fins: tuple[Fin, ...]) -> list[dict[str, Any]]:
@@ -66,6 +69,7 @@ def _body_of(run: RunData) -> SimpleNamespace:
         length=float(run.body.length),
         mass=float(run.body_mass),
         **outline(run.body, run.x),
+        appendages=numbers_of_appendages(run.body),
         fins=[SimpleNamespace(**fields) for fields in fields_of_fins(run.fins)],
         joints=[SimpleNamespace(**fields) for fields in fields_of_joints(run.robot)],
     )
