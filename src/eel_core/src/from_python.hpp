@@ -202,7 +202,7 @@ auto method(Result (Class::*function)(Given...) const)
 }
 
 // An argument that must not be none: a pointer to nothing.
-inline py::arg needed(const char* name) { return std::move(py::arg(name).none(false)); }
+inline py::arg needed(const char* name) { return py::arg(name).none(false); }
 
 // Lets copies in Python share the object, which never changes.
 template <class Class>

@@ -66,12 +66,12 @@ class SampledMarch {
 
     // Hands over all that goes on; the `flow` is that of the start (`march/archive.hpp`).
     template <class Archive>
-    void pass(Archive& archive, std::shared_ptr<const Flow> flow = {})
+    void pass(Archive& archive, const std::shared_ptr<const Flow>& flow = {})
     {
         bool begins = begun();
         archive(begins);
         if constexpr (Archive::reads) {
-            flow_ = std::move(flow), tables_ = nullptr;
+            flow_ = flow, tables_ = nullptr;
             if (begins) begin_law();
         }
         if (!begins) return;
