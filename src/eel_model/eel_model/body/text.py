@@ -50,25 +50,15 @@ def body_of(text: str) -> Body:
         values[name] = _value(name, value)
     if what != LINKS:
         body = _plain_body(what)
-        return body.changed(**arguments_of(values), name=text) if values else body
+        if "joints" in values:
+            values["joint_drag"] = joint_drag_of(values.pop("joints"))
+        return body.changed(**values, name=text) if values else body
     for name in REQUIRED:
         if name not in values:
             raise ValueError(f"body links must have {name}, got {shown(text)}{_about(name)}")
     if "joint_drag" in values:
         raise ValueError(f"body links has joints in place of joint_drag, got {shown(text)}")
-    if "appendages" in values:
-        values["appendages"] = appendages_from_file(values["appendages"])
     return Body.of_links(**values, name=text)
-
-
-def arguments_of(values: dict[str, Any]) -> dict[str, Any]:
-    """Arguments of `Body` from these `values` by name: joints becomes joint_drag, and a file of appendages these."""
-    found = dict(values)
-    if "joints" in found:
-        found["joint_drag"] = joint_drag_of(found.pop("joints"))
-    if "appendages" in found:
-        found["appendages"] = appendages_from_file(found["appendages"])
-    return found
 
 
 def appendages_from_file(path: str | os.PathLike[str]) -> tuple[Appendage, ...]:
@@ -107,8 +97,10 @@ def _plain_body(text: str) -> Body:
 
 
 def _value(name: str, text: str) -> Any:
-    """A number; or the words that some may be."""
-    if name in ("appendages", "law") or (name in PROFILES and text == BY_SHAPE):
+    """A number; the words that some may be; or the appendages in a file."""
+    if name == "appendages":
+        return appendages_from_file(text)
+    if name == "law" or (name in PROFILES and text == BY_SHAPE):
         return text
     try:
         value = float(text)
