@@ -80,13 +80,14 @@ def test_a_short_course_is_swum_and_goals_that_do_not_fit_are_refused(start, fre
 
 def test_fins_in_place_of_a_keel_hold_the_roll_of_a_piloted_swim(start, fresh_domain):
     """A course with a turn and a dive; the fins follow the roll, and both nodes end without a word of error."""
-    swim = SwimClient(domain=fresh_domain, topics=("head_pose",))
+    swim = SwimClient(domain=fresh_domain, topics=("head_pose", "odom"))
     swim.listen("fin_states", JointState)
     pilot = start("pilot", "--ros-args", "-p", "lead:=0.02", "-p", "heading:=0.8", "-p", "depth:=0.3")
     swim.until(lambda: swim.node.count_publishers("curvature_samples"), "the pilot")
     pace = ("real_time_factor:=0", "-p", "rate:=50", "-p", "duration:=30", "-p", "subscriber_timeout:=60")
+    everything = ("-p", "wait_for_subscribers:=2")  # of odom: the pilot and this client
     bare = ("-p", "scene.internal_wrench:=false", "-p", "estimate_error:=false")
-    dynamics = start("dynamics", "--ros-args", "-p", f"fins:={PAIR}", "-p", *pace, *bare)
+    dynamics = start("dynamics", "--ros-args", "-p", f"fins:={PAIR}", "-p", *pace, *everything, *bare)
     assert dynamics.wait(2 * LIMIT) == 0 and "ERROR" not in dynamics.output(), dynamics.output()
     swim.until(lambda: len(swim.received["head_pose"]) > 1500, "the last pose")
     last = [pose.pose for pose in swim.received["head_pose"][-50:]]  # a period

@@ -29,22 +29,25 @@ def triples(points):
 
 @pytest.fixture
 def show(start, network):
-    """show(*samples, topics, spaces, said, words): publishes them in turn in the namespace /eel1 until the node
-    `markers`, with the ROS arguments `words`, has drawn markers in the `spaces` and has `said` a text; the last
-    MarkerArray, the last Path, and the node's process."""
+    """show(*samples, topics, spaces, coloured, said, words): publishes them in turn in the namespace /eel1 until the
+    node `markers`, with the ROS arguments `words`, has drawn markers in the `spaces`, the skin by its torque if
+    `coloured`, and has `said` a text; the last MarkerArray, the last Path, and the node's process."""
     arrays, paths = [], []
     network.create_subscription(MarkerArray, "/eel1/markers", arrays.append, 10)
     network.create_subscription(Path, "/eel1/midline", paths.append, 10)
     body = network.create_publisher(BodyGeometry, "/eel1/body", LATCHED)
     body.publish(body_message(STATIONS))
 
-    def run(*samples, topics=DRAWN, spaces=("skin", "load", "end_force"), said="", words=()):
+    def are_drawn(markers, spaces, coloured):
+        return {marker.ns for marker in markers} == {*spaces} and (
+            not coloured or any(marker.ns == "skin" and marker.colors for marker in markers)
+        )
+
+    def run(*samples, topics=DRAWN, spaces=("skin", "load", "end_force"), coloured=False, said="", words=()):
         publishers = {topic: network.create_publisher(TOPICS[topic], f"/eel1/{topic}", 10) for topic in topics}
         node = start("markers", "--ros-args", "-r", "__ns:=/eel1", *words)
         limit = time.monotonic() + LIMIT
-        while not (
-            arrays and paths and {marker.ns for marker in arrays[-1].markers} == {*spaces} and said in node.output()
-        ):
+        while not (arrays and paths and are_drawn(arrays[-1].markers, spaces, coloured) and said in node.output()):
             assert time.monotonic() < limit, "no markers\n" + node.output()
             for sample in samples:
                 for topic, publisher in publishers.items():
@@ -64,7 +67,7 @@ def sample():
 
 
 def test_markers_are_the_swimmer(show, sample):
-    array, path, node = show(sample)
+    array, path, node = show(sample, coloured=True)  # the wrench may be found after the others
     for header in (path.header, *(marker.header for marker in array.markers)):
         assert header == sample["backbone"].header  # stamp, and the frame of the publisher
     backbone, load = read_backbone(sample["backbone"]), read_load(sample["hydrodynamic_load"])
