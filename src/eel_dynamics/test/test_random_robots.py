@@ -3,10 +3,11 @@
 
 import numpy as np
 import pytest
+from eel_dynamics.analysis.peaks import torque_size
 from random_robots import drawn, drawn_at_stops
 from random_scenes import with_weight_and_fins
 
-from eel_dynamics import Accuracy, SimulationStopped, simulate, simulate_batch
+from eel_dynamics import Accuracy, Simulation, SimulationStopped, simulate, simulate_batch
 
 ALL = 5000
 EXACT = Accuracy(name="exact", resolution=120.0, tolerance=1e-7)  # at 36 the torque of some is off by a hundredth
@@ -104,6 +105,38 @@ def test_robots_that_swing_into_their_stops_keep_their_target_or_tell(seeds):
             missed.append((seed, error))
     print(f"{len(seeds)} robots, {met} at stops, {told} told")
     assert not missed and met > 0.8 * len(seeds) and told <= 0.02 * len(seeds)
+
+
+def swum_on(draw, times, accuracy, measure_error: bool = False):
+    """A `Simulation` that went through the `times` [s], and its torque there."""
+    swim = Simulation(
+        law=draw.law,
+        robot=draw.robot,
+        scene=draw.scene,
+        accuracy=accuracy,
+        stations=5,
+        measure_error=measure_error,
+    )
+    torques = []
+    for time in times:
+        swim.advance(float(time))
+        torques.append(swim.observe().torque)
+    return swim, np.array(torques)
+
+
+@pytest.mark.parametrize("seeds", [(10, 23, 31), pytest.param(range(200), marks=pytest.mark.soak)], ids=["few", "many"])
+def test_a_simulation_that_goes_on_tells_its_error_at_stops(seeds):
+    """What a stop gives is short: compared each 0.1 s, a twentieth of the error was seen. Now three quarters are, or
+    more."""
+    times, rough = 1e-3 * np.arange(1, 301), Accuracy(name="rough", resolution=20.0, tolerance=1e-3)
+    silent = []
+    for seed in seeds:
+        swim, torques = swum_on(drawn_at_stops(seed), times, rough, measure_error=True)
+        exact = swum_on(drawn_at_stops(seed), times, NEAR)[1]
+        error = torque_size(torques - exact).max() / torque_size(exact).max()
+        if swim.error_estimate.torque < 0.7 * error:
+            silent.append((seed, error, swim.error_estimate.torque))
+    assert not silent
 
 
 def any_stop_met(run) -> bool:

@@ -27,7 +27,7 @@ from eel_dynamics.accuracy.error_estimate import (
     twist_size,
 )
 from eel_dynamics.analysis.peaks import torque_size
-from eel_dynamics.simulation.bending.joint_motion import bends
+from eel_dynamics.simulation.bending.joint_motion import bends, stops_met, torque_at_stops
 from eel_dynamics.simulation.error_meter import on_another_grid
 from eel_dynamics.simulation.stopping import SimulationStopped
 
@@ -75,22 +75,14 @@ def relative_errors(run, reference, share: float = 1.0) -> ErrorEstimate:
     return ErrorEstimate(growth_rate=growth_rate_of(time, distance, SMALL * scale), **found)
 
 
-def torque_at_stops(run, reference) -> float:
-    """What the greatest distances of joints' angles are as torques of the stops that `run` meets, by its greatest.
-
-    A joint's angle in its free flight tells when it meets its stop. At that instant two runs may be alike by chance,
-    but hardly at all instants before.
-    """
+def error_at_stops(run, reference) -> float:
+    """The torque that `torque_at_stops` tells of two runs, by the greatest of the `reference`."""
     if run.robot is None or run.torque is None or reference.torque is None:
         return 0.0
-    apart = np.abs(run.joint_angle[np.searchsorted(run.time, reference.time)] - reference.joint_angle)
-    torques = [
-        joint.stop_stiffness * distances.max()
-        for joint, angles, distances in zip(run.robot.joints, run.joint_angle.T, apart.T, strict=True)
-        if joint.limits is not None and (angles != np.clip(angles, *joint.limits)).any()
-    ]
+    apart = np.abs(run.joint_angle[np.searchsorted(run.time, reference.time)] - reference.joint_angle).max(axis=0)
     least = floors_of(run.law, run.body_mass, run.body.length, float(run.time[-1])).torque
-    return float(max(torques, default=0.0) / max(torque_size(reference.torque).max(), least))
+    greatest = max(torque_size(reference.torque).max(), least)
+    return torque_at_stops(run.robot, stops_met(run.robot, run.joint_angle), apart) / greatest
 
 
 def with_error_estimate(swim: Any, request: Any) -> Any:
@@ -111,7 +103,7 @@ def with_error_estimate(swim: Any, request: Any) -> Any:
             if refinement:  # of a robot, whose grid is not as much finer as its steps are
                 share = max(share, min(1.0, (companion.run.nodes / swim.run.nodes) ** GRID_ORDER))
             error = relative_errors(swim.compared, companion.compared, share)
-            error = error.with_torque(share * torque_at_stops(swim.compared, companion.compared))
+            error = error.with_torque(share * error_at_stops(swim.compared, companion.compared))
         if refinement and companion is not None:  # it falls no faster than this: else the two agree by chance
             share = swim.run.accuracy.tolerance / companion.run.accuracy.tolerance
             if request.setup.scene.friction in ROUGH_FRICTION:

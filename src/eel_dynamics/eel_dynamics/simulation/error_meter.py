@@ -25,7 +25,7 @@ from eel_dynamics.accuracy.error_estimate import (
     growth_rate_of,
     twist_size,
 )
-from eel_dynamics.simulation.bending.joint_motion import bends
+from eel_dynamics.simulation.bending.joint_motion import bends, stops_met, torque_at_stops
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
@@ -74,6 +74,7 @@ class ErrorMeter:
         self._speeds = np.zeros(2)  # m/s, rad/s: the greatest since then
         # rad, rad/s, rad/s: distances of angles and rates of joints, and the greatest rate; None without a robot
         self._bends: np.ndarray | None = None
+        self._stops_met, self._joints_apart = np.zeros(0, bool), np.zeros(0)  # of the joints, since then; [rad]
         self._distances: deque = deque(maxlen=REMEMBERED)  # (time [s], distance of the heads [m])
         self.due = False  # whether the next instant is to be compared, as torques have jumped
         self.begin_again(march)
@@ -84,6 +85,8 @@ class ErrorMeter:
         self._last_position, self._growth_rate, self._torque = None, growth_rate, None
         self._path, self._torque_distance, self._apart = 0.0, 0.0, np.zeros(4)
         self._speeds, self._bends = np.zeros(2), None
+        joints = 0 if march.setup.robot is None else len(march.setup.robot.joints)
+        self._stops_met, self._joints_apart = np.zeros(joints, bool), np.zeros(joints)
         self._distances.clear()
         if not self.wanted:
             return
@@ -124,7 +127,9 @@ class ErrorMeter:
     # -- comparisons
 
     def advanced(self, march: March, interrupted: Callable[[], bool] | None):
-        """Compare the two, where that is due."""
+        """Compare the two, where that is due; of joints with limits at each call, as what a stop gives is short."""
+        robot = march.setup.robot
+        self.due |= robot is not None and any(joint.limits is not None for joint in robot.joints)
         if self.due or march.time - self._compared_at >= COMPARED_EVERY * (1.0 - ROUND_OFF):
             self.compare(march, interrupted)
 
@@ -160,6 +165,9 @@ class ErrorMeter:
         if own.size:
             sizes = *np.abs(own - others).max(axis=1), np.abs(own[1]).max()
             self._bends = np.maximum(0.0 if self._bends is None else self._bends, sizes)
+            joints = len(self._joints_apart)
+            self._joints_apart = np.maximum(self._joints_apart, np.abs(own - others)[0, :joints])
+            self._stops_met |= stops_met(setup.robot, own[:1, :joints])
 
     @property
     def _scale(self) -> float:
@@ -177,7 +185,12 @@ class ErrorMeter:
         found: dict[str, Any] = {"torque": None, "orientation": self._apart[1]}
         found["twist"] = (self._apart[2:] / np.maximum(self._speeds, (least.speed, least.rate))).max()
         if self._torque is not None:
-            found["torque"] = self._torque_distance / max(self._torque, least.torque)
+            apart = self._torque_distance
+            if len(self._stops_met):
+                share = march.setup.settings.share_of_distance(self._companion.setup.settings)
+                angles = share * self._joints_apart
+                apart = max(apart, torque_at_stops(march.setup.robot, self._stops_met, angles))
+            found["torque"] = apart / max(self._torque, least.torque)
         if self._bends is not None:
             found["joint_angle"] = self._bends[0]
             found["joint_rate"] = self._bends[1] / max(self._bends[2], least.rate)

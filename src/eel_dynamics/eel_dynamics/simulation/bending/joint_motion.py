@@ -83,3 +83,21 @@ def bends(swimmer: Any, joints: Mapping[str, Any]) -> np.ndarray:
     length = (table.end - table.start)[~table.joints]
     pairs = ("joint_angle", "mode_amplitude"), ("joint_rate", "mode_rate")
     return np.array([np.concatenate([joints[one], joints[other] * length], axis=-1) for one, other in pairs])
+
+
+def stops_met(robot: Any, angles: np.ndarray) -> np.ndarray:
+    """(J,) bool: which joints of a `robot` were beyond their limits at any of their `angles` (T, J) [rad]."""
+    limits = [joint.limits or (-np.inf, np.inf) for joint in robot.joints]
+    low, high = np.array(limits).reshape(-1, 2).T
+    return np.asarray(((angles < low) | (angles > high)).any(axis=0))
+
+
+def torque_at_stops(robot: Any, met: np.ndarray, apart: np.ndarray) -> float:
+    """[N m]: what the greatest distances `apart` (J,) [rad] of two runs' joints are as torques of the stops that were
+    `met` (J,), at most.
+
+    A joint's angle in its free flight tells when it meets its stop. At that instant two runs may be alike by chance,
+    but hardly at all instants before.
+    """
+    stiffness = np.array([joint.stop_stiffness for joint in robot.joints])
+    return float((stiffness * apart)[met].max(initial=0.0))
