@@ -90,6 +90,7 @@ class Beat:
         periods = jackknife([each.period for each in self.others])
         return [
             ("film", f"{film.name}: {film.points.shape[1]} points, {len(film.time)} frames, {film.length:.4g} m long"),
+            *([("read", film.read)] if film.read else []),
             *([("points", ", ".join(film.names))] if film.names else []),
             *(("repaired", note) for note in film.notes),
             ("beat", f"period {self.period:.4g} +- {float(periods):.2g} s (95 %), {kept}"),

@@ -39,6 +39,7 @@ class Film(NamedTuple):
     points: np.ndarray  # (N, n, 2) m
     notes: tuple[str, ...]  # what was done to the data, in words
     names: tuple[str, ...] = ()  # of the points (n,)
+    read: str = ""  # what was guessed of the file's form, in words
 
     @property
     def arc(self) -> np.ndarray:
@@ -84,7 +85,7 @@ def read_film(
         if found.length > LONGEST:
             raise ValueError(f"its swimmer is {found.length:.4g} m long: give its units, or a scale")
         _check_whole(found)
-        return found
+        return found._replace(read=tracks.read)
 
 
 def _metres(tracks: Tracks, units: str | None, scale: float | None) -> float:

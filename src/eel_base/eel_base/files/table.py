@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A table that was read: numbers by the names of columns, in SI. Errors name line and column.
+
+A name may end in its unit: time_ms, "t [ms]", x(mm), yawDeg, "Zeit / s".
+"""
+
+import math
+import re
+from collections.abc import Sequence
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+import numpy as np
+
+from eel_base.wording import did_you_mean, shown
+
+LARGEST = 1e100  # of a number: squares and products of a few are finite
+MISSING = ("", "na", "n/a", "#n/a", "null", "none", "-")  # cells without a value
+LISTED = {
+    "s": {1.0: "s sec secs second seconds", 1e-3: "ms msec msecs millis millisec milliseconds",
+          1e-6: "us usec usecs micros microsec microseconds", 1e-9: "ns nsec nsecs nanos nanosec nanoseconds"},
+    "m": {1.0: "m", 1e-2: "cm", 1e-3: "mm", math.nan: "px pixel pixels"},
+    "rad": {1.0: "rad rads radians", math.pi / 180.0: "deg degs degrees °"},
+    "m/s": {1.0: "m/s", 1e-2: "cm/s", 1e-3: "mm/s"},
+    "rad/m": {1.0: "rad/m 1/m", 1e3: "rad/mm 1/mm"},
+    "kg/m": {1.0: "kg/m", 1e-3: "g/m"},
+}  # fmt: skip
+UNITS = {word: (si, by) for si, words in LISTED.items() for by, each in words.items() for word in each.split()}
+NAME = re.compile(rf"(.*?)(?:^|[_./])({'|'.join(map(re.escape, sorted(UNITS, key=len, reverse=True)))})")
+
+
+def split_name(name: str) -> tuple[str, str]:
+    """A column's name in small letters, without its unit; and that unit, or ""."""
+    name = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name.strip().lstrip("%")).replace("μ", "u").replace("µ", "u")
+    plain = re.sub(r"\s*/\s+|\s+/\s*|[\s\[\](){}_]+", "_", name).strip("_").lower()
+    found = NAME.fullmatch(plain)
+    return (found[1].rstrip("_./"), found[2]) if found and plain != "s" else (plain, "")
+
+
+class Table:
+    """Columns of equal length, named by `head` (columns,), and for each row its place in the file.
+
+    values (rows, columns): NaN where a cell is no number. marks (rows, columns): 0 for a number, else a number from 1
+    of the cell's text among `words`. lines (rows,): in the file; None: the rows count from 1. heads: all rows of the
+    header. notes: what was guessed or left out, in words. what: begins an error, before the file's name.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        head: Sequence[str],
+        values: np.ndarray,
+        marks: np.ndarray | None = None,
+        words: Sequence[str] = (),
+        lines: np.ndarray | None = None,
+        heads: Sequence[Sequence[str]] = (),
+        notes: Sequence[str] = (),
+        what: str = "",
+    ) -> None:
+        self.path, self.head, self.heads, self.notes, self._what = path, list(head), heads, list(notes), what
+        self._values, self._words = values, ["", *words]
+        self._marks = np.broadcast_to(np.int32(0), values.shape) if marks is None else marks
+        self._empty = np.array([False, *(word.lower() in MISSING for word in words)])
+        self._word = "row" if lines is None else "line"
+        self.lines = np.arange(1, len(values) + 1) if lines is None else lines
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __contains__(self, name: str) -> bool:
+        return bool(self.places(name))
+
+    def error(self, text: str, first: int | None = None, last: int | None = None) -> ValueError:
+        """An error about rows `first` to `last` (indices): with the file, their lines and a `text`."""
+        place = "" if first is None else f", {self._word} {self.lines[first]}"
+        if first is not None and last is not None and last != first:
+            place = f", {self._word}s {self.lines[first]} to {self.lines[last]}"
+        return ValueError(f"{self._what}{shown(str(self.path))}{place}: {text}")
+
+    # -- columns
+
+    def places(self, name: str) -> list[int]:
+        """Indices of the columns of this `name`: as it stands, or else without its unit and in any case."""
+        exact = [place for place, each in enumerate(self.head) if each == name]
+        return exact or [place for place, each in enumerate(self.head) if split_name(each)[0] == name.lower()]
+
+    def chosen(self, text: str, what: str) -> list[int]:
+        """Indices of the columns that a `text` names: numbers from 1 ("8-13,15"), names, or patterns ("*Fbck*").
+
+        `ValueError` says `what` must name columns where it names none, or one twice.
+        """
+        found: list[int] = []
+        for part in map(str.strip, text.split(",")):
+            span = re.fullmatch(r"(\d+)(?:-(\d+))?", part)
+            named = self.places(part) or [at for at, name in enumerate(self.head) if fnmatchcase(name, part)]
+            if span and not named:
+                named = list(range(int(span[1]) - 1, min(int(span[2] or span[1]), len(self.head) + 1)))
+            if not named or min(named) < 0 or max(named) >= len(self.head) or set(named) & set(found):
+                hint = did_you_mean(part, self.head)
+                rule = f"{what} must name columns among the {len(self.head)} of the file, each once"
+                raise self.error(f"{rule}, got {shown(part)}{hint}; there are {shown(self.head)}")
+            found += named
+        return found
+
+    def label(self, place: int) -> str:
+        """The name of a column, for messages."""
+        return f"column {self.head[place]}" if self.head[place].isdigit() else self.head[place] or f"column {place + 1}"
+
+    def unit(self, place: int) -> str:
+        """The unit in the name of a column, or ""."""
+        return split_name(self.head[place])[1]
+
+    def numbers(
+        self, columns: Sequence[int], unit: str = "", *, missing: bool = True, largest: float = LARGEST
+    ) -> np.ndarray:
+        """The numbers (rows, columns) in this SI `unit`; "": as in the file. missing: NaN for a cell without a value.
+
+        `ValueError` names the first cell that is no number, is not finite (unless `missing`), or is beyond `largest`.
+        """
+        factors = [self._factor(place, unit) for place in columns]
+        found, marks = self._values[:, list(columns)] * factors, self._marks[:, list(columns)]
+        bad = (marks > 0) & ~(missing & self._empty[marks])
+        if len(where := np.argwhere(bad)):
+            row, place = where[0]
+            got = shown(self._words[marks[row, place]])
+            raise self.error(f"{self.label(columns[place])} must be a number, got {got}", row)
+        if len(where := np.argwhere(~(np.abs(found) <= largest) & ~(missing & np.isnan(found)))):
+            row, place = where[0]
+            rule = f"at most {largest:g}" if np.isfinite(found[row, place]) else "finite"
+            raise self.error(f"{self.label(columns[place])} must be {rule}, got {found[row, place]:g}", row)
+        return found
+
+    def column(self, name: str, unit: str = "", largest: float = LARGEST) -> np.ndarray:
+        """The numbers (rows,) of the one column of this `name`, in this SI `unit`. Errors as those of `numbers`."""
+        if len(places := self.places(name)) != 1:
+            raise self.error(f"there must be one column {name}, got {len(places)} in {shown(self.head)}")
+        return np.asarray(self.numbers(places, unit, missing=False, largest=largest)[:, 0])
+
+    def texts(self, place: int) -> list[str]:
+        """The cells (rows,) of a column as texts."""
+        cells = zip(self._marks[:, place].tolist(), self._values[:, place].tolist(), strict=True)
+        return [self._words[mark] if mark else f"{value:.12g}" for mark, value in cells]
+
+    def raw(self, place: int) -> np.ndarray:
+        """The numbers (rows,) of a column as they stand in the file; NaN for any other cell."""
+        return np.asarray(self._values[:, place])
+
+    def is_empty(self, place: int) -> bool:
+        """Whether no cell of a column has a value."""
+        return bool(np.all(self._empty[self._marks[:, place]]))
+
+    def has_numbers(self, place: int) -> bool:
+        """Whether most cells of a column that have a value are numbers."""
+        cells = self._marks[:, place]
+        numbers, values = np.sum((cells == 0) & np.isfinite(self._values[:, place])), np.sum(~self._empty[cells])
+        return bool(numbers and 2 * numbers > values)
+
+    def _factor(self, place: int, unit: str) -> float:
+        given = self.unit(place)
+        if not unit or not given:
+            return 1.0
+        dimension, factor = UNITS[given]
+        if dimension != unit or math.isnan(factor):
+            raise self.error(f"{self.label(place)} must be in {unit}, or units of it, got {given}")
+        return factor

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The times of a table's rows, as people write them.
+
+Time is a number in the unit of its column's name; or since 1970 in s, ms, us or ns, as its size tells; a stamp of
+ISO 8601; a time of day; or two columns, whole seconds and their parts.
+"""
+
+import math
+import re
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from typing import NamedTuple
+
+import numpy as np
+
+from eel_base.files.table import UNITS, Table, split_name
+from eel_base.wording import shown
+
+CALLED = re.compile(r".*(?:time|stamp|zeit|temps|tiempo)(?!s).*|(?:.*[_./])?(?:t|ts)")
+EPOCH = 9.5e8, 4.1e9  # s since 1970: the years 2000 to 2099
+PARTS = {1.0: "s", 1e-3: "ms", 1e-6: "us", 1e-9: "ns"}
+DAY = 86400.0  # s
+RISING, MOVING = 0.95, 0.5  # parts of a column's steps that do not fall, and that rise, if it is a time
+
+
+class Time(NamedTuple):
+    """Times of the rows of a table."""
+
+    seconds: np.ndarray  # (rows,) s, from the first on where they are dates; NaN where one is missing
+    about: str  # which column, and what of, in words
+    plain: bool  # whether its name tells all
+
+
+def time_of(table: Table, column: str = "", besides: Sequence[int] = (), *, missing: bool = False) -> Time:
+    """The times of the rows of a `table`.
+
+    column: its name or number; "": the first that is called so, or the only one that rises and is none of those
+    `besides`. missing: NaN for a cell that is no time, in place of a `ValueError`.
+    """
+    place = _place_of_time(table, column, besides)
+    values, factor, told = _stamps(table, place) if not table.has_numbers(place) else _numbers(table, place)
+    bad = np.flatnonzero(~np.isfinite(values))
+    if len(bad) == len(values) or (len(bad) and not missing):
+        raise table.error(f"{table.label(place)} must be a time, got {shown(table.texts(place)[bad[0]])}", bad[0])
+    first = float(values[np.isfinite(values)][0])
+    seconds = factor * (values - (first if factor * first > EPOCH[0] else 0.0))
+    if factor == 1.0 and (part := _part_of(table, place, values)) is not None:
+        seconds, told = seconds + part[1], f"{told}, and {table.label(part[0])}"
+    plain = not column and split_name(table.head[place])[0] in ("time", "t") and not told.endswith("1970")
+    return Time(seconds, f"time from {table.label(place)}, {told}", plain)
+
+
+def _place_of_time(table: Table, column: str, besides: Sequence[int]) -> int:
+    if column:
+        if len(found := table.chosen(column, "the time")) > 1:
+            raise table.error(f"the time must be one column, got {shown([table.head[place] for place in found])}")
+        return found[0]
+    places = [place for place in range(len(table.head)) if place not in besides]
+    called = [place for place in places if _is_called(table.head[place])]
+    if called:
+        return min(called, key=table.is_empty)  # the first that is not
+    rising = [place for place in places if _rises(table.raw(place))]
+    if len(rising) != 1:
+        raise table.error(f"its time is not plain from {shown(table.head)}: say which column it is (--time)")
+    return rising[0]
+
+
+def _is_called(name: str) -> bool:
+    """Whether a column's name is one of a time."""
+    base, unit = split_name(name)
+    return CALLED.fullmatch(base) is not None or (not base and unit != "" and UNITS[unit][0] == "s")
+
+
+def _rises(values: np.ndarray) -> bool:
+    """Whether nearly all steps of the `values` are upward, and they are no count."""
+    steps = np.diff(values)
+    count = np.median(steps) == 1.0 if len(steps) else True
+    return not count and bool(np.mean(steps >= 0.0) > RISING and np.mean(steps > 0.0) > MOVING)
+
+
+def _numbers(table: Table, place: int) -> tuple[np.ndarray, float, str]:
+    """The times of a column of numbers, their unit [s], and what they are."""
+    values, (_, unit) = table.raw(place), split_name(table.head[place])
+    size = float(np.nanmedian(np.abs(values)))
+    by_size = next((by for by in PARTS if EPOCH[0] <= size * by <= EPOCH[1]), 1.0)
+    dimension, factor = UNITS.get(unit, ("s", by_size))
+    if dimension != "s" or size * factor > EPOCH[1]:
+        raise table.error(f"{table.label(place)} must be a time in the unit of its name, got {size:g} {unit}", 0)
+    since = " since 1970" if EPOCH[0] <= size * factor else ""
+    return values, factor, f"{PARTS[factor]}{since}"
+
+
+def _stamps(table: Table, place: int) -> tuple[np.ndarray, float, str]:
+    """The times of a column of texts, their unit [s], and what they are."""
+    values = np.array([_seconds(text) for text in table.texts(place)])
+    nights = np.cumsum(np.diff(values, prepend=values[:1]) < -0.5 * DAY) if np.nanmax(values, initial=0.0) < DAY else 0
+    return values + DAY * nights, 1.0, "stamps"
+
+
+def _seconds(text: str) -> float:
+    """A stamp of ISO 8601 in s since 1970, in UTC where it does not say; a time of day in s; NaN for anything else."""
+    plain = text.strip().replace(",", ".").replace("/", "-")
+    if re.match(r"\d{1,2}:", plain):
+        plain = f"1970-01-01T{plain if plain[2] == ':' else f'0{plain}'}"
+    try:
+        stamp = datetime.fromisoformat(plain)
+    except ValueError:
+        return math.nan
+    return (stamp if stamp.tzinfo else stamp.replace(tzinfo=UTC)).timestamp()
+
+
+def _part_of(table: Table, place: int, values: np.ndarray) -> tuple[int, np.ndarray] | None:
+    """The column of the parts of whole seconds, of the same name and another unit, and what it holds [s]."""
+    if np.any(values[np.isfinite(values)] % 1.0):
+        return None
+    base, _ = split_name(table.head[place])
+    for other, each in enumerate(table.head):
+        name, unit = split_name(each)
+        by = UNITS.get(unit, ("", 1.0))[1]
+        if other == place + 1 and each.isdigit() and np.nanmedian(values) > EPOCH[0]:
+            name, by = base, 1e-9  # without a header, as ROS 2 prints messages
+        part = by * table.raw(other)
+        if other != place and name == base and by < 1.0 and np.all((part >= 0.0) & (part < 1.0) | np.isnan(part)):
+            return other, part
+    return None
