@@ -42,7 +42,13 @@ def write_wide(path, points):
     return write(path, ("time_s", *names), rows)
 
 
-def deeplabcut_rows(animals):
+def with_scores(points, scores=None):
+    """Points (N, n, 2) with a third column of `scores` (N, n), 0.9 by default."""
+    scores = np.full(points.shape[:2], 0.9) if scores is None else scores
+    return np.concatenate((points, scores[..., None]), axis=2)
+
+
+def deeplabcut_rows(animals, scores=None):
     """Header lines and rows of DeepLabCut's table of {name: points (N, n, 2)}; without names for one animal ""."""
     columns = [
         (animal, f"part{place}", what)
@@ -50,7 +56,7 @@ def deeplabcut_rows(animals):
         for place in range(points.shape[1])
         for what in ("x", "y", "likelihood")
     ]
-    likely = [np.concatenate((each, np.ones((*each.shape[:2], 1))), axis=2) for each in animals.values()]
+    likely = [with_scores(each, scores) for each in animals.values()]
     values = np.concatenate([each.reshape(len(each), -1) for each in likely], axis=1)
     heads = [["scorer", *["net"] * len(columns)]]
     heads += [] if list(animals) == [""] else [["individuals", *(animal for animal, _, _ in columns)]]
@@ -58,20 +64,22 @@ def deeplabcut_rows(animals):
     return heads, values
 
 
-def write_deeplabcut(path, animals):
-    heads, values = deeplabcut_rows(animals)
+def write_deeplabcut(path, animals, scores=None):
+    heads, values = deeplabcut_rows(animals, scores)
     rows = [[frame, *("" if np.isnan(each) else each for each in row)] for frame, row in enumerate(values.tolist())]
     return write(path, heads[0], [*heads[1:], *rows])
 
 
-def write_sleap(path, animals, parts=None):
+def write_sleap(path, animals, parts=None, scores=None):
+    """A row for each animal and frame in which it has a point."""
     parts = parts or [f"part{place}" for place in range(next(iter(animals.values())).shape[1])]
     names = [f"{part}.{what}" for part in parts for what in ("x", "y", "score")]
     rows = []
     for frame in range(len(TIMES)):
         for name, points in animals.items():
-            cells = ["" if np.isnan(each) else each for x, y in points[frame].tolist() for each in (x, y, 0.9)]
-            rows.append((name, frame, 0.9, *cells))
+            cells = ["" if np.isnan(each) else each for each in with_scores(points, scores)[frame].ravel().tolist()]
+            if np.isfinite(points[frame]).any():
+                rows.append((name, frame, 0.9, *cells))
     return write(path, ("track", "frame_idx", "instance.score", *names), rows)
 
 
@@ -89,9 +97,9 @@ def with_eyes_and_fins(points, arc, reach=1.0):
     return along | aside
 
 
-def write_deeplabcut_h5(path, animals, form):
+def write_deeplabcut_h5(path, animals, form, scores=None):
     """DeepLabCut's table as pandas writes it by PyTables: form "table" or "blocks" ("fixed")."""
-    heads, values = deeplabcut_rows(animals)
+    heads, values = deeplabcut_rows(animals, scores)
     names = list(zip(*(row[1:] for row in heads), strict=True))
     with h5py.File(path, "w") as file:
         group = file.create_group("df_with_missing")
@@ -114,7 +122,7 @@ def write_deeplabcut_h5(path, animals, form):
     return path
 
 
-def write_sleap_h5(path, animals, parts, dims=None):
+def write_sleap_h5(path, animals, parts, dims=None, scores=None):
     """SLEAP's analysis file: axes track, xy, node, frame, or other `dims`, which it then names."""
     axes = ("track", "xy", "node", "frame")
     points = np.stack([each.transpose(2, 1, 0) for each in animals.values()])
@@ -123,6 +131,9 @@ def write_sleap_h5(path, animals, parts, dims=None):
         tracks = file.create_dataset("tracks", data=points, compression="gzip", compression_opts=9)
         if dims:
             tracks.attrs["dims"] = json.dumps(dims)
+        if scores is not None:
+            order = [("track", "node", "frame").index(name) for name in dims or axes if name != "xy"]
+            file["point_scores"] = np.stack([scores.T] * len(animals)).transpose(order)
         file["node_names"], file["track_names"] = np.array(parts, dtype="S"), np.array(list(animals), dtype="S")
         file["labels_path"] = "fish.slp"
     return path

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from eel_base.wording import shown
 from eel_gaits.film.beat import Beat, beat_of, jackknife
-from eel_gaits.film.film import Film, read_film
+from eel_gaits.film.film import LIKELY, Film, read_film
 from eel_model.body.body import Body
 from eel_model.body.text import body_of
 from eel_model.scene import Scene
@@ -26,9 +26,11 @@ def add_film_options(parser: argparse.ArgumentParser) -> None:
         "--units", metavar="UNIT", help="of midlines: m, cm, mm, or px with --scale; of joints: rad or deg"
     )
     parser.add_argument("--rate", type=float, metavar="FPS", help="frames per second, where a file counts frames")
-    parser.add_argument("--animal", metavar="NAME", help="which of several animals in the file")
+    parser.add_argument("--animal", metavar="NAME,...", help="which of several animals in the file, or its tracks")
     parser.add_argument("--points", metavar="NAME,...", help="those along the body, from head to tail: names, or "
                         "patterns such as spine* (all, in the file's order)")  # fmt: skip
+    parser.add_argument("--likely", type=float, default=LIKELY, metavar="P", help="a tracker's likelihood or score "
+                        f"below which a point counts as missing ({LIKELY:g})")  # fmt: skip
     parser.add_argument(
         "--rigid", type=float, default=0.0, metavar="PART", help="of the length from the head on that does not bend (0)"
     )
@@ -39,7 +41,10 @@ def film_of(path: str, options: argparse.Namespace) -> Film:
     """The film in the file at `path`, read as the `options` say."""
     scale = None if options.scale == 1.0 else options.scale
     points = None if options.points is None else [name.strip() for name in options.points.split(",")]
-    return read_film(path, units=options.units, scale=scale, rate=options.rate, animal=options.animal, points=points)
+    return read_film(
+        path, units=options.units, scale=scale, rate=options.rate, animal=options.animal, points=points,
+        likely=options.likely,
+    )  # fmt: skip
 
 
 def beat_from(path: str, options: argparse.Namespace) -> Beat:

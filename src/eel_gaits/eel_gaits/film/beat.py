@@ -12,6 +12,9 @@ the number of knots are those that predict a beat best from the other beats: eac
 last for several frames, which a smoothing spline takes for motion, do not count unless they come with each beat. Of the
 fits whose error is within one standard error of the least, the one with fewest numbers counts (Breiman et al.,
 Classification and Regression Trees, 1984). The fits without each beat give the bands (jackknife).
+
+A missing point stands where the beat has it, moved along with its neighbours; the beat is fitted anew until that no
+longer changes (expectation and maximisation), without each beat too. Only what was seen judges a fit.
 """
 
 import itertools
@@ -21,7 +24,7 @@ from typing import Any
 
 import numpy as np
 
-from eel_gaits.film.film import Film
+from eel_gaits.film.film import Film, filled
 from eel_gaits.film.kinematics import Kinematics, harmonics, kinematics
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.spline import natural_spline
@@ -34,6 +37,11 @@ LEAST_KNOTS, KNOTS = 2, 12  # along the body
 CONDITION = 100.0  # singular values below a part of 1 / 100 do not count: uneven points do not tell those shapes
 TRAVELS = 1.0  # rad of phase along the body, less of which counts as standing
 LEAST_SHARE = 0.5  # of the variance that the other beats must predict
+ROUNDS, FILLINGS, STILL = (
+    4,
+    40,
+    1e-4,
+)  # of choosing, and of filling at most; part of the length that a filled point moves
 FINE = 257  # places along the body at which splines are integrated
 OF_LAW = 65  # knots of the law's splines, where a part of the body is rigid
 QUANTILE = 0.975  # of Student's t, for the bands: 95 %
@@ -122,7 +130,10 @@ def beat_of(film: Film, *, harmonics: int | None = None, rigid: float = 0.0) -> 
                 "stand from head to tail; a swimmer that swims backward is read by --file"
             )
         note = "points reversed: the wave ran from the last to the first, and the first moved most"
-        turned = film._replace(points=film.points[:, ::-1], names=film.names[::-1], notes=(*film.notes, note))
+        missing = None if film.missing is None else film.missing[:, ::-1]
+        turned = film._replace(
+            points=film.points[:, ::-1], names=film.names[::-1], notes=(*film.notes, note), missing=missing
+        )
         return beat_of(turned, harmonics=harmonics, rigid=rigid)
     return found
 
@@ -152,24 +163,26 @@ class _Fit:
     """Least squares of the angles of a film."""
 
     def __init__(self, film: Film, rigid: float) -> None:
-        steps = np.diff(film.points, axis=1)
-        angles = np.unwrap(np.arctan2(steps[..., 1], steps[..., 0]), axis=1)
-        self.film, self.rigid = film, rigid
-        self.weight = np.diff(film.arc) / np.mean(np.diff(film.arc))  # an error of a point turns a short segment more
-        self.mean = self._mean(angles)
-        self.angles = self.weight * (angles - self.mean)  # (N, n - 1): no turn of the whole body is left
+        self.film, self.rigid, self.arc = film, rigid, film.arc
+        self.weight = np.diff(self.arc) / np.mean(np.diff(self.arc))  # an error of a point turns a short segment more
+        self.missing = np.zeros(film.points.shape[:2], dtype=bool) if film.missing is None else film.missing
+        self.seen = ~(self.missing[:, 1:] | self.missing[:, :-1])  # (N, n - 1)
+        self.points = film.points
+        self.angles, self.mean = self._angles_of(film.points)
         self.time, self.all = film.time - film.time[0], np.ones(len(film.time), dtype=bool)
-        self.power = float(np.sum((self.angles - self.angles.mean(axis=0)) ** 2))
+        self.power = self._squares(self.angles - self.angles.mean(axis=0))
         if self.power <= 1e-12 * self.angles.size:
             raise ValueError(f"{film.name}: the body does not bend")
         self.period = self._first_period()
         self.beats = np.floor(self.time / self.period + 1e-6).astype(int)
         self.beats = np.minimum(self.beats, max(0, round(self.time[-1] / self.period + 1e-6) - 1))
+        self.beats = np.unique(self.beats, return_inverse=True)[1]  # of those that are seen
         if (count := self.beats[-1] + 1) < FEWEST_BEATS:
             raise ValueError(
                 f"{film.name}: there must be {FEWEST_BEATS} beats or more, got {count} of {self.period:.3g} s"
             )
-        self.bases = {knots: self._basis(knots) for knots in range(LEAST_KNOTS, min(KNOTS, self.angles.shape[1]) + 1)}
+        told = int(np.sum(self.arc[1:] > rigid * self.arc[-1])) - (0 if rigid else 1)  # angles, less the whole turn
+        self.bases = {knots: self._basis(knots) for knots in range(LEAST_KNOTS, min(KNOTS, told) + 1)}
 
     def best(self, harmonics: int | None) -> Beat:
         """The fit that predicts best, with those without each beat."""
@@ -177,31 +190,56 @@ class _Fit:
         if harmonics is not None and not 1 <= harmonics <= most:
             raise ValueError(f"harmonics must be 1 to {most} with this film, got {harmonics}")
         orders = range(1, most + 1) if harmonics is None else [harmonics]
-        tried = {each: self._errors(*each) for each in itertools.product(orders, self.bases)}
-        least = min(tried.values(), key=np.mean)
-        good = [each for each, errors in tried.items() if _within_one_error(errors, least)]
-        order, knots = min(good, key=lambda each: ((1 + 2 * each[0]) * each[1], np.mean(tried[each])))
-        predicted = 1.0 - float(np.sum(tried[order, knots])) / self.power
+        chosen = None
+        for turn in range(ROUNDS):
+            some = orders if turn or not np.any(self.missing) else orders[:1]  # gaps at one phase tell no harmonics
+            tried = {each: self._errors(*each) for each in itertools.product(some, self.bases)}
+            least = min(tried.values(), key=np.mean)
+            good = [each for each, errors in tried.items() if _within_one_error(errors, least)]
+            order, knots = min(good, key=lambda each: ((1 + 2 * each[0]) * each[1], np.mean(tried[each])))
+            predicted = 1.0 - float(np.sum(tried[order, knots])) / self.power
+            period = self._refined(self.period, order, self.all)
+            found = self._beat(order, knots, period, self.all, predicted)
+            if chosen == (order, knots) or not np.any(self.missing):
+                break
+            chosen, self.points = (order, knots), found.film.points
+            self.angles, self.mean = self._angles_of(self.points)
         if predicted < LEAST_SHARE:
             raise ValueError(
                 f"{self.film.name}: the motion does not repeat: at its best period, {self.period:.3g} s, the other "
                 f"beats predict {max(predicted, 0.0):.0%} of its variance. Motions that are not steady: --file"
             )
-        period = self._refined(self.period, order, self.all)
-        found = self._beat(order, knots, period, self.all, predicted)
         rests = [self.beats != beat for beat in range(self.beats[-1] + 1)]
         others = [self._beat(order, knots, self._refined(period, order, rest), rest, predicted) for rest in rests]
         return replace(found, others=tuple(others))
 
     def _beat(self, order: int, knots: int, period: float, frames: np.ndarray, predicted: float) -> Beat:
-        angles, curvature = self.bases[knots]
-        design = self._in_time(period, order)
-        found = _solved(design[frames], self.angles[frames], angles)
-        fitted = design @ found @ angles.T
-        power = float(np.sum((self.angles - self.angles.mean(axis=0))[frames] ** 2))
-        share = 1.0 - float(np.sum((fitted - self.angles)[frames] ** 2)) / max(power, 1e-300)
-        fit = found @ curvature, share, predicted, self._distance(fitted)
-        return Beat(self.film, period, order, knots, self.rigid, *fit)
+        basis, curvature = self.bases[knots]
+        design, points, angles, mean = self._in_time(period, order), self.points, self.angles, self.mean
+        for _ in range(FILLINGS):
+            found = _solved(design[frames], angles[frames], basis)
+            fitted = design @ found @ basis.T
+            before, points = points, filled(points, self.missing, self.arc, self._shape(fitted, mean))
+            angles, mean = self._angles_of(points)
+            if np.max(np.abs(points - before)) <= STILL * self.arc[-1]:
+                break
+        power = self._squares(self.angles - self.angles.mean(axis=0), frames)
+        share = 1.0 - self._squares(fitted - angles, frames) / max(power, 1e-300)
+        film = self.film._replace(points=points)
+        fit = found @ curvature, share, predicted, self._distance(self._shape(fitted, mean))
+        return Beat(film, period, order, knots, self.rigid, *fit)
+
+    def _angles_of(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The weighted angles (N, n - 1) of the segments between points, without the turn (N, 1) of the whole body."""
+        steps = np.diff(points, axis=1)
+        angles = np.unwrap(np.arctan2(steps[..., 1], steps[..., 0]), axis=1)
+        mean = self._mean(angles)
+        return self.weight * (angles - mean), mean
+
+    def _squares(self, angles: np.ndarray, frames: np.ndarray | None = None) -> float:
+        """The sum of the squares of these `angles` (N, n - 1) in the `frames`, of segments that were seen."""
+        squares = np.where(self.seen, angles, 0.0) ** 2
+        return float(np.sum(squares if frames is None else squares[frames]))
 
     def _errors(self, order: int, knots: int) -> np.ndarray:
         """Sums of squares by which each beat is missed by the fit of the others."""
@@ -209,15 +247,15 @@ class _Fit:
         design, found = self._in_time(self.period, order), []
         for beat in range(self.beats[-1] + 1):
             out = self.beats == beat
-            guess = design[out] @ _solved(design[~out], self.angles[~out], angles) @ angles.T
-            found.append(float(np.sum((guess - self.angles[out]) ** 2)))
+            guess = design @ _solved(design[~out], self.angles[~out], angles) @ angles.T
+            found.append(self._squares(guess - self.angles, out))
         return np.array(found)
 
     def _basis(self, knots: int) -> tuple[np.ndarray, np.ndarray]:
         """Angles of the segments less their mean (n - 1, P), and curvatures (P, FINE) [rad/m], of P splines."""
         from scipy.interpolate import make_interp_spline
 
-        arc, length = self.film.arc, self.film.length
+        arc, length = self.arc, float(self.arc[-1])
         fine = np.linspace(0.0, length, FINE)
         start = self.rigid * length
         places = np.linspace(start, length, knots + (1 if self.rigid else 0))
@@ -258,14 +296,17 @@ class _Fit:
         turns = 2.0 * math.pi / period * (self.time - 0.5 * self.time[-1])
         return np.column_stack([np.ones_like(turns), *harmonics(turns, order)])
 
-    def _distance(self, fitted: np.ndarray) -> float:
-        """Root mean square distance [m] of the points from those of the `fitted` angles (N, n - 1)."""
-        whole = fitted / self.weight + self.mean
-        steps = np.diff(self.film.arc)[:, None] * np.stack((np.cos(whole), np.sin(whole)), axis=-1)
-        points = np.concatenate((np.zeros((len(whole), 1, 2)), np.cumsum(steps, axis=1)), axis=1)
-        here, there = (each - each.mean(axis=1, keepdims=True) for each in (points, self.film.points))
-        apart = here - there
-        return float(np.sqrt(np.mean(np.sum(apart**2, axis=2))))
+    def _shape(self, fitted: np.ndarray, mean: np.ndarray) -> np.ndarray:
+        """The points (N, n, 2) [m] from the first on that the `fitted` angles (N, n - 1) and a whole turn give."""
+        whole = fitted / self.weight + mean
+        steps = np.diff(self.arc)[:, None] * np.stack((np.cos(whole), np.sin(whole)), axis=-1)
+        return np.concatenate((np.zeros((len(whole), 1, 2)), np.cumsum(steps, axis=1)), axis=1)
+
+    def _distance(self, shape: np.ndarray) -> float:
+        """Root mean square distance [m] of the points that were seen from a `shape` (N, n, 2)."""
+        apart = np.where(self.missing[..., None], np.nan, shape - self.film.points)
+        apart = apart - np.nanmean(apart, axis=1, keepdims=True)
+        return float(np.sqrt(np.nanmean(np.sum(apart**2, axis=2))))
 
 
 def _solved(design: np.ndarray, values: np.ndarray, along: np.ndarray) -> np.ndarray:

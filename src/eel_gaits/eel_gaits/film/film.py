@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """A filmed swimmer: tracked points in metres, repaired where that can be done safely, or refused in a sentence.
 
-Empty frames are left out. Where a point is missing, or has jumped, a cubic along the body through the others of its
-frame takes its place; a frame without an end point, or without a quarter of its points, is left out. Drift and turns
-of the swimmer need no repair: the body's bending does not contain them. Points that do not stand along the body in
-their order are refused.
+Empty frames are left out. A point that is missing, unlikely, or has jumped is filled in between its neighbours, and
+later by the beat; a frame without an end point, or without a quarter of its points, is left out. Drift and turns of the
+swimmer need no repair: the body's bending does not contain them. Points that do not stand along the body in their order
+are refused.
 """
 
 import os
@@ -18,17 +18,19 @@ from eel_base.files.input_file import reading
 from eel_base.quantity import number, positive
 from eel_base.wording import shown
 
+from eel_gaits.film.animals import of_one
 from eel_gaits.film.forms import UNITS, Tracks, read_tracks
 from eel_gaits.film.kinematics import arc_of
 from eel_gaits.sources.order import check_order
 
 FEWEST_POINTS, FEWEST_FRAMES = 5, 16
 MISSING = 0.25  # part of a frame's points that may be missing
-OFTEN = 0.5  # part of the frames in which a point must be seen to count
+OFTEN, ENDS = 0.5, 0.2  # part of the frames in which a point must be seen to count; the same of the two ends
 JUMP, SPREADS = 0.5, 6.0  # of a segment's median length, and of its robust spread, beyond which a point has jumped
 CUT, STEPS = 0.25, 10.0  # of the length, and of the median step, beyond which the whole body has jumped
 CLOSE = 0.3  # of the median distance between neighbours, below which two points are one
 LONGEST = 100.0  # m, of a swimmer
+LIKELY = 0.6  # a tracker's likelihood or score of a point, below which it counts as missing; as in DeepLabCut
 
 
 class Film(NamedTuple):
@@ -40,11 +42,12 @@ class Film(NamedTuple):
     notes: tuple[str, ...]  # what was done to the data, in words
     names: tuple[str, ...] = ()  # of the points (n,)
     read: str = ""  # what was guessed of the file's form, in words
+    missing: np.ndarray | None = None  # (N, n), whether a point was filled in
 
     @property
     def arc(self) -> np.ndarray:
         """(n,) m, as of `arc_of`."""
-        return arc_of(self.points)
+        return arc_of(self.points, self.missing)
 
     @property
     def length(self) -> float:
@@ -60,13 +63,15 @@ def read_film(
     rate: float | None = None,
     animal: str | None = None,
     points: Sequence[str] | None = None,
+    likely: float = LIKELY,
 ) -> Film:
     """The swimmer in a file of tracked points, in a form of `eel_gaits.film.forms`.
 
     units: of length: m, cm, mm or px; None: those that the columns tell. scale: metres in the file's unit, for pixels.
-    rate: frames per second, where the file counts frames. animal: which of several. points: names of those along the
-    body, from head to tail, or patterns such as spine*, whose points come in the file's order; None: all. `ValueError`
-    in one line for what does not fit, and for points that do not stand along the body in their order.
+    rate: frames per second, where the file counts frames. animal: which of several, or names of its tracks with commas
+    between them. points: names of those along the body, from head to tail, or patterns such as spine*, whose points
+    come in the file's order; None: all. likely: a tracker's likelihood or score below which a point counts as missing.
+    `ValueError` in one line for what does not fit, and for points that do not stand along the body in their order.
     """
     path = Path(path)
     with reading(shown(str(path))):
@@ -76,12 +81,12 @@ def read_film(
             raise ValueError("it counts frames: give the rate of the film, frames per second")
         if not tracks.frames and rate is not None:
             raise ValueError("it has times: a rate of the film has no place")
-        name, notes = _of_one(tracks, animal)
-        places, out = _chosen(tracks.names[name], points)
-        named = [tracks.names[name][place] for place in places]
+        seen, scores, names, notes = of_one(tracks, animal)
+        places, out = _chosen(names, points)
+        named = [names[place] for place in places]
         time = tracks.time / positive("rate", rate, "1/s") if rate is not None else tracks.time
-        along = metres * tracks.animals[name][:, places]
-        found = _repaired(path.name, time, along, named, [*tracks.notes, *notes, *out], tracks.frames)
+        along, unlikely = _likely(metres * seen[:, places], scores[:, places], named, likely)
+        found = _repaired(path.name, time, along, named, [*notes, *out, *unlikely], tracks.frames)
         if found.length > LONGEST:
             raise ValueError(f"its swimmer is {found.length:.4g} m long: give its units, or a scale")
         _check_whole(found)
@@ -106,21 +111,6 @@ def _metres(tracks: Tracks, units: str | None, scale: float | None) -> float:
     return UNITS[unit]
 
 
-def _of_one(tracks: Tracks, animal: str | None) -> tuple[str, list[str]]:
-    """The name of the one animal, and a note where another was left out."""
-    seen = [name for name, points in tracks.animals.items() if np.any(np.isfinite(points))]
-    if animal is not None:
-        if animal not in tracks.animals:
-            raise ValueError(f"there is no animal {shown(animal)}, there are: {', '.join(map(shown, seen))}")
-        others = [name for name in seen if name != animal]
-        return animal, [f"animal {animal} of {len(seen)}"] if others else []
-    if len(seen) > 1:
-        raise ValueError(f"it has {len(seen)} animals, {', '.join(map(shown, seen))}: say which one")
-    if not seen:
-        raise ValueError("all its points are missing")
-    return seen[0], []
-
-
 def _chosen(names: list[str], points: Sequence[str] | None) -> tuple[list[int], list[str]]:
     """The places in the file of the points that are chosen from these `names`, and a note of those left out."""
     if points is None:
@@ -140,6 +130,19 @@ def _chosen(names: list[str], points: Sequence[str] | None) -> tuple[list[int], 
     return places, [f"points left out, as they are not among those given: {', '.join(out)}"] if out else []
 
 
+def _likely(points: np.ndarray, scores: np.ndarray, names: list[str], likely: float) -> tuple[np.ndarray, list[str]]:
+    """The points (N, n, 2) without those whose scores (N, n) are below `likely`, and a note that tells them."""
+    if not 0.0 <= likely <= 1.0:
+        raise ValueError(f"likely must be from 0 to 1, got {likely:g}")
+    low = (scores < likely) & np.isfinite(points).all(axis=2)
+    if not np.any(low):
+        return points, []
+    of = ", ".join(name for name, any_low in zip(names, low.any(axis=0), strict=True) if any_low)
+    return np.where(low[..., None], np.nan, points), [
+        f"{np.sum(low)} of {low.size} points have a likelihood below {likely:g} and count as missing: {of}"
+    ]
+
+
 def _repaired(name: str, time: np.ndarray, points: np.ndarray, names: list[str], notes: list[str], parts: bool) -> Film:
     def keep(frames: np.ndarray, why: str) -> None:
         nonlocal time, points
@@ -152,7 +155,8 @@ def _repaired(name: str, time: np.ndarray, points: np.ndarray, names: list[str],
 
     keep(np.any(np.isfinite(points), axis=(1, 2)), "empty")
     there = np.all(np.isfinite(points), axis=2)
-    rare = np.flatnonzero(there.mean(axis=0) < OFTEN)
+    often = np.where(np.isin(np.arange(len(names)), (0, len(names) - 1)), ENDS, OFTEN)
+    rare = np.flatnonzero(there.mean(axis=0) < often)
     if len(rare):
         notes.append(f"points left out, missing in most frames: {', '.join(names[each] for each in rare)}")
         points, names = np.delete(points, rare, axis=1), np.delete(names, rare).tolist()
@@ -175,9 +179,10 @@ def _repaired(name: str, time: np.ndarray, points: np.ndarray, names: list[str],
         raise ValueError(f"there must be {FEWEST_FRAMES} frames or more, got {len(time)}{in_brackets()}")
     missing = ~np.all(np.isfinite(points), axis=2)
     if np.any(missing):
-        notes.append(f"{np.sum(missing)} of {missing.size} points filled by a cubic along the body")
-        points = _filled(points, missing)
-    return Film(name, time, points, tuple(notes), tuple(names))
+        notes.append(f"{np.sum(missing)} of {missing.size} points filled in")
+        steps = np.nanmedian(np.linalg.norm(np.diff(points, axis=1), axis=2), axis=0)
+        points = filled(points, missing, np.concatenate(([0.0], np.cumsum(steps))))
+    return Film(name, time, points, tuple(notes), tuple(names), missing=missing)
 
 
 def _apart(points: np.ndarray) -> list[int]:
@@ -204,15 +209,18 @@ def _jumps(points: np.ndarray) -> np.ndarray:
     return found
 
 
-def _filled(points: np.ndarray, missing: np.ndarray) -> np.ndarray:
-    from scipy.interpolate import CubicSpline
+def filled(points: np.ndarray, missing: np.ndarray, arc: np.ndarray, shape: np.ndarray | float = 0.0) -> np.ndarray:
+    """The points (N, n, 2), those `missing` (N, n) as a `shape` (N, n, 2) has them, moved along with their neighbours.
 
-    steps = np.nanmedian(np.linalg.norm(np.diff(points, axis=1), axis=2), axis=0)
-    arc, found = np.concatenate(([0.0], np.cumsum(steps))), points.copy()
-    for frame in np.flatnonzero(missing.any(axis=1)):
-        there = ~missing[frame]
-        found[frame, ~there] = CubicSpline(arc[there], points[frame, there])(arc[~there])
-    return found
+    arc: of the points (n,). The ends are there.
+    """
+    place = np.arange(len(arc))
+    ahead = np.maximum.accumulate(np.where(missing, 0, place), axis=1)
+    behind = np.minimum.accumulate(np.where(missing, len(arc), place)[:, ::-1], axis=1)[:, ::-1]
+    part = (arc - arc[ahead]) / np.where(missing, arc[behind] - arc[ahead], 1.0)
+    off, frame = points - shape, np.arange(len(points))[:, None]
+    between = (1.0 - part)[..., None] * off[frame, ahead] + part[..., None] * off[frame, behind]
+    return np.where(missing[..., None], shape + between, points)
 
 
 def _check_whole(film: Film) -> None:

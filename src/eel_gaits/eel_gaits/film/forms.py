@@ -30,7 +30,6 @@ COORDINATE = re.compile(  # x, x0, head_x, x_head, each before a unit; mxmm of f
 )
 FRAMES = "frame", "frames", "image"  # names of a column that counts them
 TRACK = "track"  # SLEAP's column of names
-LIKELY = 0.6  # likelihood of a DeepLabCut point below which it counts as missing, as there
 
 
 class Tracks(NamedTuple):
@@ -41,7 +40,7 @@ class Tracks(NamedTuple):
     names: dict[str, list[str]]  # of its points, in the file's order
     unit: str  # of length; "" where the file does not tell
     frames: bool  # whether time is a number of frames, and the points are parts of a tracker's skeleton
-    notes: tuple[str, ...]  # what was done, in words
+    scores: dict[str, np.ndarray]  # (N, n) of each: likelihoods of DeepLabCut, scores of SLEAP; NaN where not told
     read: str = ""  # what was guessed of the file's form, in words
 
 
@@ -98,7 +97,7 @@ def _of_columns(table: Table, column: str) -> Tracks:
     if marks == [""]:
         marks = _names_in_frames(table, starts)
     points = points.reshape(len(starts), -1, 2)
-    return Tracks(time[starts], {"": points}, {"": marks}, units.pop(), times is None, (), ", ".join(notes))
+    return Tracks(time[starts], {"": points}, {"": marks}, units.pop(), times is None, {}, ", ".join(notes))
 
 
 def _names_in_frames(table: Table, starts: np.ndarray) -> list[str]:
@@ -132,24 +131,22 @@ def _of_deeplabcut(table: Table, rows: dict[str, list[str]]) -> Tracks:
 def _of_parts(frames: np.ndarray, names: list[tuple[str, str, str]], values: np.ndarray) -> Tracks:
     """Tracks of DeepLabCut's columns, each with the names of (animal, body part, x, y or likelihood)."""
     column = {name: index for index, name in enumerate(names)}
-    animals, unlikely, parts_of = {}, 0, dict[str, list[str]]()
+    animals, scores, parts_of = {}, {}, dict[str, list[str]]()
     for animal, part in dict.fromkeys(name[:2] for name in names):
         parts_of.setdefault(animal, []).append(part)
     for animal, parts in parts_of.items():
         points = np.full((len(frames), len(parts), 2), np.nan)
+        scores[animal] = np.full((len(frames), len(parts)), np.nan)
         for place, part in enumerate(parts):
             if not {(animal, part, "x"), (animal, part, "y")} <= column.keys():
                 raise ValueError(f"body part {shown(part)} must have x and y")
             points[:, place] = values[:, [column[animal, part, "x"], column[animal, part, "y"]]]
             if (index := column.get((animal, part, "likelihood"))) is not None:
-                bad = ~(values[:, index] >= LIKELY) & np.isfinite(points[:, place, 0])
-                points[bad, place] = np.nan
-                unlikely += int(bad.sum())
+                scores[animal][:, place] = values[:, index]
         animals[animal] = points
     if fall := _fall_of(frames):
         raise ValueError(fall[1])
-    notes = (f"{unlikely} points of a likelihood below {LIKELY} count as missing",) if unlikely else ()
-    return Tracks(frames, animals, parts_of, "px", True, notes)
+    return Tracks(frames, animals, parts_of, "px", True, scores)
 
 
 def _of_hdf(path: Path) -> Tracks:
@@ -160,7 +157,7 @@ def _of_hdf(path: Path) -> Tracks:
     if isinstance(found, Columns):
         return _of_parts(found.frames, found.names, found.values)
     frames = np.arange(len(next(iter(found.tracks.values()), [])), dtype=float)
-    return Tracks(frames, found.tracks, dict.fromkeys(found.tracks, found.parts), "px", True, ())
+    return Tracks(frames, found.tracks, dict.fromkeys(found.tracks, found.parts), "px", True, found.scores)
 
 
 def _of_sleap(table: Table) -> Tracks:
@@ -170,17 +167,22 @@ def _of_sleap(table: Table) -> Tracks:
         raise ValueError(f"a SLEAP file must have columns such as nose.x, nose.y, got {shown(head)}")
     frame = table.numbers([head.index("frame_idx")])[:, 0]
     points = table.numbers([head.index(f"{part}.{axis}") for part in parts for axis in "xy"])
+    told = [place for place, part in enumerate(parts) if f"{part}.score" in head]
+    score = table.numbers([head.index(f"{parts[place]}.score") for place in told])
     rows_of: dict[str, list[int]] = {}
     tracks = table.texts(head.index(TRACK)) if TRACK in head else [""] * len(table)
     for row, track in enumerate(tracks):
         rows_of.setdefault(track, []).append(row)
-    frames, animals = np.unique(frame), {}
+    frames, animals, scores = np.unique(frame), {}, {}
     if 2 * len(rows_of) * len(frames) * len(parts) > MOST_NUMBERS:
         raise ValueError(f"its {len(rows_of)} tracks and {len(frames)} frames make more than {MOST_NUMBERS} numbers")
     for track, mine in rows_of.items():
         if len(set(frame[mine])) < len(mine):
             twice = next(place for before, place in itertools.pairwise(mine) if frame[place] <= frame[before])
             raise table.error("a track has two instances in one frame: two animals? Track them", twice)
+        here = np.searchsorted(frames, frame[mine])
         animals[track] = np.full((len(frames), len(parts), 2), np.nan)
-        animals[track][np.searchsorted(frames, frame[mine])] = points[mine].reshape(len(mine), len(parts), 2)
-    return Tracks(frames, animals, dict.fromkeys(animals, parts), "px", True, (), ", ".join(table.notes))
+        animals[track][here] = points[mine].reshape(len(mine), len(parts), 2)
+        scores[track] = np.full((len(frames), len(parts)), np.nan)
+        scores[track][here[:, None], told] = score[mine]
+    return Tracks(frames, animals, dict.fromkeys(animals, parts), "px", True, scores, ", ".join(table.notes))

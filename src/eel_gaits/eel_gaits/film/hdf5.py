@@ -31,9 +31,10 @@ class Columns(NamedTuple):
 
 
 class Skeletons(NamedTuple):
-    """SLEAP's points (N, n, 2) by the names of tracks, and the names of the points (n,)."""
+    """SLEAP's points (N, n, 2) and scores (N, n) by the names of tracks, and the names of the points (n,)."""
 
     tracks: dict[str, np.ndarray]
+    scores: dict[str, np.ndarray]
     parts: list[str]
 
 
@@ -67,7 +68,15 @@ def _of_sleap(found: dict[str, Any]) -> Skeletons:
     names = names or [""] * min(1, len(points))  # without tracking there is one
     if len(names) != len(points) or len(set(names)) < len(names):
         raise ValueError(f"each track must have a name of its own, got {len(points)} tracks and {shown(names)}")
-    return Skeletons({name: each.transpose(2, 1, 0) for name, each in zip(names, points, strict=True)}, parts)
+    tracks = {name: each.transpose(2, 1, 0) for name, each in zip(names, points, strict=True)}
+    if "point_scores" not in found:
+        return Skeletons(tracks, {}, parts)
+    scores, xy = numbers_of(found["point_scores"]).astype(float), order[1]
+    if scores.ndim == 3:
+        scores = scores.transpose([place - (place > xy) for place in order if place != xy])  # (tracks, n, N)
+    if scores.shape != points[:, 0].shape:
+        raise ValueError(f"point_scores must be one of each point, got the shape {scores.shape}")
+    return Skeletons(tracks, {name: each.T for name, each in zip(names, scores, strict=True)}, parts)
 
 
 def _of_table(table: Any) -> tuple[np.ndarray, list[tuple[str, ...]], np.ndarray]:

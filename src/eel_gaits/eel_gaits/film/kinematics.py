@@ -43,10 +43,13 @@ class Kinematics:
         return float(self.excursion[-1]) / self.stride if self.stride else math.inf
 
 
-def arc_of(points: np.ndarray) -> np.ndarray:
-    """Mean arc lengths (n,) [m] of the points (N, n, 2) [m], by their distances."""
-    steps = np.linalg.norm(np.diff(points, axis=1), axis=2).mean(axis=0)
-    return np.concatenate(([0.0], np.cumsum(steps)))
+def arc_of(points: np.ndarray, missing: np.ndarray | None = None) -> np.ndarray:
+    """Mean arc lengths (n,) [m] of the points (N, n, 2) [m], by distances of those that are not `missing` (N, n)."""
+    steps = np.linalg.norm(np.diff(points, axis=1), axis=2)
+    if missing is not None:
+        seen = ~(missing[:, 1:] | missing[:, :-1])
+        steps = np.where(seen | ~seen.any(axis=0), steps, np.nan)
+    return np.concatenate(([0.0], np.cumsum(np.nanmean(steps, axis=0))))
 
 
 def kinematics(time: np.ndarray, points: np.ndarray, period: float) -> Kinematics:

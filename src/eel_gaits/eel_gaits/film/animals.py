@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which tracks of a file are the swimmer: trackers give one animal a new name where they lose it.
+
+Tracks that share no frame are one animal where each goes on about where the other would have come to. Of several
+such animals the one that is seen in most frames counts. Tracks that share frames need a choice.
+"""
+
+from collections.abc import Iterable
+
+import numpy as np
+from eel_base.wording import shown
+
+from eel_gaits.film.forms import Tracks
+
+APART, LOST = 0.25, 0.5  # of the length, and of the way since, by which a track may be beside where it is expected
+LISTED = 8  # names in a message
+
+
+def of_one(tracks: Tracks, animal: str | None) -> tuple[np.ndarray, np.ndarray, list[str], list[str]]:
+    """Points (N, n, 2) of one animal, their scores (N, n) or NaN, their names (n,), and notes.
+
+    animal: its name, or the names of its tracks with commas between them.
+    """
+    seen = {name: _there(points) for name, points in tracks.animals.items()}
+    seen = {name: seen[name] for name in sorted(seen, key=lambda name: np.argmax(seen[name])) if seen[name].any()}
+    wanted = list(seen)
+    if animal is not None:
+        wanted = [animal] if animal in tracks.animals else [name.strip() for name in animal.split(",")]
+        if unknown := [name for name in wanted if name not in tracks.animals]:
+            raise ValueError(f"there is no animal {shown(unknown[0])}, there are: {_listed(seen)}")
+    names = [name for name in seen if name in wanted]
+    if not names:
+        raise ValueError("all its points are missing")
+    if np.any(np.sum([seen[name] for name in names], axis=0) > 1):
+        raise ValueError(f"it has {len(names)} animals, {_listed(names)}: say which one")
+    if any(tracks.names[name] != tracks.names[names[0]] for name in names):
+        raise ValueError(f"it has {len(names)} animals with other points, {_listed(names)}: say which one")
+    groups: list[list[str]] = []
+    for name in names:
+        if groups and (animal is not None or _is_one(tracks, groups[-1], name)):
+            groups[-1].append(name)
+        else:
+            groups.append([name])
+    one = max(groups, key=lambda group: sum(int(seen[name].sum()) for name in group))
+    notes = [f"tracks {_listed(one)} share no frame and follow each other: joined"] if len(one) > 1 else []
+    if out := [name for name in seen if name not in one]:
+        notes.append(f"animal {_listed(one)} taken, left out: {_listed(out)}")
+    points = _merged(tracks.animals, one)
+    scores = _merged(tracks.scores, one) if tracks.scores else np.full(points.shape[:2], np.nan)
+    return points, scores, tracks.names[one[0]], notes
+
+
+def _is_one(tracks: Tracks, group: list[str], name: str) -> bool:
+    """Whether the `group` of tracks and another go on, at each change between them, where the other ended."""
+    one, other = _merged(tracks.animals, group), tracks.animals[name]
+    mine, both = _there(one), np.flatnonzero(_there(one) | _there(other))
+    length = np.nanmedian(np.nansum(np.linalg.norm(np.diff(one[mine], axis=1), axis=2), axis=1))
+    first, last = np.flatnonzero(mine)[[0, -1]]
+    pace = _way(one[first], one[last]) / max(tracks.time[last] - tracks.time[first], 1.0)
+    points = np.where(mine[:, None, None], one, other)
+    for place in np.flatnonzero(np.diff(mine[both])):
+        before, after = both[place : place + 2]
+        way = pace * (tracks.time[after] - tracks.time[before])
+        beside = np.linalg.norm(_way(points[before], points[after]) - way)
+        if not beside <= APART * length + LOST * np.linalg.norm(way):
+            return False
+    return True
+
+
+def _way(before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """The mean way (2,) of the points (n, 2) that are there before and after; infinite where there is none."""
+    ways = (after - before)[np.isfinite(after - before).all(axis=1)]
+    return np.asarray(ways.mean(axis=0)) if len(ways) else np.full(2, np.inf)
+
+
+def _there(points: np.ndarray) -> np.ndarray:
+    """In which frames (N,) any of the points (N, n, 2) is seen."""
+    return np.asarray(np.isfinite(points).any(axis=(1, 2)))
+
+
+def _merged(tracks: dict[str, np.ndarray], names: list[str]) -> np.ndarray:
+    """The values (N, ...) of tracks with these `names`, which share no frame."""
+    found = tracks[names[0]]
+    for name in names[1:]:
+        found = np.where(np.isnan(found), tracks[name], found)
+    return found
+
+
+def _listed(names: Iterable[str]) -> str:
+    listed = [shown(name) for name in names]
+    return ", ".join(listed[:LISTED]) + (f" and {len(listed) - LISTED} others" if len(listed) > LISTED else "")

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Points that were not seen: the beat of a film with gaps is that of the whole film."""
+
+import numpy as np
+import pytest
+from eel_gaits.film.beat import beat_of
+from eel_gaits.film.film import read_film
+from filmed import TIMES, swimming, write_sleap
+
+ARC = np.linspace(0.0, 1.0, 8)
+COUNT = len(TIMES)
+
+
+def hidden(kind, draw):
+    """(N, n), which points of a film of 8 are not seen."""
+    found, long = np.zeros((COUNT, len(ARC)), dtype=bool), int(0.4 * COUNT)
+    place, start = draw.integers(1, len(ARC) - 2), draw.integers(0, COUNT - long)
+    if kind == "scattered":
+        found[:, 1:-1] = draw.random((COUNT, len(ARC) - 2)) < 0.15
+    elif kind == "two in a row, often":
+        found[draw.choice(COUNT, long, replace=False), place : place + 2] = True
+    elif kind == "one for long":
+        found[start : start + long, place] = True
+    elif kind == "bursts":
+        for first in draw.integers(0, COUNT - 6, 5):
+            found[first : first + 6, place : place + 2] = True
+        found[start : start + 4] = True
+    return found
+
+
+def beat_without(path, points, lost):
+    gone = np.where(lost[..., None], np.nan, 1e3 * points)
+    return beat_of(read_film(write_sleap(path, {"": gone}), units="px", scale=1e-3, rate=50.0))
+
+
+@pytest.mark.parametrize("kind", ["scattered", "two in a row, often", "one for long", "bursts"])
+def test_what_is_hidden_hardly_changes_the_beat_whose_band_holds_the_change(tmp_path, kind):
+    points, draw = swimming(noise=1e-3, arc=ARC), np.random.default_rng(4)
+    whole = beat_without(tmp_path / "whole.csv", points, np.zeros((COUNT, len(ARC)), dtype=bool))
+    for _ in range(2):
+        lost = hidden(kind, draw)
+        beat = beat_without(tmp_path / "gaps.csv", points, lost)
+        filled = np.sum(beat.film.missing)
+        assert any(note.startswith(f"{filled} of ") for note in beat.film.notes) and filled > 20
+        apart = np.hypot(*(beat.curvature - whole.curvature)[1:3]) / np.max(np.hypot(*whole.curvature[1:3]))
+        assert np.mean(apart) < 1.5 * whole.band and np.mean(apart) < 0.05
+        assert beat.band > 0.6 * whole.band
+
+
+def test_a_point_lost_wherever_the_body_bends_most_is_put_back_by_the_beat(tmp_path):
+    points = swimming(arc=ARC)
+    lost = np.zeros((COUNT, len(ARC)), dtype=bool)
+    bend = np.linalg.norm(points[:, 4] - 2.0 * points[:, 5] + points[:, 6], axis=1)
+    lost[bend > np.quantile(bend, 0.6), 5] = True
+    beat = beat_without(tmp_path / "gaps.csv", points, lost)
+    straight = 0.5 * (points[:, 4] + points[:, 6])
+    assert np.max(np.linalg.norm((points[:, 5] - straight)[lost[:, 5]], axis=1)) > 0.02
+    found = beat.film.points - points
+    assert np.max(np.linalg.norm(found[:, 5], axis=1)) < 0.004
+
+
+@pytest.mark.parametrize("end", [0, -1])
+def test_an_end_that_is_mostly_lost_does_not_make_the_animal_shorter(tmp_path, end):
+    lost = np.zeros((COUNT, len(ARC)), dtype=bool)
+    lost[np.arange(COUNT) % 5 > 1, end] = True
+    found = beat_without(tmp_path / "gaps.csv", swimming(arc=ARC), lost).film
+    assert found.points.shape[:2] == (COUNT * 2 // 5, 8) and found.length > 0.97
