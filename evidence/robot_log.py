@@ -32,6 +32,7 @@ def _add_options(parser: Parser) -> None:
     ranges = ", ".join(f"{name}={low:g}:{high:g}" for name, (low, high) in UNCERTAIN.items())
     parser.add_argument("file", metavar="LOG", help=".csv, or a bag (folder, .mcap, .db3) with sensor_msgs/JointState")
     parser.add_argument("--units", metavar="UNIT", help="rad or deg (as the columns' names say, or rad)")
+    parser.add_argument("--time", default="", metavar="COLUMN", help="of times in a table, by its name or number")
     add_joint_options(parser)
     add_options(parser, "--body", "--scene", "--duration", "--accuracy", "--out", body=(None, "or --section"),
                 duration=(None, "all of the log"), accuracy="1e-3")  # fmt: skip

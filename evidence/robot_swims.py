@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 from eel_base.command.command import command
+from eel_base.files.tables import read_table
 from eel_dynamics.commands.options import add_options
 from eel_gaits.film.beat import Beat, beat_of
 from eel_gaits.film.film import read_film
@@ -107,14 +108,15 @@ def tendon_fish() -> list[tuple[str, ...]]:
     """Its films, by its hinges."""
     beats = [beat(frequency) for frequency in FILMS]
     measured = np.array([each.measured.speed for each in beats])
-    sections = np.genfromtxt(DATA / "tendon_fish_true_body.csv", delimiter=",", names=True)
+    sections = read_table(DATA / "tendon_fish_true_body.csv")
+    x, half_width, half_height = (sections.column(name) for name in ("x", "half_width", "half_height"))
     body = Body(
-        x=sections["x"], half_width=sections["half_width"], half_height=sections["half_height"], blunt_nose=True,
+        x=x, half_width=half_width, half_height=half_height, blunt_nose=True,
         nose_drag=0.0, nose_added_mass=0.0, name="tendon fish",
     )  # fmt: skip
     body = body.changed(density=MASS / body.volume)
     hung = body.changed(appendages=appendages_from_file(DATA / "tendon_fish_parts.csv"))
-    finite = {"lateral_added_mass": np.interp(sections["x"], *FINITE.T)}
+    finite = {"lateral_added_mass": np.interp(x, *FINITE.T)}
     models = {
         "published sections alone": body,
         "and appendages": hung,

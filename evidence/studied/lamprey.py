@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from eel_base.files.tables import read_table
 from eel_dynamics.commands.filmed import speeds_of
 from eel_gaits.film.beat import Beat, jackknife
 from eel_gaits.film.kinematics import Kinematics, kinematics
-from eel_gaits.sources.tables import read_table
 
 from eel_dynamics import Body, Run, Scene, simulate
 from eel_gaits import Law, Term
@@ -57,13 +57,9 @@ def lamprey(length: float, height: float, widths: Path, **numbers: float) -> Bod
     of the body.
     """
     table = read_table(widths)
-    names = ("s_by_length", "lamprey_width_by_length")
-    if missing := [name for name in names if name not in table.columns]:
-        raise table.error(f"widths must have the columns {', '.join(names)}; {', '.join(missing)} missing")
-    table.check_finite(names)
     x = np.linspace(0.0, 1.0, 41)
     round_end = np.sqrt(np.minimum(x / NOSE, 1.0))
-    radius = np.interp(x, table.columns[names[0]], table.columns[names[1]])
+    radius = np.interp(x, table.column("s_by_length"), table.column("lamprey_width_by_length"))
     half_width = round_end * np.maximum(radius, THINNEST)
     rise = np.clip((x - FIN[0]) / (FIN[1] - FIN[0]), 0.0, 1.0)
     rise = rise**2 * (3.0 - 2.0 * rise)
@@ -94,12 +90,11 @@ def thickened(film: Path) -> list[Thickened]:
     if not path.exists():
         return []
     table, names = read_table(path), Thickened._fields
-    if missing := [name for name in names if name not in table.columns]:
+    if missing := [name for name in names if name not in table]:
         raise table.error(
             f"speeds in thick water must have the columns {', '.join(names)}; {', '.join(missing)} missing"
         )
-    table.check_finite(names)
-    rows = np.column_stack([table.columns[name] for name in names])
+    rows = np.column_stack([table.column(name) for name in names])
     if len(bad := np.flatnonzero(np.any(rows <= 0.0, axis=1))):
         raise table.error("all numbers must be > 0", bad[0])
     if rows[0, 0] != 1.0:

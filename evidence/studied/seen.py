@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from eel_gaits.sources.tables import read_table
+from eel_base.files.tables import read_table
+from eel_base.files.times import time_of
 from eel_studies.pictures import BLACK, BLUE, PALE_BLUE, Axes, Figure, along_way, legend_above
 
 from studied.band import Replayed
@@ -24,13 +25,9 @@ class Seen:
 
     @classmethod
     def of_file(cls, path: Path) -> "Seen":
-        """From columns time_s, x_m, y_m. `ValueError` for others."""
+        """From columns of time, x and y. `ValueError` for others."""
         table = read_table(path)
-        if missing := [name for name in ("time_s", "x_m", "y_m") if name not in table.columns]:
-            raise table.error(f"points must have columns time_s, x_m, y_m; {', '.join(missing)} missing")
-        table.check_finite(("time_s", "x_m", "y_m"))
-        time = table.columns["time_s"]
-        rows = np.column_stack((table.columns["x_m"], table.columns["y_m"]))
+        time, rows = time_of(table).seconds, np.column_stack((table.column("x", "m"), table.column("y", "m")))
         instants = np.unique(time)
         if len(instants) < 3:
             raise table.error(f"points must be of 3 instants or more, got {len(instants)}")

@@ -162,7 +162,7 @@ def test_two_animals_are_refused_with_what_to_do(tmp_path):
     with pytest.raises(ValueError, match="line 2: a point stands twice in one frame: two animals"):
         read_film(twice)
     (tmp_path / "after.csv").write_text("\n".join(rows + rows[1:]))
-    with pytest.raises(ValueError, match=r"line 1602: time must rise, got 0 after 1.58: two animals in one file"):
+    with pytest.raises(ValueError, match=r"line 1602: time must rise, got 0 s after 1.58 s: two swimmers in one file"):
         read_film(tmp_path / "after.csv")
 
 

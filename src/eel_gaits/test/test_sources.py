@@ -230,8 +230,8 @@ def test_bad_rows_of_midlines_are_named(tmp_path, change, words):
         ("time,x,y\n", ["a header and no row"]),
         ("time,x,y\n0,1,two\n", ["line 2", "y must be a number, got 'two'"]),
         ("time,x,y\n0,1\n", ["line 2", "3 fields", "got 2"]),
-        ("time,x,x\n0,1,2\n", ["line 1", "a name of its own"]),
-        ("when,x,y\n0,1,2\n", ["its columns must be time and", "['when', 'x', 'y']"]),
+        ("time,x,x\n0,1,2\n", ["its columns must be time and", "got ['time', 'x', 'x']"]),
+        ("when,x,y\n0,1,2\n", ["its time is not plain from ['when', 'x', 'y']"]),
         ("time,x,y\n" + "0,0,0\n" * 7 + "1,0,0\n" * 6, ["lines 9 to 14", "a frame of 6 points, the first frame has 7"]),
         ("time,yaw_1,yaw_3\n0,0,0\n", ["joints of yaw", "without gaps"]),
         ("time,yaw_1,yaw_2,yaw_3\n0,0,0,0\n0,0,0,0\n", ["line 3", "time must rise"]),
@@ -249,7 +249,7 @@ def test_other_files_are_refused(tmp_path):
     (tmp_path / "motion.npz").write_text("no archive")
     for name, words in (
         ("motion.npz", "not a zip file"),
-        ("motion.txt", "a .csv or .npz"),
+        ("motion.bin", "a .csv or .npz"),
         ("none.csv", "no such file"),
     ):
         with pytest.raises(ValueError, match=f"{name}.*{words}"):

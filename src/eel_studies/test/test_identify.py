@@ -291,7 +291,7 @@ def test_speeds_in_a_table_have_the_numbers_of_their_swims(files, tmp_path, caps
         (["nothing.nc"], "nothing.nc' cannot be read: there is no such file"),
         (["bad.csv", *GAIT], "bad.csv', line 3: x must be finite, got nan"),
         (["back.csv", *GAIT], "back.csv', line 3: time must rise"),
-        (["other.csv", *GAIT], "its columns must be time, x, y (a path), or speed, got ['height', 'time']"),
+        (["other.csv", *GAIT], "its columns must be time, x, y (a path), or speed, got ['time', 'height']"),
         (["backward.csv", *GAIT], "backward.csv', line 2: speed must be > 0 m/s, got -0.3"),
         (["path.csv"], "--gait must be given: "),
         (["run.nc", "other_body.nc"], "--body must be given: the files do not have one body"),

@@ -2,7 +2,7 @@
 """The entry for files that nobody vouches for. Every reader of the suite opens its file here.
 
 `reading` turns whatever a parser raises into one `ValueError`. `opened` gives a file of which a parser reads no more
-than there is. `from_json` reads a text of JSON. `archive`, `yaml_tree` and `sources.tables` read other formats by them.
+than there is. `from_json` reads a text of JSON. `archive`, `tables` and `yaml_tree` read other formats by them.
 """
 
 import contextlib

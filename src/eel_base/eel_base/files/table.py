@@ -6,6 +6,7 @@ A name may end in its unit: time_ms, "t [ms]", x(mm), yawDeg, "Zeit / s".
 
 import math
 import re
+import warnings
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -42,7 +43,8 @@ class Table:
 
     values (rows, columns): NaN where a cell is no number. marks (rows, columns): 0 for a number, else a number from 1
     of the cell's text among `words`. lines (rows,): in the file; None: the rows count from 1. heads: all rows of the
-    header. notes: what was guessed or left out, in words. what: begins an error, before the file's name.
+    header. notes: what was guessed, in words. lost: lines of rows that were left out. what: begins an error, before the
+    file's name.
     """
 
     def __init__(
@@ -55,9 +57,11 @@ class Table:
         lines: np.ndarray | None = None,
         heads: Sequence[Sequence[str]] = (),
         notes: Sequence[str] = (),
+        lost: Sequence[int] = (),
         what: str = "",
     ) -> None:
-        self.path, self.head, self.heads, self.notes, self._what = path, list(head), heads, list(notes), what
+        self.path, self.head, self.heads, self.notes = path, list(head), heads, list(notes)
+        self.lost, self._what = lost, what
         self._values, self._words = values, ["", *words]
         self._marks = np.broadcast_to(np.int32(0), values.shape) if marks is None else marks
         self._empty = np.array([False, *(word.lower() in MISSING for word in words)])
@@ -76,6 +80,11 @@ class Table:
         if first is not None and last is not None and last != first:
             place = f", {self._word}s {self.lines[first]} to {self.lines[last]}"
         return ValueError(f"{self._what}{shown(str(self.path))}{place}: {text}")
+
+    def tell(self) -> None:
+        """Warn of what was guessed, where anything was."""
+        if self.notes:
+            warnings.warn(f"{self._what}{shown(str(self.path))} is read with {', '.join(self.notes)}", stacklevel=3)
 
     # -- columns
 
@@ -117,7 +126,7 @@ class Table:
 
         `ValueError` names the first cell that is no number, is not finite (unless `missing`), or is beyond `largest`.
         """
-        factors = [self._factor(place, unit) for place in columns]
+        factors = [self.factor(place, unit) for place in columns]
         found, marks = self._values[:, list(columns)] * factors, self._marks[:, list(columns)]
         bad = (marks > 0) & ~(missing & self._empty[marks])
         if len(where := np.argwhere(bad)):
@@ -155,7 +164,8 @@ class Table:
         numbers, values = np.sum((cells == 0) & np.isfinite(self._values[:, place])), np.sum(~self._empty[cells])
         return bool(numbers and 2 * numbers > values)
 
-    def _factor(self, place: int, unit: str) -> float:
+    def factor(self, place: int, unit: str) -> float:
+        """What a column's numbers must be multiplied by to be in this SI `unit`; 1 where its name has none."""
         given = self.unit(place)
         if not unit or not given:
             return 1.0

@@ -43,8 +43,7 @@ def is_table(path: str | os.PathLike[str], *others: str) -> bool:
 def read_table(path: str | os.PathLike[str], what: str = "", *, lenient: bool = False) -> Table:
     """The table in a file. `ValueError` in one line, with the line, for what cannot be read.
 
-    what: begins an error, before the file's name, such as "body file ". lenient: leave out rows of another length, and
-    note them.
+    what: begins an error, before the file's name, such as "body file ". lenient: leave out rows of another length.
     """
     path = Path(path)
     with reading(f"{what}{shown(str(path))}"):
@@ -102,9 +101,8 @@ def _read(path: Path, file: InputFile, what: str, lenient: bool) -> Table:
         *(["decimal commas"] if comma else []),
         *([] if encoding.startswith("utf-8") else [encoding]),
         *head.notes,
-        *([f"{len(lost)} rows left out, not of {head.width} cells, the first in line {lost[0]}"] if lost else []),
     ]
-    return cells.table(path, head, notes, what)
+    return cells.table(path, head, notes, lost, what)
 
 
 def _encoding(file: InputFile) -> str:
@@ -265,7 +263,7 @@ class _Cells:
                 self._values.append(float(number) if known else np.nan)
                 self._marks.append(0 if known else self._words.setdefault(cell, len(self._words) + 1))
 
-    def table(self, path: Path, head: _Head, notes: list[str], what: str) -> Table:
+    def table(self, path: Path, head: _Head, notes: list[str], lost: list[int], what: str) -> Table:
         """The table of all rows."""
         values, marks = np.frombuffer(self._values), np.frombuffer(self._marks, dtype=np.int32)
         return Table(
@@ -277,5 +275,6 @@ class _Cells:
             np.frombuffer(self.lines, dtype=np.int64),
             heads=head.rows,
             notes=notes,
+            lost=lost,
             what=what,
         )

@@ -42,8 +42,8 @@ def time_of(table: Table, column: str = "", besides: Sequence[int] = (), *, miss
     bad = np.flatnonzero(~np.isfinite(values))
     if len(bad) == len(values) or (len(bad) and not missing):
         raise table.error(f"{table.label(place)} must be a time, got {shown(table.texts(place)[bad[0]])}", bad[0])
-    first = float(values[np.isfinite(values)][0])
-    seconds = factor * (values - (first if factor * first > EPOCH[0] else 0.0))
+    dates = factor * np.nanmedian(values) > EPOCH[0]
+    seconds = factor * (values - (values[np.isfinite(values)][0] if dates else 0.0))
     if factor == 1.0 and (part := _part_of(table, place, values)) is not None:
         seconds, told = seconds + part[1], f"{told}, and {table.label(part[0])}"
     plain = not column and split_name(table.head[place])[0] in ("time", "t") and not told.endswith("1970")
@@ -86,8 +86,9 @@ def _numbers(table: Table, place: int) -> tuple[np.ndarray, float, str]:
     dimension, factor = UNITS.get(unit, ("s", by_size))
     if dimension != "s" or size * factor > EPOCH[1]:
         raise table.error(f"{table.label(place)} must be a time in the unit of its name, got {size:g} {unit}", 0)
-    since = " since 1970" if EPOCH[0] <= size * factor else ""
-    return values, factor, f"{PARTS[factor]}{since}"
+    if size * factor < EPOCH[0]:
+        return values, factor, PARTS[factor]
+    return np.where(values == 0.0, np.nan, values), factor, f"{PARTS[factor]} since 1970"  # 0: not set
 
 
 def _stamps(table: Table, place: int) -> tuple[np.ndarray, float, str]:

@@ -25,6 +25,7 @@ def add_film_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--units", metavar="UNIT", help="of midlines: m, cm, mm, or px with --scale; of joints: rad or deg"
     )
+    parser.add_argument("--time", default="", metavar="COLUMN", help="of times in a table, by its name or number")
     parser.add_argument("--rate", type=float, metavar="FPS", help="frames per second, where a file counts frames")
     parser.add_argument("--animal", metavar="NAME,...", help="which of several animals in the file, or its tracks")
     parser.add_argument("--points", metavar="NAME,...", help="those along the body, from head to tail: names, or "
@@ -42,8 +43,8 @@ def film_of(path: str, options: argparse.Namespace) -> Film:
     scale = None if options.scale == 1.0 else options.scale
     points = None if options.points is None else [name.strip() for name in options.points.split(",")]
     return read_film(
-        path, units=options.units, scale=scale, rate=options.rate, animal=options.animal, points=points,
-        likely=options.likely,
+        path, units=options.units, scale=scale, time=options.time, rate=options.rate, animal=options.animal, 
+        points=points, likely=options.likely,
     )  # fmt: skip
 
 

@@ -63,24 +63,28 @@ def logged_robot(path: str, options: argparse.Namespace) -> LoggedRobot:
     """The robot of the log at `path`, a .csv or a bag, as the `options` say. `ValueError` for what does not fit."""
     log = _log(Path(path), options)
     links = _links(options.links, log.angles.shape[1])
-    log = log._replace(time=log.time * positive("--clock", options.clock))
     body = _body(options, float(links.sum()), len(links))
     if options.mass is not None:
         body = body.changed(density=positive("mass", options.mass, "kg") / body.volume)
     joints = np.cumsum(links)[:-1]
-    return LoggedRobot(joints, body, law_of_links(log, joints, body.length), tuple(log.notes))
+    return LoggedRobot(
+        joints,
+        body,
+        law_of_links(log, joints, body.length),
+        tuple(filter(None, (log.read and f"read: {log.read}", *log.notes))),
+    )
 
 
 def _log(path: Path, options: argparse.Namespace) -> JointLog:
-    unit = options.units or ""
+    how = {"unit": options.units or "", "tail_first": options.tail_first, "clock": positive("--clock", options.clock)}
     if path.is_dir() or path.suffix in BAGS:
-        if options.columns:
-            raise ValueError("--columns belong to a .csv file; joints of a bag have names")
+        if options.columns or options.time:
+            raise ValueError("--columns and --time belong to a .csv file; joints of a bag have names")
         time, angles, names = function_of_eel_viz("joints")(path, options.topic)
-        return joint_log(path.name, time, angles, tuple(names), unit=unit, tail_first=options.tail_first)
+        return joint_log(path.name, time, angles, tuple(names), **how)
     if options.topic is not None:
         raise ValueError("--topic belongs to a bag")
-    return read_joint_log(path, columns=options.columns, unit=unit, tail_first=options.tail_first)
+    return read_joint_log(path, columns=options.columns, time=options.time, **how)
 
 
 def _links(text: str | None, joints: int) -> np.ndarray:

@@ -201,6 +201,8 @@ def _law(options: argparse.Namespace, body: Body, beat: Beat | None, robot: Logg
             "--joints, which is not given"
         )
     given = [name for name in ("midlines", "joints", "file", "sequence") if getattr(options, name) is not None]
+    if options.time and not set(given) & {"midlines", "joints", "file"}:
+        raise ValueError("--time belongs to --midlines, --joints or --file, none of which is given")
     if not given:
         return gait(options.gait or "falling", **set_numbers(options.set))
     others = [options.gait, *(f"--set {text}" for text in options.set[:1]), *(f"--{name}" for name in given[1:])]
@@ -212,7 +214,9 @@ def _law(options: argparse.Namespace, body: Body, beat: Beat | None, robot: Logg
         return robot.law
     if options.file is None:
         return sequence_from_file(options.sequence)
-    return read_motion(options.file, length=body.length, scale=options.scale, smooth=not options.unsmoothed)
+    return read_motion(
+        options.file, length=body.length, scale=options.scale, smooth=not options.unsmoothed, time=options.time
+    )
 
 
 def _print_lines(lines: list[tuple[str, str]]) -> None:

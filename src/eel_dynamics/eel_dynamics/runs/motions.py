@@ -7,12 +7,13 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
+from eel_base.files.tables import is_table
 from eel_base.quantity import is_finite
 from eel_base.wording import shown
 from eel_gaits.gaits.registry import GAITS
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.function_law import sampled
-from eel_gaits.sources.motion_file import SUFFIXES, read_motion
+from eel_gaits.sources.motion_file import ARCHIVE, read_motion
 from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.analysis.analysis import Analysis
@@ -26,7 +27,7 @@ def law_from(motion: Motion, duration: float, length: float) -> Law | SampledLaw
     """The law of a `motion` for `duration` [s] and a body of `length` [m]. `ValueError` for what does not fit."""
     if isinstance(motion, LAWS):
         law = motion
-    elif isinstance(motion, (str, os.PathLike)) and str(motion).endswith(SUFFIXES):
+    elif isinstance(motion, (str, os.PathLike)) and is_table(motion, ARCHIVE):
         law = read_motion(motion, length=length)
     elif callable(motion):
         if not _takes(motion, 0.0, None):

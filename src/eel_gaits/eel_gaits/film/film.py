@@ -60,6 +60,7 @@ def read_film(
     *,
     units: str | None = None,
     scale: float | None = None,
+    time: str = "",
     rate: float | None = None,
     animal: str | None = None,
     points: Sequence[str] | None = None,
@@ -68,14 +69,15 @@ def read_film(
     """The swimmer in a file of tracked points, in a form of `eel_gaits.film.forms`.
 
     units: of length: m, cm, mm or px; None: those that the columns tell. scale: metres in the file's unit, for pixels.
-    rate: frames per second, where the file counts frames. animal: which of several, or names of its tracks with commas
-    between them. points: names of those along the body, from head to tail, or patterns such as spine*, whose points
-    come in the file's order; None: all. likely: a tracker's likelihood or score below which a point counts as missing.
+    time: the column of times, by name or number, where its name does not tell. rate: frames per second, where the file
+    counts frames. animal: which of several, or names of its tracks with commas between them. points: names of those
+    along the body, from head to tail, or patterns such as spine*, whose points come in the file's order; None: all.
+    likely: a tracker's likelihood or score below which a point counts as missing.
     `ValueError` in one line for what does not fit, and for points that do not stand along the body in their order.
     """
     path = Path(path)
     with reading(shown(str(path))):
-        tracks = read_tracks(path)
+        tracks = read_tracks(path, time)
         metres = _metres(tracks, units, scale)
         if tracks.frames and rate is None:
             raise ValueError("it counts frames: give the rate of the film, frames per second")
@@ -84,9 +86,9 @@ def read_film(
         seen, scores, names, notes = of_one(tracks, animal)
         places, out = _chosen(names, points)
         named = [names[place] for place in places]
-        time = tracks.time / positive("rate", rate, "1/s") if rate is not None else tracks.time
+        seconds = tracks.time / positive("rate", rate, "1/s") if rate is not None else tracks.time
         along, unlikely = _likely(metres * seen[:, places], scores[:, places], named, likely)
-        found = _repaired(path.name, time, along, named, [*notes, *out, *unlikely], tracks.frames)
+        found = _repaired(path.name, seconds, along, named, [*notes, *out, *unlikely], tracks.frames)
         if found.length > LONGEST:
             raise ValueError(f"its swimmer is {found.length:.4g} m long: give its units, or a scale")
         _check_whole(found)

@@ -23,6 +23,7 @@ from eel_base.files.times import time_of
 from eel_base.wording import shown
 
 from eel_gaits.film.hdf5 import Columns, read_hdf5
+from eel_gaits.sources.frames import check_rising, frame_starts
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}  # metres in each; pixels have no length
 COORDINATE = re.compile(  # x, x0, head_x, x_head, each before a unit; mxmm of fishmechr
@@ -42,14 +43,6 @@ class Tracks(NamedTuple):
     frames: bool  # whether time is a number of frames, and the points are parts of a tracker's skeleton
     scores: dict[str, np.ndarray]  # (N, n) of each: likelihoods of DeepLabCut, scores of SLEAP; NaN where not told
     read: str = ""  # what was guessed of the file's form, in words
-
-
-def _fall_of(time: np.ndarray) -> tuple[int, str] | None:
-    """The first place at which `time` does not rise, and an error's text."""
-    if not len(back := np.flatnonzero(np.diff(time) <= 0.0)):
-        return None
-    before, after = time[back[0]], time[back[0] + 1]
-    return back[0] + 1, f"time must rise, got {after:g} after {before:g}: two animals in one file?"
 
 
 def read_tracks(path: Path, time: str = "") -> Tracks:
@@ -91,31 +84,28 @@ def _of_columns(table: Table, column: str) -> Tracks:
     notes = [*table.notes, *([] if times is None or times.plain else [times.about])]
     starts = np.arange(len(time))
     if marks == [""]:
-        starts = np.concatenate(([0], np.flatnonzero(np.diff(time)) + 1))
-    if fall := _fall_of(time[starts]):
-        raise table.error(fall[1], starts[fall[0]])
-    if marks == [""]:
-        marks = _names_in_frames(table, starts)
+        starts = frame_starts(table, time)
+        marks = _names_in_frames(table, len(starts))
+    else:
+        check_rising(table, time, starts)
     points = points.reshape(len(starts), -1, 2)
     return Tracks(time[starts], {"": points}, {"": marks}, units.pop(), times is None, {}, ", ".join(notes))
 
 
-def _names_in_frames(table: Table, starts: np.ndarray) -> list[str]:
+def _names_in_frames(table: Table, frames: int) -> list[str]:
     """The names of the points, as the column `point` has them, or their numbers.
 
-    `ValueError` where the frames that begin at the rows `starts` do not have the same points in the same order.
+    `ValueError` where the `frames` do not have the same points in the same order.
     """
-    sizes = np.diff(np.append(starts, len(table)))
-    if len(other := np.flatnonzero(sizes != sizes[0])):
-        raise table.error(f"a frame of {sizes[other[0]]} points, the first has {sizes[0]}", starts[other[0]])
+    count = len(table) // frames
     if "point" not in table:
-        return [str(place + 1) for place in range(sizes[0])]
-    names = np.array(table.texts(table.places("point")[0])).reshape(len(starts), -1)
-    if len(np.unique(names[0])) < sizes[0]:
+        return [str(place + 1) for place in range(count)]
+    names = np.array(table.texts(table.places("point")[0])).reshape(frames, count)
+    if len(np.unique(names[0])) < count:
         raise table.error("a point stands twice in one frame: two animals? Give the rows of one", 0)
     if np.any(names != names[0]):
         frame = int(np.argmax(np.any(names != names[0], axis=1)))
-        raise table.error("its points are in another order than in the first frame", starts[frame])
+        raise table.error("its points are in another order than in the first frame", frame * count)
     return [str(name) for name in names[0]]
 
 
@@ -144,8 +134,8 @@ def _of_parts(frames: np.ndarray, names: list[tuple[str, str, str]], values: np.
             if (index := column.get((animal, part, "likelihood"))) is not None:
                 scores[animal][:, place] = values[:, index]
         animals[animal] = points
-    if fall := _fall_of(frames):
-        raise ValueError(fall[1])
+    if len(back := np.flatnonzero(np.diff(frames) <= 0.0)):
+        raise ValueError(f"its frames must rise, got {frames[back[0] + 1]:g} after {frames[back[0]]:g}")
     return Tracks(frames, animals, parts_of, "px", True, scores)
 
 

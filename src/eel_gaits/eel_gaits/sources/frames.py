@@ -10,12 +10,13 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
+from eel_base.files.table import Table
+from eel_base.files.times import time_of
 from eel_base.wording import shown
 
 from eel_gaits.sources.period import long_gap
 from eel_gaits.sources.sampled_law import SampledLaw, points_for
 from eel_gaits.sources.smoothing import FEWEST, interpolated, smoothed, smoothed_in_time
-from eel_gaits.sources.tables import Table
 
 FEWEST_FRAMES = 16
 TOLERANCE = 5e-5  # part of the greatest curvature by which the rows may miss the splines along the body
@@ -35,36 +36,50 @@ class Frames(NamedTuple):
         return self.table.error(text, first * count, (last + 1) * count - 1)
 
 
-def frames_of(table: Table, names: tuple[str, ...]) -> tuple[Frames, np.ndarray | None]:
-    """The frames of a table with the columns `time`, `names` and, if it has it, `arc_length`; and the arc lengths (n,)
-    of the points, in the file's unit.
+def frames_of(
+    table: Table, names: tuple[str, ...], unit: str, scale: float = 1.0, time: str = ""
+) -> tuple[Frames, np.ndarray | None]:
+    """The frames of a table with times, the columns `names` and, if it has it, `arc_length`; and the arc lengths (n,)
+    of the points.
 
-    Rows of one time are a frame, from nose to tail. `ValueError` names the rows that do not fit.
+    Rows of one time are a frame, from nose to tail. unit: SI, of the columns. scale: metres in the file's unit of
+    length, in place of what their names tell. time: the column of times. `ValueError` names the rows that do not fit.
     """
-    arc = table.columns.get("arc_length")
-    table.check_finite(("time", *names, *(() if arc is None else ("arc_length",))))
-    time = table.columns["time"]
-    starts = np.concatenate(([0], np.flatnonzero(np.diff(time)) + 1))
-    instants, sizes = time[starts], np.diff(np.append(starts, len(time)))
-    other = np.flatnonzero(sizes != sizes[0])
-    if len(other) and np.all(np.diff(instants) > 0.0):
-        first = starts[other[0]]
-        text = f"a frame of {sizes[other[0]]} points, the first frame has {sizes[0]}"
-        raise table.error(text, first, first + sizes[other[0]] - 1)
-    check_rising(table, instants, starts)
-    if sizes[0] < FEWEST:
-        raise table.error(f"a frame must have {FEWEST} points or more, got {sizes[0]}", 0, sizes[0] - 1)
-    fields = np.stack([table.columns[name].reshape(len(starts), -1) for name in names], axis=-1)
-    found = Frames(table, instants - instants[0], fields)
+    si, length = (unit, "m") if scale == 1.0 else ("", "")
+    fields = np.stack([table.column(name, si) for name in names], axis=-1)
+    arc = scale * table.column("arc_length", length) if "arc_length" in table else None
+    seconds = time_of(table, time).seconds
+    starts = frame_starts(table, seconds)
+    instants, count = seconds[starts], len(table) // len(starts)
+    check_number(table, instants)
+    if count < FEWEST:
+        raise table.error(f"a frame must have {FEWEST} points or more, got {count}", 0, count - 1)
+    found = Frames(table, instants - instants[0], fields.reshape(len(starts), count, -1))
     return found, None if arc is None else _material(found, arc.reshape(len(starts), -1))
 
 
-def check_rising(table: Table, instants: np.ndarray, rows: np.ndarray) -> None:
-    """`ValueError` where the `instants` of these `rows` do not rise, or are few."""
-    back = np.flatnonzero(np.diff(instants) <= 0.0)
-    if len(back):
-        before, after = instants[back[0]], instants[back[0] + 1]
-        raise table.error(f"time must rise, got {after:g} s after {before:g} s", rows[back[0] + 1])
+def frame_starts(table: Table, time: np.ndarray) -> np.ndarray:
+    """The first row of each frame: of the rows of one `time` (rows,) [s]. `ValueError` where frames differ in size, or
+    time falls."""
+    starts = np.concatenate(([0], np.flatnonzero(np.diff(time)) + 1))
+    check_rising(table, time, starts)
+    sizes = np.diff(np.append(starts, len(time)))
+    if len(other := np.flatnonzero(sizes != sizes[0])):
+        first, size = starts[other[0]], sizes[other[0]]
+        raise table.error(f"a frame of {size} points, the first frame has {sizes[0]}", first, first + size - 1)
+    return starts
+
+
+def check_rising(table: Table, time: np.ndarray, rows: np.ndarray) -> None:
+    """`ValueError` where the `time` (rows,) [s] of these `rows` does not rise."""
+    if len(back := np.flatnonzero(np.diff(time[rows]) <= 0.0)):
+        before, after = rows[back[0]], rows[back[0] + 1]
+        got = f"got {time[after]:g} s after {time[before]:g} s"
+        raise table.error(f"time must rise, {got}: two swimmers in one file?", after)
+
+
+def check_number(table: Table, instants: np.ndarray) -> None:
+    """`ValueError` where the `instants` (N,) are too few for a motion."""
     if len(instants) < FEWEST_FRAMES:
         raise table.error(f"there must be {FEWEST_FRAMES} instants or more, got {len(instants)}")
 
@@ -139,5 +154,6 @@ def law_of_frames(
             "smoothed by quintic splines with generalised cross-validation; residual (RMS) "
             f"{along}{', ' if along else ''}{residual:.3g} rad/m in time ({left} degrees of freedom left)"
         )
-    about = f"{kind} of {shown(frames.table.path.name)}, {len(time)} instants, {smoothing}"
+    read = f"; read with {', '.join(frames.table.notes)}" if frames.table.notes else ""
+    about = f"{kind} of {shown(frames.table.path.name)}, {len(time)} instants, {smoothing}{read}"
     return SampledLaw(time, x, values, name=name, about=about, raw=raw)

@@ -10,33 +10,38 @@ spread over a width w_j to either side, the mean distance to its neighbours, or 
 So each angle is kept exactly, and at equal distances the angles add up smoothly. phi > 0 bends the tail to the right.
 """
 
-import fnmatch
 import itertools
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from eel_base.files.input_file import reading
+from eel_base.files.table import Table
+from eel_base.files.tables import read_table
+from eel_base.files.times import time_of
 from eel_base.quantity import checked_row
 from eel_base.wording import shown
 
 from eel_gaits.sources.period import long_gap
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_gaits.sources.smoothing import smoothed_in_time
-from eel_gaits.sources.tables import csv_rows
 
-KNOWN = (  # names of columns of joints, the best first; a number in the name orders them
-    r"yaw_(\d+)", r"(\d+)FbckPosition.*", r".*position[\[._/](\d+)\]?", r"pos(?:ition)?_?(\d+)",
-    r"(?:joint|q)_?(\d+).*",
+KNOWN = (  # what numbered columns of joints are called, the best first; # stands for the number
+    r"yaw_?#", r".*(?:pos|angle|theta|phi|fbck|encoder|present|actual|measured).*", r".*(?:joint|servo|motor|\bq_?#).*",
 )  # fmt: skip
-TIME = re.compile(r".*(?:time|stamp|_ts|^t$|^t[_\[]|^t \[).*", re.IGNORECASE)
-PARTS = {"[us]": 1e-6, "[ms]": 1e-3, "[ns]": 1e-9}  # of a second, in a second column of time
-DEGREES = re.compile(r".*(?:\[deg\]|_deg)$", re.IGNORECASE)
+OTHER = re.compile(  # columns of joints that are no angles, or not measured
+    r"vel|speed|rate|effort|torque|force|curr|volt|temp|load|pwm|goal|cmd|command|desired|target|ref|set_?point|err|acc"
+)
 FEWEST_JOINTS, FEWEST_ROWS = 2, 16
 SPREADS, FINEST = 6.0, 2e-3  # robust spreads beyond which a reading has jumped, and the least spread [rad]
 PASSES = 3
 LARGEST = 3.2  # rad, of a joint: beyond it the file is in degrees
+MOST_LOST, MOST_SETS = 0.1, 5  # part of the rows that may be left out; times that a clock may be set back
+SINGLE = 0.75  # of a step, that is left without a row whose stamp alone is bad
+SEAM = 3.0  # greatest steps of the angles by which they may differ where the clock is set back
+FASTEST, SLOWEST, LONGEST = 50.0, 0.05, 0.5  # rad/s (RMS), of joints; s, of a step: beyond them time is not in s
 BY_WIDTH = 8  # points of the law in a joint's width
 
 
@@ -48,20 +53,54 @@ class JointLog(NamedTuple):
     angles: np.ndarray  # (N, n) rad
     joints: tuple[str, ...]  # their names
     notes: tuple[str, ...]  # what was done, in words
+    read: str = ""  # what was guessed of the file's form, in words
 
 
-def read_joint_log(path: Path, *, columns: str = "", unit: str = "", tail_first: bool = False) -> JointLog:
-    """The log in a .csv file. `ValueError` names the file and what does not fit.
+def read_joint_log(
+    path: Path,
+    *,
+    columns: str = "",
+    time: str = "",
+    unit: str = "",
+    tail_first: bool = False,
+    clock: float = 1.0,
+) -> JointLog:
+    """The log in a table of text. `ValueError` names the file and what does not fit.
 
     columns: which hold joints: numbers from 1 ("8-13"), names with commas between them, or a pattern ("*Fbck*"); "":
-    those that look like it. unit: rad or deg; "": as the columns' names say, else rad.
+    those that look like it. time: the column of times. unit: rad or deg; "": as the columns' names say, else rad.
+    clock: true time by that of the log.
     """
     with reading(shown(str(path))):
-        head, rows, skipped = _rows(path)
-        chosen = _joint_columns(head, columns)
-        names = tuple(head[index] for index in chosen)
-        time = _time(head, rows)
-        return joint_log(path.name, time, rows[:, chosen], names, unit=unit, tail_first=tail_first, notes=skipped)
+        table = read_table(path, lenient=True)
+        chosen = table.chosen(columns, "columns") if columns else _joint_columns(table)
+        times = time_of(table, time, besides=chosen, missing=True)
+        names = tuple(table.head[place] for place in chosen)
+        factors = np.array([table.factor(place, "rad") for place in chosen])
+        said = {word for word in map(table.unit, chosen) if word}
+        if unit and said and np.any(factors != (1.0 if unit == "rad" else np.radians(1.0))):
+            raise ValueError(f"its columns are in {', '.join(sorted(said))}, the units given are {unit}")
+        angles = np.stack([table.raw(place) for place in chosen], axis=1) * (1.0 if unit else factors)
+        mine = np.asarray(np.isfinite(angles).any(axis=1))
+        read = [
+            *table.notes,
+            times.about,
+            f"joints {names[0]} to {names[-1]}, {unit or ', '.join(sorted(said)) or 'rad'}",
+        ]
+        if not mine.all():
+            read.append(f"{np.sum(~mine)} rows without any of them")
+        log = joint_log(
+            path.name,
+            times.seconds[mine],
+            angles[mine],
+            names,
+            unit=unit,
+            tail_first=tail_first,
+            clock=clock,
+            lines=table.lines[mine],
+            lost=table.lost,
+        )
+        return log._replace(read=", ".join(read))
 
 
 def joint_log(
@@ -72,29 +111,42 @@ def joint_log(
     *,
     unit: str = "",
     tail_first: bool = False,
-    notes: tuple[str, ...] = (),
+    clock: float = 1.0,
+    lines: np.ndarray | None = None,
+    lost: Sequence[int] = (),
 ) -> JointLog:
-    """The checked log of `angles` (N, n), in `unit`, at `time` (N,) [s]."""
+    """The checked log of `angles` (N, n), in `unit`, at `time` (N,) [s]. NaN for what is missing.
+
+    lines (N,): of the file, for messages. lost: those of rows that were left out.
+    """
     if unit not in ("", "rad", "deg"):
         raise ValueError(f"units of angles must be rad or deg, got {shown(unit)}")
-    later = np.concatenate(([True], time[1:] > np.maximum.accumulate(time)[:-1]))
-    if not later.all():
-        notes = (*notes, f"{np.count_nonzero(~later)} rows left out: time does not rise")
-    time, angles = time[later], angles[later]
+    time, angles, notes = _mended(time, angles, np.arange(1, len(time) + 1) if lines is None else lines, lost)
     if len(time) < FEWEST_ROWS or len(joints) < FEWEST_JOINTS:
         raise ValueError(
             f"there must be {FEWEST_JOINTS} joints in {FEWEST_ROWS} rows or more, got {len(joints)} in {len(time)}"
         )
-    if unit == "deg" or (not unit and all(DEGREES.match(each) for each in joints)):
+    time = clock * (time - time[0])
+    if unit == "deg":
         angles = np.radians(angles)
     elif np.max(np.abs(angles)) > LARGEST:
         raise ValueError(f"an angle must be at most {LARGEST} rad, got {np.max(np.abs(angles)):.4g}: give --units deg")
+    check_pace(time, angles)
     angles, jumps = _without_jumps(time, angles)
     if jumps:
-        notes = (*notes, f"{jumps} of {angles.size} readings have jumped: replaced by their neighbours")
+        notes.append(f"{jumps} of {angles.size} readings have jumped: replaced by their neighbours")
     if tail_first:
         angles, joints = angles[:, ::-1], joints[::-1]
-    return JointLog(name, time - time[0], angles, joints, notes)
+    return JointLog(name, time, angles, joints, tuple(notes))
+
+
+def check_pace(time: np.ndarray, angles: np.ndarray) -> None:
+    """`ValueError` where no joint moves as the `angles` (N, n) [rad] would at the `time` (N,) [s]."""
+    rate = float(np.sqrt(np.mean((np.diff(angles, axis=0) / np.diff(time)[:, None]) ** 2)))
+    step = float(np.median(np.diff(time)))
+    if rate > FASTEST or (0.0 < rate < SLOWEST and step > LONGEST):
+        hint = f"if it is in other units, give --clock {'1000' if rate > FASTEST else '0.001'}, or time_ms as its name"
+        raise ValueError(f"its joints turn by {rate:.3g} rad/s (RMS) in steps of {step:.3g} s: time in s? {hint}")
 
 
 def law_of_links(log: JointLog, places: np.ndarray, length: float) -> SampledLaw:
@@ -123,62 +175,76 @@ def law_of_links(log: JointLog, places: np.ndarray, length: float) -> SampledLaw
     return SampledLaw(log.time, x, values, name=Path(log.name).stem or "log", about=about)
 
 
-def _rows(path: Path) -> tuple[list[str], np.ndarray, tuple[str, ...]]:
-    """Names of the columns, the rows of numbers (N, columns), and what was left out."""
-    cells = [[cell.strip() for cell in row] for _, row in csv_rows(path, strict=False) if any(map(str.strip, row))]
-    numbers = [_numbers(row) for row in cells]
-    widths = [len(row) for row in numbers if row is not None]
-    if not widths:
-        raise ValueError("it has no row of numbers")
-    count = max(set(widths), key=widths.count)
-    good = [place for place, row in enumerate(numbers) if row is not None and len(row) == count]
-    heads = [row for row in cells[: good[0]] if len(row) == count]
-    head = heads[-1] if heads else [str(number) for number in range(1, count + 1)]
-    lost = len(cells) - good[0] - len(good)
-    notes = (f"{lost} rows left out: they are no {count} numbers",) if lost else ()
-    return head, np.array([numbers[place] for place in good]), notes
-
-
-def _numbers(row: list[str]) -> list[float] | None:
-    """The numbers of a row, without an empty cell at its end; None where it has others."""
-    try:
-        found = [float(cell) for cell in (row[:-1] if row[-1] == "" else row)]
-    except ValueError:
-        return None
-    return found if np.all(np.isfinite(found)) else None
-
-
-def _joint_columns(head: list[str], columns: str) -> list[int]:
-    if columns:
-        if span := re.fullmatch(r"(\d+)-(\d+)", columns):
-            found = list(range(int(span[1]) - 1, int(span[2])))
-        else:
-            found = [
-                index
-                for part in columns.split(",")
-                for index, name in enumerate(head)
-                if fnmatch.fnmatchcase(name, part) or part == name or (part.isdigit() and int(part) == index + 1)
-            ]
-        if not found or max(found) >= len(head) or min(found) < 0 or len(set(found)) < len(found):
-            raise ValueError(f"columns must name joints among the {len(head)} of the file, got {shown(columns)}")
-        return found
+def _joint_columns(table: Table) -> list[int]:
+    """The columns of joints, by their names: those that differ in one number."""
+    groups: dict[str, dict[int, int]] = {}
+    for place, name in enumerate(table.head):
+        for number in re.finditer(r"\d+", name):
+            key = f"{name[: number.start()]}#{name[number.end() :]}"
+            if len(key) > 1 and not OTHER.search(key.lower()) and table.has_numbers(place):
+                groups.setdefault(key, {})[int(number[0])] = place
     for pattern in KNOWN:
-        marked = [(int(m[1]), index) for index, name in enumerate(head) if (m := re.fullmatch(pattern, name))]
-        if len(marked) >= FEWEST_JOINTS:
-            return [index for _, index in sorted(marked)]
-    raise ValueError(f"its joints are not plain from {shown(head)}: give --columns, such as 8-13, or names")
+        found = [
+            key for key, each in groups.items() if len(each) >= FEWEST_JOINTS and re.fullmatch(pattern, key.lower())
+        ]
+        if len(found) == 1:
+            return [place for _, place in sorted(groups[found[0]].items())]
+        if found:
+            raise ValueError(f"its joints may be any of {shown(found)}: give --columns {found[0].replace('#', '*')!r}")
+    raise ValueError(f"its joints are not plain from {shown(table.head)}: give --columns, such as 8-13, or names")
 
 
-def _time(head: list[str], rows: np.ndarray) -> np.ndarray:
-    """Time [s]: the first column that looks like it, with a second one of its parts; else the first column."""
-    found = next((index for index, name in enumerate(head) if TIME.match(name)), 0)
-    time = rows[:, found]
-    unit = next((factor for mark, factor in PARTS.items() if head[found].endswith(mark)), 1.0)
-    after = head[found + 1] if found + 1 < len(head) else ""
-    part = next((factor for mark, factor in PARTS.items() if after.endswith(mark) and TIME.match(after)), None)
-    if part is not None and head[found].endswith("[s]"):
-        return np.asarray((time - time[0]) + part * rows[:, found + 1])
-    return np.asarray((time - time[0]) * unit)
+def _mended(
+    time: np.ndarray, angles: np.ndarray, lines: np.ndarray, lost: Sequence[int]
+) -> tuple[np.ndarray, np.ndarray, list[str]]:
+    """Times that rise, and their angles, and what was done. `ValueError` where that would leave out much."""
+    whole, notes = np.isfinite(time) & np.isfinite(angles).all(axis=1), list[str]()
+    if lost:
+        notes.append(f"{len(lost)} rows left out, the first in line {lost[0]}: they have another number of cells")
+
+    def keep(good: np.ndarray, why: str) -> None:
+        nonlocal time, angles, lines
+        if not good.all():
+            notes.append(f"{np.sum(~good)} rows left out, the first in line {lines[~good][0]}: {why}")
+            time, angles, lines = time[good], angles[good], lines[good]
+
+    keep(whole, "a time or an angle is missing or no number")
+    again = np.concatenate(([False], (np.diff(time) == 0.0) & np.all(np.diff(angles, axis=0) == 0.0, axis=1)))
+    count = len(time) - np.sum(again) + len(lost) + np.sum(~whole)
+    keep(~again, "they stand there twice")
+    good, time, sets = _rising(time.copy(), angles, lines)
+    notes += sets
+    keep(good, "time does not rise")
+    if count - len(time) > MOST_LOST * count:
+        raise ValueError(f"only {len(time)} of its {count} rows can be read: {'; '.join(notes)}")
+    return time, angles, notes
+
+
+def _rising(time: np.ndarray, angles: np.ndarray, lines: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[str]]:
+    """Rows to keep, so that `time` rises; the time, that goes on where the clock was set back; and notes of that."""
+    good, notes = np.ones(len(time), dtype=bool), list[str]()
+    steps = np.diff(time)
+    step = float(np.median(steps[steps > 0.0])) if np.any(steps > 0.0) else 0.0
+    most = np.percentile(np.abs(np.diff(angles, axis=0)), 99.0) if len(steps) else 0.0
+    before, last = -1, 0  # the last two rows that are kept
+    for row in range(1, len(time)):
+        if time[row] > time[last]:
+            before, last = last, row
+            continue
+        spike = time[row] - time[before] if before >= 0 else 2.0 * step  # without the row `last`
+        dip = time[row + 1] - time[last] if row + 1 < len(time) else 2.0 * step  # without this one
+        if spike > SINGLE * step and abs(spike - 2.0 * step) < abs(dip - 2.0 * step):
+            good[last], last = False, row
+        elif dip > SINGLE * step or time[row] == time[last]:
+            good[row] = False
+        else:
+            back = time[last] - time[row]
+            if np.max(np.abs(angles[row] - angles[last])) > SEAM * most + FINEST or len(notes) == MOST_SETS:
+                raise ValueError(f"its clock is set back by {back:.4g} s in line {lines[row]}: two logs in one file?")
+            time[row:] += back + step
+            notes.append(f"the clock is set back by {back:.4g} s in line {lines[row]}: time goes on by a step there")
+            before, last = last, row
+    return good, time, notes
 
 
 def _without_jumps(time: np.ndarray, angles: np.ndarray) -> tuple[np.ndarray, int]:

@@ -11,11 +11,11 @@ rolls: its axis 3 is taken as upright as the tangent allows.
 from functools import partial
 
 import numpy as np
+from eel_base.files.table import Table
 
 from eel_gaits.sources.frames import Frames, SmoothedFrames, frames_of, law_of_frames
 from eel_gaits.sources.order import check_order
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_gaits.sources.tables import Table
 
 FITTING = 0.05  # part of the body's length by which the midlines' may differ: they are then scaled to fit
 UPRIGHT = 0.995  # greatest upward component of the head's tangent
@@ -25,17 +25,17 @@ class Midlines:
     """Midlines of a `table` with the columns time [s], x, y and perhaps z, for a body of `length` [m].
 
     A column `arc_length` gives the points' places; without it they follow from their mean distances. scale: metres in
-    the file's unit of length. x, y, z are right-handed, z is up. `ValueError` names the rows that do not fit, and
-    points that do not stand along the body in their order.
+    the file's unit of length. time: the column of times, if its name does not tell. x, y, z are right-handed, z is up.
+    `ValueError` names the rows that do not fit, and points that do not stand along the body in their order.
     """
 
-    def __init__(self, table: Table, length: float, scale: float = 1.0) -> None:
-        names = ("x", "y", "z") if "z" in table.columns else ("x", "y")
-        frames, arc = frames_of(table, names)
+    def __init__(self, table: Table, length: float, scale: float = 1.0, time: str = "") -> None:
+        names = ("x", "y", "z") if "z" in table else ("x", "y")
+        frames, arc = frames_of(table, names, "m", scale, time)
         self.frames, self.length = frames._replace(fields=scale * frames.fields), float(length)
         places = range(frames.fields.shape[1])
         check_order(frames.fields, [str(place + 1) for place in places], places)
-        self.arc = _mean_arc(self.frames) if arc is None else scale * arc - scale * arc[0]
+        self.arc = _mean_arc(self.frames) if arc is None else arc - arc[0]
 
     @property
     def time(self) -> np.ndarray:

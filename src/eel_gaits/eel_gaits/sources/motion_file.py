@@ -26,16 +26,19 @@ import numpy as np
 from eel_base.files.archive import read_archive
 from eel_base.files.input_file import reading
 from eel_base.files.output_file import replacing
+from eel_base.files.table import Table, split_name
+from eel_base.files.tables import is_table, read_table
+from eel_base.files.times import time_of
 from eel_base.quantity import positive
 from eel_base.wording import shown
 
-from eel_gaits.sources.frames import Frames, SmoothedFrames, check_rising, frames_of, law_of_frames
+from eel_gaits.sources.frames import Frames, SmoothedFrames, check_number, check_rising, frames_of, law_of_frames
+from eel_gaits.sources.joint_log import check_pace
 from eel_gaits.sources.midlines import Midlines
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_gaits.sources.tables import Table, read_table
 
 LAW = {"time", "x", "values"}  # arrays of a law's rows
-SUFFIXES = ".csv", ".npz"
+ARCHIVE = ".npz"
 COLUMN = re.compile(r"(pitch|yaw)_([1-9][0-9]*)")  # of a joint
 FEWEST_JOINTS = 3  # in an axis
 FITTING = 1e-6  # part of the body's length by which a law's rows may be shorter or longer
@@ -48,32 +51,33 @@ def read_motion(
     scale: float = 1.0,
     smooth: bool = True,
     name: str | None = None,
+    time: str = "",
 ) -> SampledLaw:
     """The law of the motion in a .csv or .npz file, for a body of `length` [m].
 
     scale: metres in the file's unit of length. smooth: smooth measured data by generalised cross-validation; else the
-    splines go through them. name: of the law; by default that of the file. `ValueError` in one line names file, line,
-    column and value of what does not fit.
+    splines go through them. name: of the law; by default that of the file. time: the column of times, if its name does
+    not tell. `ValueError` in one line names file, line, column and value of what does not fit.
     """
     path = Path(path)
     length, scale = positive("length", length, "m"), positive("scale", scale)
     name = path.stem if name is None else name
     with reading(shown(str(path))):
-        return _motion(path, length, scale, smooth, name)
+        return _motion(path, length, scale, smooth, name, time)
 
 
-def _motion(path: Path, length: float, scale: float, smooth: bool, name: str) -> SampledLaw:
-    if path.suffix not in SUFFIXES:
+def _motion(path: Path, length: float, scale: float, smooth: bool, name: str, time: str) -> SampledLaw:
+    if not is_table(path, ARCHIVE):
         raise ValueError("a motion must be in a .csv or .npz file")
-    if path.suffix == ".npz" and (law := _rows(path, length, name)) is not None:
+    if path.suffix.lower() == ARCHIVE and (law := _rows(path, length, name)) is not None:
         return law
     table = read_table(path)
     kind = kind_of(table)
     if kind == "joints":
-        return _law_of_joints(table, length, name, smooth)
+        return _law_of_joints(table, length, name, time, smooth)
     if kind == "curvature":
-        return _law_of_curvature(table, length, scale, name, smooth)
-    return Midlines(table, length, scale).law(name, smooth)
+        return _law_of_curvature(table, length, scale, name, time, smooth)
+    return Midlines(table, length, scale, time).law(name, smooth)
 
 
 def read_midlines(path: str | os.PathLike[str], *, length: float = 1.0, scale: float = 1.0) -> Midlines:
@@ -93,24 +97,21 @@ def save_law(law: SampledLaw, path: str | os.PathLike[str]) -> None:
 
 def kind_of(table: Table) -> str:
     """What the columns of a table tell: midlines, joints or curvature. `ValueError` for anything else."""
-    names = set(table.columns)
-    if "time" in names:
-        if {"x", "y"} <= names:
-            return "midlines"
-        if joint_columns(names):
-            return "joints"
-        if {"arc_length", "yaw"} <= names:
-            return "curvature"
+    if "x" in table and "y" in table:
+        return "midlines"
+    if joint_columns(table.head):
+        return "joints"
+    if "arc_length" in table and "yaw" in table:
+        return "curvature"
     raise table.error(
         "its columns must be time and: x, y (midlines), or yaw_1, yaw_2 ... (joint angles), or arc_length, yaw "
-        f"(curvature), got {shown(sorted(names))}"
+        f"(curvature), got {shown(table.head)}"
     )
 
 
-def _law_of_curvature(table: Table, length: float, scale: float, name: str, smooth: bool) -> SampledLaw:
-    frames, places = frames_of(table, ("pitch", "yaw") if "pitch" in table.columns else ("yaw",))
-    assert places is not None  # the file has a column arc_length
-    arc: np.ndarray = scale * places
+def _law_of_curvature(table: Table, length: float, scale: float, name: str, time: str, smooth: bool) -> SampledLaw:
+    frames, arc = frames_of(table, ("pitch", "yaw") if "pitch" in table else ("yaw",), "rad/m", scale, time)
+    assert arc is not None  # the file has a column arc_length
     if abs(arc[0]) > 0.05 * length or abs(arc[-1] - length) > 0.05 * length:
         rule = f"arc_length must reach from 0 to the body's length, {length:g} m"
         raise table.error(f"{rule}, got {arc[0]:.4g} to {arc[-1]:.4g} m", 0, len(arc) - 1)
@@ -121,7 +122,7 @@ def _law_of_curvature(table: Table, length: float, scale: float, name: str, smoo
         found = fitted.at(x).swapaxes(1, 2)
         return found if found.shape[1] == 2 else np.concatenate((np.zeros_like(found), found), axis=1)
 
-    raw = partial(_law_of_curvature, table, length, scale, name, smooth=False) if smooth else None
+    raw = partial(_law_of_curvature, table, length, scale, name, time, smooth=False) if smooth else None
     kind = f"curvature at {len(arc)} points"
     return law_of_frames(frames, curvature, length, name=name, kind=kind, along=fitted.about, raw=raw)
 
@@ -130,20 +131,20 @@ def joint_columns(names: Iterable[str]) -> dict[str, list[str]]:
     """The columns of joints among `names`, of each axis in their order."""
     found: dict[str, dict[int, str]] = {}
     for name in names:
-        if match := COLUMN.fullmatch(name):
-            found.setdefault(match[1], {})[int(match[2])] = name
+        if match := COLUMN.fullmatch(split_name(name)[0]):
+            found.setdefault(match[1], {})[int(match[2])] = match[0]
     return {axis: [places[place] for place in sorted(places)] for axis, places in found.items()}
 
 
-def _law_of_joints(table: Table, length: float, name: str, smooth: bool) -> SampledLaw:
-    """The law of the joint angles [rad] in the columns yaw_1, yaw_2, ... and pitch_1, ... of `table`, over time [s].
+def _law_of_joints(table: Table, length: float, name: str, column: str, smooth: bool) -> SampledLaw:
+    """The law of the joint angles in the columns yaw_1, yaw_2, ... and pitch_1, ... of `table`, over time.
 
     length [m]: of the body. The angles are smoothed in time by generalised cross-validation, if `smooth`. `ValueError`
     names columns and rows that do not fit.
     """
     from scipy.interpolate import make_interp_spline
 
-    axes = joint_columns(table.columns)
+    axes = joint_columns(table.head)
     for axis, names in axes.items():
         numbers = [int(each.rpartition("_")[2]) for each in names]
         if numbers != list(range(1, len(names) + 1)) or len(names) < FEWEST_JOINTS:
@@ -151,11 +152,11 @@ def _law_of_joints(table: Table, length: float, name: str, smooth: bool) -> Samp
                 f"joints of {axis} must be {axis}_1 to {axis}_{max(FEWEST_JOINTS, len(names))} without gaps, "
                 f"got {shown(names)}"
             )
-    columns = [name for names in axes.values() for name in names]
-    table.check_finite(("time", *columns))
-    time = table.columns["time"]
+    time = time_of(table, column).seconds
     check_rising(table, time, np.arange(len(time)))
-    angles = {axis: np.stack([table.columns[each] for each in names]) for axis, names in axes.items()}
+    check_number(table, time)
+    angles = {axis: np.stack([table.column(each, "rad") for each in names]) for axis, names in axes.items()}
+    check_pace(time, np.concatenate(list(angles.values())).T)
     splines = {}
     for axis, each in angles.items():
         sums = np.concatenate((np.zeros((1, len(time))), np.cumsum(each, axis=0)))  # at the ends of the segments
@@ -167,8 +168,10 @@ def _law_of_joints(table: Table, length: float, name: str, smooth: bool) -> Samp
         flat = np.zeros((len(time), len(x)))
         return np.stack([splines[axis](x, 1).T if axis in splines else flat for axis in ("pitch", "yaw")], axis=1)
 
-    raw = partial(_law_of_joints, table, length, name, smooth=False) if smooth else None
-    return law_of_frames(frames, curvature, length, name=name, kind=f"angles of {len(columns)} joints", raw=raw)
+    raw = partial(_law_of_joints, table, length, name, column, smooth=False) if smooth else None
+    return law_of_frames(
+        frames, curvature, length, name=name, kind=f"angles of {sum(map(len, axes.values()))} joints", raw=raw
+    )
 
 
 def _rows(path: Path, length: float, name: str) -> SampledLaw | None:

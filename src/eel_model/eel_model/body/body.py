@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 from eel_base.cell import cell_of
 from eel_base.files.input_file import reading
+from eel_base.files.tables import read_table
 from eel_base.quantity import checked_instance, checked_row, number, positive
 from eel_base.wording import not_one_of, shown
-from eel_gaits.sources.tables import read_table
 from numpy.typing import ArrayLike
 
 from eel_model.body.along import AlongBody, HalfAxis
@@ -40,6 +40,7 @@ DRAGS = ("roll_drag", "friction_factor", "round_added_mass", "joint_drag", "base
 NUMBERS = ("density", "nose_added_mass", "nose_drag", *DRAGS, *PROFILES)
 COLUMNS, WHAT = ("x", "half_width", "half_height"), "body file "  # of a body in a file; WHAT begins an error
 MASSES = "mass_per_length", "centre_of_mass_offset"  # columns that it may have besides
+UNITS = {**dict.fromkeys((*COLUMNS, MASSES[1]), "m"), MASSES[0]: "kg/m"}
 WATER = 1000.0  # kg/m^3, density of a body that gives none
 THICK = 0.25  # of the greatest area: in thinner sections, which weigh little, the centre of mass may lie outside
 LARGEST = 1e6  # m, of a number in it
@@ -424,7 +425,8 @@ class Body:
 
     @staticmethod
     def from_file(path: str | os.PathLike[str]) -> "Body":
-        """A body from columns x, half_width, half_height [m] of a .csv (with a header line) or .npz file.
+        """A body from columns x, half_width, half_height of a table with a header, or an .npz file, in m or as their
+        names say: half_width_mm.
 
         It may have the columns mass_per_length [kg/m] and centre_of_mass_offset [m] too.
         """
@@ -433,12 +435,13 @@ class Body:
         path = Path(path)
         with reading(f"{WHAT}{shown(str(path))}"):
             table = read_table(path, WHAT)
-            if missing := [name for name in COLUMNS if name not in table.columns]:
+            if missing := [name for name in COLUMNS if name not in table]:
                 raise table.error(f"a body must have columns {', '.join(COLUMNS)}; {', '.join(missing)} missing")
-            names = (*COLUMNS, *(name for name in MASSES if name in table.columns))
-            table.check_finite(names, LARGEST)
-            columns: dict[str, Any] = {name: table.columns[name] for name in names}
+            columns: dict[str, Any] = {
+                name: table.column(name, unit, LARGEST) for name, unit in UNITS.items() if name in table
+            }
             body = Body(**columns, name=path.stem)
+        table.tell()
         if body.length > LONGEST:
             warnings.warn(f"body file {path} is {body.length:g} m long: are its columns in m?", stacklevel=2)
         return body

@@ -6,17 +6,17 @@ fish.csv base_drag=0.2 appendages=arms.csv
 links length=1.62 number=9 half_width=0.05 half_height=0.055 joints=0.65 mass=7.2
 
 What may follow a name or file are the numbers of `Body`, joints (flush, or a number) with link_length, and appendages:
-a .csv file with the columns x, y, z, drag1, drag2, drag3 and law; what is left out is 0, and law axis.
+a table with the columns x, y, z, drag1, drag2, drag3 and law; what is left out is 0, and law axis.
 """
 
-import csv
-import io
 import os
 import re
 from pathlib import Path
 from typing import Any
 
-from eel_base.files.input_file import InputFile, reading
+from eel_base.files.input_file import reading
+from eel_base.files.table import split_name
+from eel_base.files.tables import read_table
 from eel_base.quantity import is_finite
 from eel_base.wording import did_you_mean, not_one_of, shown
 
@@ -29,7 +29,6 @@ LINKS = "links"
 OF_LINKS = "length", "number", "half_width", "half_height", "joints", "nose", "tail", "mass"
 REQUIRED = OF_LINKS[:5]
 OTHERS = (*NUMBERS, "link_length", "joints", "appendages")
-LARGEST = 1_000_000  # bytes of a file of appendages
 COLUMNS = "x", "y", "z", "drag1", "drag2", "drag3", "law"
 
 
@@ -62,29 +61,31 @@ def body_of(text: str) -> Body:
 
 
 def appendages_from_file(path: str | os.PathLike[str]) -> tuple[Appendage, ...]:
-    """The appendages of a .csv file, a row each. `ValueError` names line and column."""
+    """The appendages of a table, a row each. `ValueError` names line and column."""
     with reading(f"appendages {shown(str(path))}"):
-        with InputFile(path, LARGEST) as file:
-            rows = csv.DictReader(io.StringIO(file.read().decode("utf-8-sig"), newline=""))
-        for name in rows.fieldnames or ():
+        table = read_table(path, "appendages ")
+        names = [split_name(name)[0] for name in table.head]
+        for name in names:
             if name not in COLUMNS:
                 raise ValueError(
                     f"column {shown(name)}{did_you_mean(name, COLUMNS)} must be one of {', '.join(COLUMNS)}"
                 )
-        if "x" not in (rows.fieldnames or ()):
-            raise ValueError(f"it must have a column x, got {shown(','.join(rows.fieldnames or ()))}")
+        if "x" not in names:
+            raise ValueError(f"it must have a column x, got {shown(','.join(names))}")
+        if len(table) > MOST_APPENDAGES:
+            raise ValueError(f"it must have {MOST_APPENDAGES} rows at most")
+        columns: dict[str, Any] = {
+            name: table.texts(at) if name == "law" else table.numbers([at], "m" if name in "xyz" else "")[:, 0].tolist()
+            for at, name in enumerate(names)
+        }
         found: list[Appendage] = []
-        for line, row in enumerate(rows, 2):
-            if len(found) == MOST_APPENDAGES:
-                raise ValueError(f"it must have {MOST_APPENDAGES} rows at most")
+        for row in range(len(table)):
+            given = {name: each[row] for name, each in columns.items() if each[row] == each[row] != ""}  # or NaN
             try:
-                given = {name: value for name, value in row.items() if value not in (None, "")}
-                if None in row:
-                    raise ValueError("more cells than columns")
-                numbers = {name: _value(name, value) for name, value in given.items()}
-                found.append(Appendage(**numbers))
-            except (ValueError, TypeError, csv.Error) as error:
-                raise ValueError(f"line {line}: {error}") from None
+                found.append(Appendage(**given))
+            except (ValueError, TypeError) as error:
+                raise table.error(str(error), row) from None
+        table.tell()
     return tuple(found)
 
 

@@ -16,15 +16,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from eel_base.attitude import heading
 from eel_base.files.input_file import reading
+from eel_base.files.table import Table
+from eel_base.files.tables import is_table, read_table
+from eel_base.files.times import time_of
 from eel_base.wording import shown
-from eel_gaits.sources.tables import Table, read_table
+from eel_gaits.sources.frames import check_rising
 
 from eel_dynamics import Body, Robot, Run, Scene
 from eel_gaits import Law
 from eel_studies.identification.measurements import MeasuredAngles, MeasuredPath, MeasuredSpeed
 from eel_studies.points import VELOCITIES
 
-TABLES = ".csv", ".npz"
 LEVEL = 1e-6  # rad, about: the x and y of the quaternion of a head that counts as level
 NEAR = 1e-6  # part of the body's length by which a run's station may lie elsewhere than the one asked for
 
@@ -53,8 +55,9 @@ def read_measured(
 
     `ValueError` in one line names the file, and the line or column of a table, that does not fit.
     """
-    if Path(path).suffix in TABLES:
+    if is_table(path, ".npz"):
         table = read_table(path)
+        table.tell()
         return MeasuredFile([_angles_of_table(table, robot)] if angles else _of_table(table, station))
     run = (
         Run.load(path) if Path(path).suffix == ".nc" else Run.from_bag(path, namespace, robot=robot if angles else None)
@@ -87,36 +90,29 @@ def _angles_of_table(table: Table, robot: Robot | None) -> MeasuredAngles:
     if robot is None:
         raise ValueError("--robot must be given: its joints name the columns of angles")
     names = [joint.name for joint in robot.joints]
-    missing = [name for name in ("time", *names) if name not in table.columns]
-    if missing:
+    if missing := [name for name in names if name not in table]:
         raise table.error(f"its columns must be time and the robot's joints, got none of {', '.join(missing)}")
-    table.check_finite(("time",))
-    angles = np.stack([table.columns[name] for name in names], axis=1)
+    angles = np.concatenate([table.numbers(table.places(name), "rad") for name in names], axis=1)
     with reading(shown(str(table.path))):
-        return MeasuredAngles(table.columns["time"], angles)
+        return MeasuredAngles(time_of(table).seconds, angles)
 
 
 def _of_table(table: Table, station: float) -> list[Any]:
-    columns = table.columns
-    if {"time", "x", "y"} <= set(columns):
-        names = [name for name in ("x", "y", "z") if name in columns]
-        table.check_finite(("time", *names))
-        back = np.flatnonzero(np.diff(columns["time"]) <= 0.0)
-        if len(back):
-            raise table.error("time must rise: a path has one row for each instant", back[0] + 1)
-        position = np.stack([columns[name] for name in names], axis=1)
+    if "x" in table and "y" in table:
+        position = np.stack([table.column(name, "m") for name in ("x", "y", "z") if name in table], axis=1)
+        time = time_of(table).seconds
+        check_rising(table, time, np.arange(len(time)))
         with reading(shown(str(table.path))):
-            return [MeasuredPath(columns["time"], position, station)]
-    if "speed" not in columns:
-        raise table.error(f"its columns must be time, x, y (a path), or speed, got {shown(sorted(columns))}")
-    table.check_finite(tuple(columns))
-    low = np.flatnonzero(columns["speed"] <= 0.0)
-    if len(low):
-        raise table.error(f"speed must be > 0 m/s, got {columns['speed'][low[0]]:g}", low[0])
-    others = [name for name in columns if name != "speed"]
+            return [MeasuredPath(time, position, station)]
+    if "speed" not in table:
+        raise table.error(f"its columns must be time, x, y (a path), or speed, got {shown(table.head)}")
+    speeds = table.column("speed", "m/s")
+    if len(low := np.flatnonzero(speeds <= 0.0)):
+        raise table.error(f"speed must be > 0 m/s, got {speeds[low[0]]:g}", low[0])
+    others = {name: table.column(name) for name in table.head if table.places(name) != table.places("speed")}
     return [
-        MeasuredSpeed(speed, {name: float(columns[name][row]) for name in others})
-        for row, speed in enumerate(columns["speed"].tolist())
+        MeasuredSpeed(speed, {name: float(values[row]) for name, values in others.items()})
+        for row, speed in enumerate(speeds.tolist())
     ]
 
 
