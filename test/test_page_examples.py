@@ -27,7 +27,8 @@ PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 BLOCK = re.compile(r"(?:<!-- (listing)[^\n]*-->\n)?^```([^\n`]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 RUN = ("eel simulate", "eel identify", "eel ballast")
 FOREIGN = ("colcon", "dask", "export", "pip", "python", "python3", "rerun", "rosdep", "source", "sudo", "touch")
-INPUTS = ("goal_path", "goal_pose", "current")  # of the pilot, of the dynamics node
+FOREIGN += ("robot_state_publisher", "ros2_control_node", "spawner")  # of ROS 2
+INPUTS = ("goal_path", "goal_pose", "current", "joint_commands", "fin_command")  # of the pilot, of the dynamics node
 SERVICES = ("reset", "pause", "step", "set_state")
 
 
@@ -94,7 +95,8 @@ def check(words: list[str]):
 def check_ros2(words, group, verb, *rest):
     """The ros2 command: topics, parameters and services are the nodes' own."""
     if group == "topic":
-        assert rest[0].removeprefix("/") in (*OWN, *INPUTS), words
+        topic = next(word for word in rest if not word.startswith("-"))
+        assert topic.removeprefix("/") in (*OWN, *INPUTS), words
     elif (group, verb) == ("param", "set"):
         assert rest[1] in parameter_names(rest[0].removeprefix("/")), words
     elif group == "service":

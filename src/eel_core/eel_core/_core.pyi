@@ -252,8 +252,19 @@ class March:
         """Writes what the present shows into `whole`, as `layout` has it for one sample, and the coordinates' numbers
         into the row. False where the inertia is not positive definite."""
 
-    def command(self, servo: int, kind: str, value: float) -> None:
-        """Have a servo do so from now on. kind: angle [rad], rate [rad/s], torque [N m]; law: what the law asks."""
+    def command(
+        self,
+        servo: int,
+        kind: str,
+        angle: float = ...,
+        rate: float = ...,
+        torque: float = ...,
+        low: float = ...,
+        high: float = ...,
+    ) -> None:
+        """Have a servo do so from now on. kind: position (angle [rad], with a rate [rad/s]), velocity (rate), effort
+        (torque [N m] alone), or law: what the law asks. To the feedback on position or velocity the torque is added. A
+        velocity moves the reference from low to high [rad] at most."""
 
     def to_blame(self, singular: bool) -> int:
         """The coordinate with the greatest error in the last step. singular: the first mode that makes the mass matrix

@@ -134,7 +134,8 @@ void bind_marches(py::module_& module)
         .def("record", method(&PyMarch::record), py::arg("times"), py::arg("first"), py::arg("whole"), py::arg("works"),
              py::arg("rows"), py::arg("wrench"), py::arg("load"), py::arg("until"))
         .def("observe", method(&PyMarch::observe), py::arg("whole"), py::arg("row"), py::arg("wrench"), py::arg("load"))
-        .def("command", method(&PyMarch::command), py::arg("servo"), py::arg("kind"), py::arg("value"))
+        .def("command", method(&PyMarch::command), py::arg("servo"), py::arg("kind"), py::arg("angle") = 0.0,
+             py::arg("rate") = 0.0, py::arg("torque") = 0.0, py::arg("low") = -INFINITY, py::arg("high") = INFINITY)
         .def("to_blame", method(&PyMarch::to_blame), py::arg("singular"))
         .def_property_readonly("time", method(&PyMarch::time))
         .def_property_readonly("state", method(&PyMarch::state))

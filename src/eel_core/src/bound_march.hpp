@@ -125,14 +125,15 @@ class PyMarch {
         const Driven in_use(*this);
         return components_of(half_turn(march_.twist()));
     }
-    void command(std::size_t servo, const std::string& kind, double value)
+    void command(std::size_t servo, const std::string& kind, double angle, double rate, double torque, double low,
+                 double high)
     {
         const Driven in_use(*this);
-        constexpr std::array kinds{"law", "angle", "rate", "torque"};
+        constexpr std::array kinds{"law", "position", "velocity", "effort"};
         const auto* const found = std::find(kinds.begin(), kinds.end(), kind);
         if (!march_.modes() || servo >= march_.modes()->servos.size() || found == kinds.end())
             throw py::value_error("a command must be for a servo, and of a known kind");
-        march_.command(servo, static_cast<Command::Kind>(found - kinds.begin()), value);
+        march_.command(servo, {static_cast<Command::Kind>(found - kinds.begin()), angle, rate, torque, low, high});
     }
     int advance(double time)
     {

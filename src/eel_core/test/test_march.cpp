@@ -59,7 +59,7 @@ TEST(March, CommandedServoTurnsTheModeAgainstItsSpring)
 {
     March march = begun(true);
     march.set_slice(1'000'000'000'000);
-    march.command(0, Command::angle, 1.0);
+    march.command(0, {Command::position, 1.0});
     EXPECT_EQ(march.advance(30.0), Status::marched);
     EXPECT_NEAR(march.now().x[0], (2.0 * 0.2 + 1.0 * 1.0) / 3.0, 1e-3);  // stiffness and gain share
 }

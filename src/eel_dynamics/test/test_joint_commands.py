@@ -54,6 +54,45 @@ def test_an_effort_is_given_within_the_limit(effort, given):
     assert simulation.observe().joints["motor_torque"] == pytest.approx([0.0, given], abs=2e-3)
 
 
+@pytest.mark.parametrize("joint", ["joint_1", "joint_2"])
+def test_with_a_position_the_velocity_is_the_rate_of_the_reference_and_the_effort_is_added(joint):
+    """What the servo gives at the first instant, when the joint stands at 0; within its limit."""
+    index = int(joint[-1]) - 1
+    for position, velocity, effort in ((0.1, 0.5, None), (0.1, None, 0.3), (-0.1, 0.5, 0.3), (None, 0.5, 0.3)):
+        simulation = swimming()
+        simulation.command(joint, position=position, velocity=velocity, effort=effort)
+        wanted = SERVO.kp * (position or 0.0) + SERVO.kd * (velocity or 0.0) + (effort or 0.0)
+        assert simulation.observe().joints["motor_torque"][index] == pytest.approx(wanted, abs=1e-12)
+        simulation.command(joint, position=0.1, velocity=0.0, effort=5.0)
+        assert simulation.observe().joints["motor_torque"][index] == SERVO.torque_limit
+
+
+def test_a_rate_that_belongs_to_the_reference_lets_the_joint_follow_it_closely():
+    """Positions of a wave at 50 Hz: without the wave's rate the damping of the feedback holds the joint back."""
+    errors = []
+    for rate in (0.0, 1.0):
+        simulation, error = swimming(), []
+        for k in range(100):
+            angle = 4.0 * 0.02 * k
+            simulation.command("joint_1", position=0.3 * np.sin(angle), velocity=rate * 1.2 * np.cos(angle))
+            simulation.advance(0.02 * (k + 1))
+            error.append(simulation.observe().joints["joint_angle"][0] - 0.3 * np.sin(4.0 * 0.02 * (k + 1)))
+        errors.append(np.abs(error[20:]).max())
+    assert errors[1] < 0.75 * errors[0], errors
+
+
+@pytest.mark.parametrize("axis", ["yaw", "-yaw"])
+def test_a_velocity_moves_the_reference_no_further_than_the_stop(axis):
+    """So that a joint at its stop turns back at once."""
+    simulation = swimming(Robot([Joint(0.5, axis, limits=(-0.2, 0.3), actuator=SERVO)]))
+    simulation.command("joint_1", velocity=1.0)
+    simulation.advance(3.0)
+    assert simulation.observe().joints["joint_angle"][0] == pytest.approx(0.3, abs=5e-3)
+    simulation.command("joint_1", velocity=-1.0)
+    simulation.advance(3.25)
+    assert simulation.observe().joints["joint_angle"][0] == pytest.approx(0.05, abs=0.05)
+
+
 def test_a_command_takes_effect_at_its_instant_and_not_before():
     simulation, silent = swimming(), swimming()
     for each in (simulation, silent):
@@ -152,7 +191,7 @@ def test_series_springs_that_ring_after_each_command_keep_their_target():
 
 @pytest.mark.fault(
     "parameters",
-    "a command for an unknown joint, one without a servo, in two modes at once, or with NaN",
+    "a command for an unknown joint, one without a servo, or with NaN",
     "refused: one line with the joint and the value; the last command holds",
 )
 @pytest.mark.parametrize(
@@ -161,7 +200,7 @@ def test_series_springs_that_ring_after_each_command_keep_their_target():
         ("neck", {"position": 0.1}, "joint must be one of joint_1, joint_2, joint_3, got 'neck'"),
         (["neck"], {"position": 0.1}, "joint must be one of joint_1, joint_2, joint_3, got ['neck']"),
         ("joint_3", {"position": 0.1}, "joint 'joint_3' cannot be commanded: it has no servo"),
-        ("joint_1", {"position": 0.1, "effort": 1.0}, "must be commanded in one mode, got position and effort"),
+        ("joint_1", {"position": 0.1, "effort": np.inf}, "effort of joint 'joint_1' must be finite, got inf"),
         ("joint_1", {"velocity": np.nan}, "velocity of joint 'joint_1' must be finite, got nan"),
         ("joint_1", {"position": "up"}, "position of joint 'joint_1' must be a number, got 'up'"),
     ],

@@ -38,7 +38,7 @@ def test_commands_reach_the_fins_between_two_samples_as_in_the_library(start, cl
     commands.publish(JointState(name=["left_2"], position=[0.3]))
     commands.publish(JointState(name=["right_2"], position=[0.3]))
     assert commands.wait_for_all_acked(Duration(seconds=LIMIT))
-    node.wait_for_output("fin_command refused", LIMIT)
+    node.wait_for_output("fin command refused", LIMIT)
     assert swim.pause(False).success
     samples = [round(1e9 * paused) + 10_000_000 * k for k in range(1, 21)]
     swim.until_time(samples[-1] * 1e-9, "head_pose", "fin_states")

@@ -123,18 +123,18 @@ def test_a_command_takes_effect_at_its_stamp_and_holds_with_a_warning(start, cli
         simulation.advance(stamp * 1e-9)
         assert states[stamp].position == pytest.approx(simulation.observe().joints["joint_angle"], abs=1e-12)
     assert states[1_200_000_000].position[3] == pytest.approx(0.3, abs=0.02)
-    assert "no joint command for" in node.output() and "the last one holds" in node.output(), node.output()
+    assert "no joint command for joint_1" in node.output() and "it holds" in node.output(), node.output()
 
 
 @pytest.mark.fault(
     "samples",
-    "joint commands for unknown joints, of wrong length, with NaN, in two modes, far ahead, or for none",
+    "joint commands for unknown joints, of wrong length, infinite, in another mode, far ahead, or for none",
     "refused with the joint and the value, once in the log; the last command holds",
 )
 def test_commands_that_do_not_fit_are_refused_and_the_node_goes_on(start, client):
     swim = client(topics=("joint_states",))
     node = start("dynamics", *ROBOT, "-p", "command_timeout:=0.0", "-p", "command_interfaces:=[position]")
-    sender, nan = publisher(swim), math.nan
+    sender, nan, inf = publisher(swim), math.nan, math.inf
     sender.publish(command(0.0, position=[0.0] * 8))
     swim.until_time(0.2, "joint_states")
     for message, told in (
@@ -143,11 +143,15 @@ def test_commands_that_do_not_fit_are_refused_and_the_node_goes_on(start, client
             command(0.0, name=["joint_1"], position=[0.1, 0.2]),
             "position must be empty or have as many values as name, 1",
         ),
-        (command(0.0, name=["joint_1"], position=[nan]), "position of joint 'joint_1' must be finite, got nan"),
-        (command(0.0, name=["joint_1"], effort=[0.1]), "position of joint 'joint_1' must be finite, got none"),
+        (command(0.0, name=["joint_1"], position=[nan]), "joint commands without a number: what is NaN leaves a joint"),
+        (command(0.0, name=["joint_1"], position=[inf]), "position of joint 'joint_1' must be finite, got inf"),
+        (
+            command(0.0, name=["joint_1"], effort=[0.1]),
+            "joint 'joint_1' has the command interface position, got effort",
+        ),
         (
             command(0.0, name=["joint_1"], position=[0.1], effort=[0.1]),
-            "'joint_1' is driven by position, got effort too",
+            "joint 'joint_1' has the command interface position, got effort too",
         ),
         (
             command(0.0, name=["joint_1"] * 2, position=[0.1, 0.2]),
@@ -167,8 +171,7 @@ def test_commands_that_do_not_fit_are_refused_and_the_node_goes_on(start, client
 
 def test_joints_are_driven_in_the_interface_that_they_have_from_the_start(start, client):
     swim = client(topics=("joint_states",))
-    interfaces = "[velocity, effort, position, position, position, position, position, position]"
-    node = start("dynamics", *FAST, "-p", f"command_interfaces:={interfaces}", "-p", "duration:=1.0")
+    node = start("dynamics", *FAST, "-p", "duration:=1.0")
     sender, nan = publisher(swim), math.nan
     message = command(0.0, position=[nan, nan, *[0.1] * 6], velocity=[0.4, *[nan] * 7], effort=[nan, 0.05, *[nan] * 6])
     sender.publish(message)
@@ -248,6 +251,16 @@ def test_a_robot_that_does_not_fit_ends_the_start(start_in_turn):
         ("servo_torque_limit:=0.2",): "servo_torque_limit must be 0 without servos, got 0.2 N m with robot ''",
         ("robot:=eight_servos", "yaw_joints:=3"): "yaw_joints and pitch_joints must be 0 with a robot",
         ("robot:=eight_servos", "command_interfaces:=[force]"): "command_interfaces must be one of position, velocity",
+        (
+            "robot:=eight_servos",
+            "wait_for:=[joints]",
+        ): "wait_for must be one of curvature_law, curvature_samples, joint_com",
+        ("robot:=eight_servos", "wait_for:=[fin_command]"): "wait_for must name inputs that there are, got fin_command",
+        ("robot:=eight_servos", "wait_for:=[joint_commands/hip]"): "wait_for joint_commands/ must be one of joint_1",
+        (
+            "robot:=eight_servos",
+            "wait_for:=[joint_commands x]",
+        ): "wait_for must have a period > 0 s behind joint_commands",
         ("robot:=eight_servos", "command_interfaces:=[effort, effort]"): "or one for each of 8 joints, got 2",
     }
     lines = [["--ros-args", *(word for each in given for word in ("-p", each))] for given in cannot_be]
@@ -286,7 +299,9 @@ def test_commands_are_checked_against_the_robot_that_there_is_now(start, client,
     swim.until(commands.get_subscription_count, "the subscription of the new fin")
     commands.publish(JointState(name=["left"], position=[0.3]))
     swim.until(lambda: swim.received["fin_states"] and swim.received["fin_states"][-1].position[0] > 0.2, "its angle")
-    (answer,) = swim.set(robot="")
-    assert answer.successful and swim.reset().success
-    swim.until(lambda: sender.get_subscription_count() == 0, "an end of the subscription")
+    assert all(answer.successful for answer in swim.set(robot="", fins="")) and swim.reset().success
+    sender.publish(command(0.0, name=["hip"], position=[0.2]))
+    node.wait_for_output("joint command refused: there are no servos: the shape is imposed")
+    commands.publish(JointState(name=["left"], position=[0.3]))
+    node.wait_for_output("fin command refused: no fin is commanded")
     assert node.interrupt() == 0 and "FATAL" not in node.output() and "Traceback" not in node.output()

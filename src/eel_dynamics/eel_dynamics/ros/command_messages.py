@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads the commands of a robot's joints and of fins from messages (sensor_msgs/JointState).
 
-A joint is driven by position, velocity or effort, whichever the parameter `command_interfaces` says; the other fields
-of the message are empty, or NaN for the joint.
+A joint is driven by position, velocity or effort, or several of them. What a message does not have for a joint, it
+leaves as it is: a value that is NaN, or, where an array is shorter than `name`, that of a joint whose interfaces (the
+parameter `command_interfaces`) are others. So sends joint_state_topic_hardware_interface of ros2_control.
 """
 
 import math
 from collections.abc import Mapping
 from typing import Any
 
-from eel_base.quantity import is_finite
 from eel_base.wording import not_one_of, shown
 from eel_model.robot.robot import Robot
 from sensor_msgs.msg import JointState
@@ -17,50 +17,73 @@ from sensor_msgs.msg import JointState
 from eel_dynamics.ros.messages import stamped
 
 INTERFACES = ("position", "velocity", "effort")
+ANY, NONE = "any", "none"  # in place of interfaces
 MOST_JOINTS = 1000  # of one message
-Values = dict[str, Any]  # of a fin the angle [rad]; of a joint its interface, and the value [rad, rad/s or N m]
+Values = dict[str, Any]  # of a fin the angle [rad]; of a joint values [rad, rad/s, N m] by interface
 
 
-def interfaces_of(robot: Robot | None, given: tuple[str, ...]) -> dict[str, str]:
-    """The interface of each joint. `ValueError` for the parameter `given`, which is one for all, or one for each."""
+def interfaces_of(robot: Robot | None, given: tuple[str, ...]) -> dict[str, tuple[str, ...]]:
+    """The interfaces of each joint. `ValueError` for the parameter `given`, which is one for all, or one for each."""
     if robot is None:
         return {}
     names = [joint.name for joint in robot.joints]
-    for each in given:
-        if each not in INTERFACES:
-            raise ValueError(not_one_of("command_interfaces", each, INTERFACES))
     if len(given) not in (1, len(names)):
         raise ValueError(f"command_interfaces must be one, or one for each of {len(names)} joints, got {len(given)}")
-    return dict(zip(names, given if len(given) > 1 else given * len(names), strict=True))
+    each = [_interfaces(words) for words in given]
+    return dict(zip(names, each if len(given) > 1 else each * len(names), strict=True))
 
 
-def joint_command_from_message(message: JointState, interfaces: Mapping[str, str], now: float) -> tuple[float, Values]:
+def _interfaces(words: str) -> tuple[str, ...]:
+    """The interfaces of one joint, from such as "position velocity", any or none."""
+    if words in (ANY, NONE):
+        return INTERFACES if words == ANY else ()
+    for word in words.split() or [words]:
+        if word not in INTERFACES:
+            raise ValueError(not_one_of("command_interfaces", word, (*INTERFACES, ANY, NONE)))
+    return tuple(words.split())
+
+
+def joint_command_from_message(
+    message: JointState, interfaces: Mapping[str, tuple[str, ...]], now: float
+) -> tuple[float, Values]:
     """The stamp [s] of a `message` that comes at simulation time `now` [s], and what joints are to do from then on.
 
-    `ValueError` names what does not fit.
+    A joint that it has no value for has none. `ValueError` names what does not fit.
     """
     names = list(message.name)
     if not 1 <= len(names) <= MOST_JOINTS:
         raise ValueError(f"name must hold 1 to {MOST_JOINTS} joints, got {len(names)}")
-    for field in INTERFACES:
-        if len(getattr(message, field)) not in (0, len(names)):
-            rule = f"{field} must be empty or have as many values as name, {len(names)}"
-            raise ValueError(f"{rule}, got {len(getattr(message, field))}")
-    joints: Values = {}
     for index, name in enumerate(names):
         if name not in interfaces:
             raise ValueError(not_one_of("joint", name, interfaces))
-        if name in joints:
+        if names.index(name) < index:
             raise ValueError(f"name must hold each joint once, got {shown(name)} twice")
-        values = {field: getattr(message, field)[index] for field in INTERFACES if len(getattr(message, field))}
-        own = interfaces[name]
-        if not is_finite(values.get(own)):
-            raise ValueError(f"{own} of joint {shown(name)} must be finite, got {values.get(own, 'none')}")
-        others = [field for field, value in values.items() if field != own and not math.isnan(value)]
-        if others:
-            raise ValueError(f"joint {shown(name)} is driven by {own}, got {others[0]} too")
-        joints[name] = own, float(values[own])
+    joints: Values = {name: {} for name in names}
+    for field in INTERFACES:
+        values = getattr(message, field)
+        for name, value in zip(_whose(field, len(values), names, interfaces), values, strict=True):
+            if math.isnan(value):
+                continue
+            if math.isinf(value):
+                raise ValueError(f"{field} of joint {shown(name)} must be finite, got {value}")
+            if field not in interfaces[name]:
+                own = " and ".join(interfaces[name]) or "none"
+                raise ValueError(f"joint {shown(name)} has the command interface {own}, got {field} too")
+            joints[name][field] = float(value)
     return stamped(message.header.stamp, now), joints
+
+
+def _whose(field: str, count: int, names: list[str], interfaces: Mapping[str, tuple[str, ...]]) -> list[str]:
+    """The joints of the `count` values of a `field`: all `names`, or those that have that interface."""
+    having = [name for name in names if field in interfaces[name]]
+    for whose in ([], names, having):
+        if count == len(whose):
+            return whose
+    rule = f"as many values as name, {len(names)}"
+    if len(having) < len(names):
+        rule += f", or one for each of the {len(having)} joints with that interface"
+    hint = "" if len(having) < len(names) else ": with fewer, command_interfaces must say which joints they are for"
+    raise ValueError(f"{field} must be empty or have {rule}, got {count}{hint}")
 
 
 def fin_command_from_message(message: JointState, now: float) -> tuple[float, dict[str, float]]:

@@ -34,12 +34,11 @@ from rclpy.qos import QoSProfile
 from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
-from eel_dynamics.ros.command_messages import interfaces_of
-from eel_dynamics.ros.command_subscriptions import CommandSubscriptions
-from eel_dynamics.ros.current_subscription import CurrentSubscription
+from eel_dynamics.ros.command_subscriptions import subscribe_to_commands
 from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.law_subscription import LawSubscription
+from eel_dynamics.ros.loop.inputs import check_inputs
 from eel_dynamics.ros.loop.run_loop import RunLoop
 from eel_dynamics.ros.messages import diagnostic_array, root_message, state_from_message, values_of_status
 from eel_dynamics.ros.parameters import DynamicsParameters
@@ -79,8 +78,7 @@ class DynamicsNode(ParameterNode):
         self._root: Any = None  # publisher of /tf_static
         self._ended: float | None = None  # s, steady clock: when the end of the run was seen
         self._laws = LawSubscription(self, self.run_loop, self._report)
-        self._current = CurrentSubscription(self, self.run_loop, self.parameters.values.world_frame, self._report)
-        self._commands = CommandSubscriptions(self, self.run_loop)
+        subscribe_to_commands(self, self.run_loop)
         self._tell_of(simulation.robot)
         pace, requests = self.run_loop.pace, self.run_loop.requests
         self._followed_clock = ClockSubscription(self, pace, requests) if isinstance(pace, FollowedClock) else None
@@ -119,7 +117,6 @@ class DynamicsNode(ParameterNode):
         if not self._thread.is_alive():
             return self._end()
         self._inbox.look()
-        self._commands.look()
         self._look_at_neighbours()
         self._publish_root()
         if self._followed_clock is not None:
@@ -189,7 +186,7 @@ class DynamicsNode(ParameterNode):
         if self.parameters.pending:
             try:
                 new = simulation_from_parameters(values, self.parameters.next_scene)
-                interfaces_of(new.robot, values.command_interfaces)
+                check_inputs(new, values)
             except (ValueError, OSError) as error:
                 response.message = f"reset refused: {one_line(error)}"
                 self.get_logger().error(response.message)

@@ -73,15 +73,16 @@ class DynamicsParameters(Quantities):
         **LATER,
     )
     command_interfaces: tuple[str, ...] = quantity(
-        ("position",),
+        ("any",),
         "",
-        "what joint_commands drive: position, velocity or effort, for all joints or for each in their order",
+        "what joint_commands drive, for all joints or for each in turn: position, velocity, effort, several with "
+        "a space between, none, or any: what a message has",
         **LATER,
     )
     command_timeout: float = quantity(
         0.5,
         "s",
-        "simulated time without joint_commands after which a warning says that the last holds; 0: none",
+        "simulated time after which a warning says that joint_commands have stopped and the last holds; 0: none",
         0.0,
         **NOW,
     )
@@ -155,10 +156,18 @@ class DynamicsParameters(Quantities):
         0,
         1000,
     )
+    wait_for: tuple[str, ...] = quantity(
+        ("",),
+        "",
+        "inputs that a run at real_time_factor 0 waits for: curvature_law, curvature_samples, joint_commands, "
+        "fin_command, current; /NAME for one joint or fin, and a period in s behind a space where it is not 1/rate; "
+        "empty: what has come once",
+        **LATER,
+    )
     subscriber_timeout: float = quantity(
         5.0,
         "s",
-        "longest wait for a stuck subscriber or a silent controller, at real_time_factor 0",
+        "longest wait for a stuck subscriber, or for a silent input, at real_time_factor 0",
         0.0,
         3600.0,
         **NOW,

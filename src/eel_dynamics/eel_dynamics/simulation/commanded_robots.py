@@ -18,7 +18,7 @@ from eel_dynamics.simulation.sampled_swimmers import LEFT_OUT, Array
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
 
-MODES = {"position": "angle", "velocity": "rate", "torque": "torque"}  # kinds of `March.command`
+MODES = {"position": "position", "velocity": "velocity", "torque": "effort"}  # arguments of `March.command`
 
 NO_LAW = Law(name="commands")
 
@@ -92,7 +92,7 @@ class CommandedRobots:
 
     def _command(self, index: int, commands: Array) -> None:
         for name, value in zip(self._names, commands.tolist(), strict=True):
-            self._swims[index].command(name, self._mode, value)
+            self._swims[index].command(name, **{self._mode: value})
 
     def _look(self, index: int) -> None:
         swim = self._swims[index]

@@ -146,11 +146,17 @@ class March:
         self._commands = self._commands | commands
         self._hand_over_law()
 
-    def command(self, joint: str, kind: str, value: float) -> None:
-        """As `Simulation.command`. kind: angle [rad], rate [rad/s], torque [N m], or law."""
-        assert self.setup.modes is not None
+    def command(
+        self, joint: str, position: float | None = None, velocity: float | None = None, effort: float | None = None
+    ) -> None:
+        """As `Simulation.command`."""
+        assert self.setup.modes is not None and self.setup.robot is not None
         servo, sign = self.setup.modes.servo_of(joint)
-        self.core.command(servo, kind, sign * value)
+        kinds = {"position": position, "velocity": velocity, "effort": effort}
+        kind = next((name for name, value in kinds.items() if value is not None), "law")
+        numbers = (sign * (value or 0.0) for value in kinds.values())
+        limits = self.setup.robot.joint(joint).limits or (-np.inf, np.inf)
+        self.core.command(servo, kind, *numbers, *sorted(sign * limit for limit in limits))
 
     def _fit(self, needs: ShapeNeeds, coarser: bool = False):
         """Make the grid fine enough for the `needs`; `coarser` where it is much finer."""

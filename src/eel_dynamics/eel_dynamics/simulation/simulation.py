@@ -192,19 +192,17 @@ class Simulation(Present):
         """Have the servo of a robot's `joint` hold a position [rad], turn with a velocity [rad/s], or give an effort
         [N m], from now on and whatever the law; with none of them, follow the law again.
 
-        A velocity moves the reference of the position. All are limited by the servo. The sign is the joint's.
-        `ValueError` for an unknown joint, one without a servo, a number that is not finite, or several at once.
+        With a position the velocity is the rate of the reference, which the damping of the feedback works on; alone it
+        moves the reference, up to the joint's limits. With either of them the effort is added to the torque of the
+        feedback. All are limited by the servo. The sign is the joint's.
+        `ValueError` for an unknown joint, one without a servo, or a number that is not finite.
         """
         self.check_driven(joint)
-        given = {"angle": ("position", position), "rate": ("velocity", velocity), "torque": ("effort", effort)}
-        wanted = [(kind, name, value) for kind, (name, value) in given.items() if value is not None]
-        if len(wanted) > 1:
-            raise ValueError(
-                f"joint {shown(joint)} must be commanded in one mode, got {' and '.join(n for _, n, _ in wanted)}"
-            )
-        kind, name, value = wanted[0] if wanted else ("law", "", 0.0)
-        value = number(f"{name} of joint {shown(joint)}", value)
-        self._on_both(lambda march: march.command(joint, kind, value))
+        given = {"position": position, "velocity": velocity, "effort": effort}
+        wanted = {
+            name: number(f"{name} of joint {shown(joint)}", value) for name, value in given.items() if value is not None
+        }
+        self._on_both(lambda march: march.command(joint, **wanted))
         self._meter.due = True
 
     def check_driven(self, joint: str) -> None:

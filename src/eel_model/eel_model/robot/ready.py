@@ -6,7 +6,8 @@ The servo is the ROBOTIS DYNAMIXEL XM430-W210 at 12 V. From its e-Manual
 torque falls from the one to the other along a line. Its controller sets the voltage: 885 units are all of it. The
 default position gain, 800/128 = 6.25 units for each of 4096 steps of a turn, is quoted from memory and was not looked
 up; it is 6.25/885 3.0 N m in 2 pi/4096 rad. The slope of the line, stall torque over no-load speed, damps the motor;
-the velocity feed-forward of the same controller takes that off the reference.
+the velocity feed-forward of the same controller takes that off the reference. In its position control mode it turns by
+360 degrees, half of them to each side; a frame may stop it earlier.
 
 The data sheet does not give the rotor's inertia. Haarnoja et al. (Science Robotics 9, 2024, eadi8022,
 doi:10.1126/scirobotics.adi8022), as others quote them, identified 0.045 kg m^2 behind the gear of an XM430-W350. That
@@ -23,6 +24,7 @@ from eel_model.robot.joint import Joint
 
 STALL_TORQUE = 3.0  # N m
 NO_LOAD_SPEED = 77.0 * 2.0 * math.pi / 60.0  # rad/s
+STOPS = -math.pi, math.pi  # rad
 XM430_W210 = Servo(
     kp=6.25 / 885.0 * STALL_TORQUE / (2.0 * math.pi / 4096.0),
     kd=STALL_TORQUE / NO_LOAD_SPEED,
@@ -65,7 +67,7 @@ def passive_tail() -> list[Any]:
 
 
 def _chain(servo: Servo) -> list[Any]:
-    return [Joint(round(FIRST + SPACING * index, 6), actuator=servo) for index in range(COUNT)]
+    return [Joint(round(FIRST + SPACING * index, 6), limits=STOPS, actuator=servo) for index in range(COUNT)]
 
 
 READY = {make.__name__: make for make in (eight_servos, sixteen_servos, series_elastic, passive_tail)}

@@ -64,19 +64,20 @@ struct Modes {
     std::vector<double> push;  // (coordinates, rows of `drive`)
 };
 
-// A command to a servo, which holds in place of the law.
+// A command to a servo, which holds in place of the law. A velocity moves the reference of the position. To position
+// and velocity the torque is added; an effort is the torque alone.
 struct Command {
-    enum Kind : std::uint8_t { law, angle, rate, torque };  // law: none
+    enum Kind : std::uint8_t { law, position, velocity, effort };  // law: none
     Kind kind = law;
-    double value = 0.0;  // [rad], [rad/s] or [N m], as a bend
-    double since = 0.0;  // [s]
-    double from = 0.0;   // [rad]: of a rate, the reference at that time
+    double angle = 0.0, rate = 0.0, torque = 0.0;  // [rad], [rad/s], [N m], as a bend
+    double low = -INFINITY, high = INFINITY;       // [rad]: how far a velocity moves the reference
+    double since = 0.0;                            // [s]: when the reference was at `angle`
 };
 
 // What a servo follows at an instant.
 struct Target {
     Jet reference{};      // [rad]
-    double torque = 0.0;  // [N m], in place of its feedback
+    double torque = 0.0;  // [N m], added to its feedback, or in place of it
     bool by_torque = false;
 };
 
@@ -109,9 +110,11 @@ struct Forces {
 // What a commanded servo follows at `time` [s].
 inline Target target_of(const Command& command, double time)
 {
-    if (command.kind == Command::torque) return {{}, command.value, true};
-    if (command.kind == Command::angle) return {{command.value, 0.0, 0.0}};
-    return {{command.from + command.value * (time - command.since), command.value, 0.0}};
+    if (command.kind != Command::velocity)
+        return {{command.angle, command.rate, 0.0}, command.torque, command.kind == Command::effort};
+    const double moved = command.angle + command.rate * (time - command.since);
+    const double within = std::clamp(moved, command.low, command.high);
+    return {{within, within == moved ? command.rate : 0.0, 0.0}, command.torque};
 }
 
 // What the servos follow at `time` [s].
@@ -157,7 +160,7 @@ inline TorqueRange torque_range(const Servo& servo, double rate)
 inline double wanted_torque(const Servo& servo, const Target& target, double x, double rate)
 {
     if (target.by_torque) return target.torque;
-    return servo.kp * (target.reference[0] - x) + servo.kd * (target.reference[1] - rate);
+    return servo.kp * (target.reference[0] - x) + servo.kd * (target.reference[1] - rate) + target.torque;
 }
 
 // Forces for the coordinates x and their rates. `forces.pushing` and the targets are those of the instant.

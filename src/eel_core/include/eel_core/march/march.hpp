@@ -72,16 +72,21 @@ class March {
     }
 
     // Has a servo of a robot do so from now on, whatever the law; the next step begins anew.
-    void command(std::size_t servo, Command::Kind kind, double value)
+    // A velocity moves the reference from where it is, or from the joint's angle where there is none.
+    void command(std::size_t servo, Command command)
     {
         steps_.end(settings_, now_);
         std::vector<Command>& commands = settings_.commands;
         commands.resize(modes_->servos.size());
-        const Command& last = commands[servo];
-        const bool by_angle = last.kind == Command::angle || last.kind == Command::rate;
-        const double from =
-            by_angle ? target_of(last, now_.time).reference[0] : now_.x[modes_->servos[servo].coordinate];
-        commands[servo] = {kind, value, now_.time, from};
+        if (command.kind == Command::velocity) {
+            const Command& last = commands[servo];
+            const bool by_angle = last.kind == Command::position || last.kind == Command::velocity;
+            command.angle = std::clamp(
+                by_angle ? target_of(last, now_.time).reference[0] : now_.x[modes_->servos[servo].coordinate],
+                command.low, command.high);
+        }
+        command.since = now_.time;
+        commands[servo] = command;
     }
 
     // Stands at the start, at time 0, with these coordinates and rates, the momenta of the head's twist relative to the

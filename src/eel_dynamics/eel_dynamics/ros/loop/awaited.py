@@ -1,124 +1,222 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which messages a run as fast as possible (real_time_factor 0) waits for, and which were sent before a reset.
+"""Which inputs a run as fast as possible (real_time_factor 0) waits for, and what was sent before a reset.
 
-Whoever answers samples with stamped messages is waited for, so that a run is the same each time. The next message for
-a joint, a fin or a current is awaited one interval after the last: its publisher may be slower than the samples. After
-a reset what came before is awaited from the start on, before sample 1. What does not come in time is not awaited until
-it is back. Nor are messages without a stamp, but at the start, where it is 0.
+One rule holds for samples, commands of joints and fins, and currents: each message has a stamp, at which it acts. The
+next one for the same joint or fin is due an interval later: the period that `wait_for` gives, or the longest of the
+last three, at first that of the samples. The run goes on to the next sample once no message is due before that. So it
+is the same each time, however fast the others are. At the start, and after a reset, the first of each is due: at once,
+or after the period that is given, as a timer's is.
+
+`wait_for` names what is awaited. Without it that is what has come once with a stamp. What does not come in time is not
+awaited until it is back.
 """
 
 import math
 import time as wall
 from collections import deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
+from eel_base.quantity import is_finite
+from eel_base.wording import not_one_of, shown
 from eel_ros.loop.diagnostics import Report
 
+LAW, SAMPLES, JOINTS, FINS, CURRENT = "curvature_law", "curvature_samples", "joint_commands", "fin_command", "current"
+INPUTS = (LAW, SAMPLES, JOINTS, FINS, CURRENT)
+MESSAGES = {LAW: "law", SAMPLES: "curvature sample", JOINTS: "joint command", FINS: "fin command", CURRENT: "current"}
+ALL = ""  # in place of a joint's or a fin's name: any
 ECHO = 5.0  # s after a reset, within which messages that were sent before it may come
 ALIKE = 1e-9  # s: times that are closer are one
 INTERVALS = 3  # of which the longest counts: a timer's vary by a sample
-MOST_SOURCES, MOST_NAMED = 100, 5
-
-
-class Echo:
-    """Tells messages that were sent before a reset: they lie much further ahead of the simulation than others did."""
-
-    def __init__(self) -> None:
-        self._farthest = -math.inf  # s by which a message lay ahead
-        self._until = -math.inf  # s, steady clock
-
-    def holds(self, ahead: float) -> bool:
-        """Whether a message that lies `ahead` [s] of the simulation is one."""
-        return ahead > 2.0 * max(0.0, self._farthest) + ALIKE and wall.monotonic() < self._until
-
-    def take(self, ahead: float) -> None:
-        """A message has been taken that lies so far `ahead` [s] of the simulation."""
-        self._farthest = max(self._farthest, ahead)
-
-    def reset(self) -> None:
-        """The run begins again."""
-        if self._farthest > -math.inf:
-            self._until = wall.monotonic() + ECHO
+MOST_NAMED = 5
 
 
 @dataclass
 class Source:
-    """What is known of the messages for some joints or fins. All times are simulation time [s].
+    """What is known of the messages for a joint, a fin, or a whole topic. Times are simulation time [s].
 
-    due: of the sample from which on the next message is awaited; infinite: it is not. last: sample that the last
-    message answers; NaN: none has come. lead: by which messages lie ahead of the sample that they answer. intervals:
-    between the last few.
+    period: between its messages, where it is given. due: of the next message; -infinite: at once, infinite: none is
+    awaited. stamp: of the newest; NaN: none has come.
     """
 
+    period: float | None = None
     due: float = math.inf
-    last: float = math.nan
-    lead: float = 0.0
+    stamp: float = math.nan
     intervals: deque[float] = field(default_factory=lambda: deque(maxlen=INTERVALS))
 
-    def come(self, stamp: float, time: float) -> None:
-        """A message with this `stamp` has come at simulation time `time`."""
-        self.lead = max(self.lead, stamp - time)
-        answered = stamp - self.lead
-        if answered <= self.last:
+    def come(self, stamp: float, now: float, period: float) -> None:
+        """A message with this `stamp` has come at the time `now` of a run with a sample every `period`."""
+        if stamp <= self.stamp:
             return
-        if answered > self.last:
-            self.intervals.append(answered - self.last)
-        self.last, self.due = answered, answered + max(self.intervals, default=2.0 * ALIKE)
+        if not math.isnan(self.stamp):
+            self.intervals.append(stamp - self.stamp)
+        self.stamp = stamp
+        given = self.period if self.period is not None else max(self.intervals, default=period)
+        self.due = max(stamp, now) + given
 
 
 class Awaited:
-    """The messages of a `topic` that are awaited, by the joints or fins that they are for; `what`: one is called."""
+    """What a run with a sample every `period` [s] waits for.
 
-    def __init__(self, topic: str, what: str, report: Report) -> None:
-        self.topic, self._what, self._report = topic, what, report
-        self._sources: dict[tuple[str, ...], Source] = {}
-        self._missing_since = math.inf  # s, steady clock
+    Attributes:
+        period: [s], between samples.
+    """
 
-    def come(self, names: tuple[str, ...], stamp: float, time: float) -> None:
-        """A message for these `names` with this `stamp` [s] has come, at simulation time `time` [s]."""
-        self._report.end(self._kind, f"{self._what}s are back at t = {time:g} s")
-        if (stamp > 0.0 or time == 0.0) and (names in self._sources or len(self._sources) < MOST_SOURCES):
-            self._sources.setdefault(names, Source()).come(stamp, time)
+    def __init__(self, report: Report) -> None:
+        self._report, self.period = report, 0.0
+        self._wanted: dict[tuple[str, str], float | None] = {}  # periods by topic and name
+        self._sources: dict[tuple[str, str], Source] = {}
+        self._farthest: dict[str, float] = {}  # s by which a message of a topic lay ahead
+        self._reset_at = -math.inf  # s, steady clock
+        self._late_since = math.inf  # s, steady clock
 
-    def late(self, time: float) -> list[tuple[str, ...]]:
-        """The names of the messages that are missing at the sample of `time` [s]."""
-        return [names for names, source in self._sources.items() if source.due <= time + ALIKE]
+    def begin(self, wait_for: Iterable[str], parts: Mapping[str, tuple[str, ...]], period: float) -> None:
+        """Begin at time 0, with these `parts`, joints and fins, by topic. What was awaited before is awaited anew.
 
-    def waits(self, time: float, now: float, timeout: float) -> bool:
-        """Whether to wait for messages at the sample of `time` [s], for `timeout` [s] at most; a wait in vain is told.
-
-        now: [s, steady clock].
+        wait_for: as of `wanted_inputs`. A law stays over a reset, and is not awaited again. `ValueError` for what does
+        not fit.
         """
-        late = self.late(time)
+        wanted, known = wanted_inputs(wait_for, parts), self._sources
+        self._wanted, self.period, self._late_since = wanted, period, math.inf
+        self._sources = {}
+        for key in wanted:
+            if key[0] != LAW or LAW not in self._farthest:
+                self._new(*key, awaited=True)
+        for (topic, name), source in known.items():
+            if source.due < math.inf and name in (ALL, *parts.get(topic, ())) and self._awaits(topic):
+                self._new(topic, name, awaited=True).intervals = source.intervals
+        for topic, name in list(self._sources):
+            if name != ALL:
+                self._sources.pop((topic, ALL), None)
+        self._reset_at = wall.monotonic() if self._farthest else -math.inf
+        for topic in INPUTS:
+            self._report.end(_kind(topic))
+
+    def come(self, topic: str, stamp: float, now: float, names: Iterable[str] = (ALL,)) -> None:
+        """A message for these `names` of joints or fins with this `stamp` [s] has come at the time `now` [s]."""
+        self._farthest[topic] = max(self._farthest.get(topic, 0.0), stamp - now)
+        self._report.end(_kind(topic), f"{MESSAGES[topic]}s are back at t = {now:g} s")
+        if topic == LAW:
+            self._sources.pop((LAW, ALL), None)
+        elif self._awaits(topic):
+            for name in names:
+                (self._sources.get((topic, name)) or self._new(topic, name)).come(stamp, now, self.period)
+            if ALL not in names:
+                self._sources.pop((topic, ALL), None)
+
+    def names(self, topic: str) -> bool:
+        """Whether `wait_for` names the `topic`."""
+        return any(topic == each for each, _ in self._wanted)
+
+    def _awaits(self, topic: str) -> bool:
+        return not self._wanted or self.names(topic)
+
+    def _new(self, topic: str, name: str, awaited: bool = False) -> Source:
+        """A source without messages so far; `awaited`: the first is."""
+        period = self._wanted.get((topic, name), self._wanted.get((topic, ALL)))
+        first = math.inf if not awaited else -math.inf if period is None else period
+        source = Source(0.0 if topic == SAMPLES else period, first)
+        self._sources[topic, name] = source
+        return source
+
+    def end(self, topic: str) -> None:
+        """Wait no longer for the `topic`, until a message of it comes; but for the first that `wait_for` names."""
+        for key, source in self._sources.items():
+            if key[0] == topic and not (key in self._wanted and math.isnan(source.stamp)):
+                source.due = math.inf
+
+    def counts_as_stamped(self, topic: str, names: Iterable[str]) -> bool:
+        """Whether a stamp of 0 means that time: messages for these `names` are awaited, so they have stamps."""
+        return any(self._sources.get((topic, name), Source()).due < math.inf for name in names)
+
+    def is_echo(self, topic: str, ahead: float) -> bool:
+        """Whether a message that lies `ahead` [s] of the simulation was sent before the reset: none lay so far."""
+        farthest = self._farthest.get(topic, math.inf) + 0.5 * self.period
+        return ahead > farthest and wall.monotonic() < self._reset_at + ECHO
+
+    def late(self, instant: float) -> list[str]:
+        """What has to come before the sample of `instant` [s]: topics, with the names of joints or fins."""
+        return [_text(topic, names) for topic, names in self._late(instant).items()]
+
+    def missing(self, instant: float, now: float, timeout: float) -> list[str]:
+        """As `late`, for `timeout` [s] at most; a wait in vain is told. now: [s, steady clock]."""
+        late = self._late(instant)
         if not late:
-            self._missing_since = math.inf
-            return False
-        self._missing_since = min(self._missing_since, now)
-        if now - self._missing_since < timeout:
-            return True
-        self._missing_since = math.inf
-        for names in late:
-            self._sources[names].due = math.inf
-        self.miss(timeout, "of wall time", time, late if len(late) < len(self._sources) else [])
-        return False
+            self._late_since = math.inf
+            return []
+        self._late_since = min(self._late_since, now)
+        if now - self._late_since < timeout:
+            return [_text(topic, names) for topic, names in late.items()]
+        self._late_since = math.inf
+        for topic, names in late.items():
+            self._tell(topic, names, instant, timeout)
+            for name in names:
+                self._sources[topic, name].due = math.inf
+        return []
 
-    def miss(self, timeout: float, kind: str, time: float, late: Sequence[tuple[str, ...]] = ()) -> None:
-        """Tell that no message has come for `timeout` [s], at simulation time `time` [s]; late: whose, if not all's."""
-        names = dict.fromkeys(name for each in late for name in each)
-        listed = ", ".join([*names][:MOST_NAMED]) + (" ..." if len(names) > MOST_NAMED else "")
-        whose = f" for {listed}" if names else ""
-        text = f"no {self._what}{whose} for {timeout:g} s {kind} at t = {time:g} s: the last one holds"
-        self._report.begin(self._kind, text)
+    def _late(self, instant: float) -> dict[str, list[str]]:
+        """Names by topic; the whole topic's is `ALL`."""
+        late: dict[str, list[str]] = {}
+        for (topic, name), source in self._sources.items():
+            if source.due < instant - ALIKE:
+                late.setdefault(topic, []).append(name)
+        return late
 
-    def reset(self, known: Iterable[str]) -> None:
-        """The run begins again, with these names: what was awaited is awaited from the start on."""
-        self._sources = {names: each for names, each in self._sources.items() if {*names} <= {*known}}
-        for source in self._sources.values():
-            source.last, source.due = math.nan, 0.0 if source.due < math.inf else math.inf
-        self._missing_since = math.inf
-        self._report.end(self._kind)
+    def _tell(self, topic: str, names: list[str], instant: float, timeout: float) -> None:
+        """Tell that messages due before the sample of `instant` [s] have not come for `timeout` [s]."""
+        newest = max((self._sources[topic, name].stamp for name in names), default=math.nan)
+        whose = "" if names == [ALL] else f" for {_listed(names)}"
+        if math.isnan(newest):
+            text = f"no {MESSAGES[topic]}{whose} at the start within {timeout:g} s: the run begins without"
+        elif topic != SAMPLES:
+            text = (
+                f"no {MESSAGES[topic]}{whose} for {timeout:g} s of wall time before t = {instant:.9g} s, the newest is "
+                f"of t = {newest:.9g} s: it holds, and the run does not wait until they are back"
+            )
+        else:
+            self._report.event(
+                "missing samples",
+                f"no curvature sample for t >= {instant:.9g} s within {timeout:g} s, the newest is for t = "
+                f"{newest:.9g} s: at real_time_factor 0 a controller's samples must lie at least 1/rate = "
+                f"{self.period:.9g} s ahead of the simulation",
+            )
+            return
+        self._report.begin(_kind(topic), text)
 
-    @property
-    def _kind(self) -> str:
-        return f"no {self.topic}"
+
+def wanted_inputs(wait_for: Iterable[str], parts: Mapping[str, tuple[str, ...]]) -> dict[tuple[str, str], float | None]:
+    """Topic and name of each input in `wait_for`, with its period [s] or None. `ValueError` for what does not fit.
+
+    Each is a topic or TOPIC/NAME of a joint or a fin, with a period [s] behind, if it is not that of the samples.
+    parts: names of joints and fins by topic.
+    """
+    wanted: dict[tuple[str, str], float | None] = {}
+    for text in filter(None, wait_for):
+        word, _, number = text.partition(" ")
+        topic, slash, name = word.partition("/")
+        if topic not in INPUTS:
+            raise ValueError(not_one_of("wait_for", topic, INPUTS))
+        if topic in (JOINTS, FINS) and not parts.get(topic):
+            raise ValueError(f"wait_for must name inputs that there are, got {topic}: nothing follows it")
+        if slash and name not in parts.get(topic, ()):
+            raise ValueError(not_one_of(f"wait_for {topic}/", name, parts.get(topic, ())))
+        try:
+            period = float(number) if number else None
+        except ValueError:
+            period = math.nan
+        if period is not None and not (is_finite(period) and period > 0.0):
+            raise ValueError(f"wait_for must have a period > 0 s behind {word}, got {shown(number)}")
+        wanted[topic, name] = period
+    return wanted
+
+
+def _kind(topic: str) -> str:
+    return f"no {topic}"
+
+
+def _text(topic: str, names: list[str]) -> str:
+    return topic if ALL in names else f"{topic} ({_listed(names)})"
+
+
+def _listed(names: list[str]) -> str:
+    return ", ".join(names[:MOST_NAMED]) + (" ..." if len(names) > MOST_NAMED else "")

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Passes commands of a robot's joints, and of fins, to the simulation at their times.
+"""Passes commands of a robot's joints and of fins, and currents, to the simulation at their times.
 
 A command is in force from its stamp on, or at once where it has none or a past one; the last one holds. Of those that
-begin at one instant the last of each joint or fin is kept: what cannot act any more takes no room, and no time.
+begin at one instant the newest of each joint or fin is kept: what cannot act any more takes no room, and no time. One
+that is older than what has acted is left out.
 """
 
 import math
@@ -11,12 +12,14 @@ from collections.abc import Mapping
 from operator import itemgetter
 from typing import Any
 
+from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_model.fins.fins import checked_commands, commanded_names
+from eel_model.robot.actuators import Servo
 from eel_ros.loop.diagnostics import ERROR, Report
 
 from eel_dynamics.ros.command_messages import Values, fin_command_from_message, joint_command_from_message
-from eel_dynamics.ros.loop.awaited import Awaited, Echo
+from eel_dynamics.ros.loop.awaited import FINS, JOINTS, MESSAGES, Awaited
 from eel_dynamics.simulation.simulation import Simulation
 
 LONGEST_WAY = 5.0  # s that a command may lie ahead of the simulation
@@ -28,22 +31,27 @@ INSTANT = itemgetter(0)
 class CommandQueue:
     """Commands for parts of the `simulation`, which may be replaced at a reset. For the run loop's thread.
 
+    awaited: of the run. lockstep: whether it waits for stamps.
+
     Attributes:
-        topic: where they come from; what: one of them is called; parts: that are commanded.
+        topic: where they come from; parts: that are commanded; hold: whether the same value again says nothing new.
         simulation: Simulation.
         names: of the parts that can be commanded.
-        awaited: Awaited.
     """
 
-    topic = what = parts = ""
+    topic = parts = ""
+    hold = True
 
-    def __init__(self, report: Report) -> None:
-        self._report, self.awaited, self._echo = report, Awaited(self.topic, self.what, report), Echo()
+    def __init__(self, awaited: Awaited, lockstep: bool, report: Report) -> None:
+        self._awaited, self._lockstep, self._report = awaited, lockstep, report
         self.simulation: Simulation
         self.names: tuple[str, ...] = ()
-        self._waiting: list[tuple[float, Values]] = []  # in the order of their times [s]
+        self._waiting: list[tuple[float, dict[str, tuple[float, Any]]]] = []  # instant; stamp and value by name
         self._present: Values = {}  # what the parts do
-        self._last = math.nan  # s, simulation time at which the last command came; NaN: none has
+        self._stamps: dict[str, float] = {}  # s, of what has acted
+        self._last = self._pause = (
+            math.nan
+        )  # s, simulation time: when the last command came, and how long after another
 
     def read(self, message: Any) -> tuple[float, Values]:
         """Stamp [s] and values of a `message`. `ValueError` names what does not fit the present swimmer."""
@@ -57,23 +65,47 @@ class CommandQueue:
         """Queue what parts are to do from `stamp` [s] on. `ValueError` for a command that lies too far ahead."""
         now = self.simulation.time
         ahead = stamp - now
-        if self._echo.holds(ahead):
-            self._report.note("echo", f"{self.what} of {stamp:g} s left out: sent before the reset")
+        if self._awaited.is_echo(self.topic, ahead):
+            self._report.note("echo", f"{MESSAGES[self.topic]} of {stamp:g} s left out: sent before the reset")
             return
         if ahead > LONGEST_WAY:
             rule = f"header.stamp must be at most {LONGEST_WAY:g} s ahead of the simulation ({now:.9g} s)"
             raise ValueError(f"{rule}, got {stamp:.9g} s")
-        instant = max(stamp, now)
+        is_stamped = stamp > 0.0 or now == 0.0
+        if not is_stamped and self._lockstep and self._awaited.counts_as_stamped(self.topic, values):
+            return  # a late answer to sample 0, which is repeated while the run stands at its start
+        self._queue(
+            stamp if is_stamped else now, max(stamp, now), {name: each for name, each in values.items() if each != {}}
+        )
+        self._last, self._pause = now, now - self._last
+        if is_stamped:
+            self._awaited.come(self.topic, stamp, now, values)
+
+    def _queue(self, stamp: float, instant: float, values: Values) -> None:
+        """Have the `values` act at an `instant` [s], but for those of parts that a newer `stamp` [s] has acted on."""
+        newer = {name: (stamp, value) for name, value in values.items() if stamp >= self._stamps.get(name, -math.inf)}
+        for old in values.keys() - newer:
+            than = f"t = {stamp:.9g} s is older than that of t = {self._stamps[old]:.9g} s"
+            self._warn("old", f"of {than}{_for(old)}: left out, as are further ones")
         place = bisect_left(self._waiting, instant, key=INSTANT)
-        if place < len(self._waiting) and self._waiting[place][0] == instant:
-            self._waiting[place][1].update(values)
-        elif len(self._waiting) < MOST_WAITING:
-            self._waiting.insert(place, (instant, dict(values)))
-        else:
-            raise ValueError(f"at most {MOST_WAITING} of different stamps can wait ahead of t = {now:.9g} s")
-        self._last = now
-        self._echo.take(ahead)
-        self.awaited.come(tuple(values), stamp, now)
+        if not newer:
+            return
+        if place == len(self._waiting) or self._waiting[place][0] > instant:
+            if len(self._waiting) == MOST_WAITING:
+                now = self.simulation.time
+                raise ValueError(f"at most {MOST_WAITING} of different stamps can wait ahead of t = {now:.9g} s")
+            self._waiting.insert(place, (instant, {}))
+        there = self._waiting[place][1]
+        for name, (_, value) in newer.items():
+            before = there.get(name, (self._stamps.get(name, math.nan), self._present.get(name)))
+            if before[0] == stamp > 0.0 and before[1] != value:
+                self._warn("double", f"of t = {stamp:.9g} s{_for(name)} came with another value: the newest is taken")
+            if name not in there or stamp >= before[0]:
+                there[name] = stamp, value
+
+    def _warn(self, kind: str, text: str) -> None:
+        """Warn of a `kind` of commands once in a run."""
+        self._report.begin(f"{kind} {self.topic}", f"a {MESSAGES[self.topic]} {text}")
 
     def next_instant(self, before: float) -> float:
         """The time [s] of the next command, or the time `before` [s] that none precedes."""
@@ -85,28 +117,37 @@ class CommandQueue:
             return False
         values: Values = {}
         while self._waiting and self._waiting[0][0] <= self.simulation.time:
-            values |= self._waiting.pop(0)[1]
-        changed = {name: value for name, value in values.items() if self._present.get(name) != value}
+            for name, (stamp, value) in self._waiting.pop(0)[1].items():
+                self._stamps[name], values[name] = stamp, value
+        held = self._present if self.hold else {}
+        changed = {name: value for name, value in values.items() if held.get(name) != value}
         try:
             if changed:  # not sent again
                 self.give(changed)
             self._present |= changed
         except ValueError as error:
-            self._report.event(self.topic, f"{self.what} refused: {error}", ERROR, differing=True)
+            self._report.event(self.topic, f"{MESSAGES[self.topic]} refused: {error}", ERROR, differing=True)
         return True
 
     def check(self, timeout: float) -> None:
-        """Warn where no command has come for `timeout` [s] of simulation time; 0: never."""
+        """Warn where commands that came in a row have stopped for `timeout` [s] of simulation time; 0: never.
+
+        A command that comes by itself, later than that after another, is a set point, and holds without a word.
+        """
         time = self.simulation.time
-        if timeout > 0.0 and time - self._last > timeout:
-            self.awaited.miss(timeout, "of simulation time", time)
+        if timeout > 0.0 and time - self._last > timeout >= self._pause:
+            said = (
+                f"no {MESSAGES[self.topic]} for {timeout:g} s of simulation time at t = {time:g} s: the last one holds"
+            )
+            self._report.begin(f"no {self.topic}", said)
 
     def _begin(self, simulation: Simulation, names: tuple[str, ...]) -> None:
         """Begin at time 0 of a `simulation`, without commands for its parts with these names."""
         self.simulation, self.names = simulation, names
-        self._waiting, self._present, self._last = [], {}, math.nan
-        self.awaited.reset(names)
-        self._echo.reset()
+        self._waiting, self._present, self._stamps = [], {}, {}
+        self._last = self._pause = math.nan
+        for kind in ("old", "double"):
+            self._report.end(f"{kind} {self.topic}")
 
     def values(self) -> dict[str, Any]:
         """For /diagnostics: how many joints or fins are commanded."""
@@ -116,18 +157,59 @@ class CommandQueue:
 class JointCommands(CommandQueue):
     """Commands for the servos of a robot. The first starts a swimmer without a law, which is straight but for it."""
 
-    topic, what, parts = "joint_commands", "joint command", "joints"
+    topic, parts = JOINTS, "joints"
 
-    def begin(self, simulation: Simulation, interfaces: Mapping[str, str]) -> None:
+    def __init__(self, awaited: Awaited, lockstep: bool, report: Report) -> None:
+        super().__init__(awaited, lockstep, report)
+        self._interfaces: Mapping[str, tuple[str, ...]] = {}
+        self._clipped: set[str] = set()  # what has been told of
+
+    def begin(self, simulation: Simulation, interfaces: Mapping[str, tuple[str, ...]]) -> None:
         """Begin at time 0 of a `simulation`, whose joints are driven by these `interfaces`."""
         self._interfaces, robot = interfaces, simulation.robot
         self._begin(simulation, () if robot is None else robot.driven_names)
+        for kind in ("no values", *self._clipped):
+            self._report.end(kind)
+        self._clipped.clear()
 
     def read(self, message: Any) -> tuple[float, Values]:
+        """Values beyond a joint's limits are clipped, and a joint without a value is left out, with a warning."""
+        if not self.names:
+            raise ValueError("there are no servos: the shape is imposed, by curvature_law or curvature_samples")
         stamp, values = joint_command_from_message(message, self._interfaces, self.simulation.time)
-        for name in values.keys() - self.names:
-            self.simulation.check_driven(name)
-        return stamp, values
+        if any(values.values()):
+            self._report.end("no values")
+        else:
+            self._report.begin("no values", "joint commands without a number: what is NaN leaves a joint as it is")
+        for name, given in values.items():
+            if given:
+                self.simulation.check_driven(name)
+        return stamp, {name: self._within_limits(name, given) for name, given in values.items() if name in self.names}
+
+    def _within_limits(self, name: str, given: dict[str, float]) -> dict[str, float]:
+        """The `given` values by interface, within the limits of the joint called `name`."""
+        robot = self.simulation.robot
+        assert robot is not None
+        joint, kept = robot.joint(name), dict(given)
+        servo = joint.actuator
+        assert isinstance(servo, Servo)
+        speed, torque = servo.speed_limit or math.inf, servo.torque_limit or math.inf
+        limits = {
+            "position": (*(joint.limits or (-math.inf, math.inf)), "rad"),
+            "velocity": (-speed, speed, "rad/s"),
+            "effort": (-torque, torque, "N m"),
+        }
+        for interface, value in given.items():
+            low, high, unit = limits[interface]
+            kept[interface] = min(max(value, low), high)
+            kind = f"limit of {name} {interface}"
+            if kept[interface] == value:
+                self._report.end(kind)
+            elif kind not in self._clipped:  # once in a run: a wave goes beyond it again and again
+                self._clipped.add(kind)
+                beyond = f"{interface} {value:g} {unit} of joint {shown(name)} is beyond its limit"
+                self._report.begin(kind, f"{beyond} {kept[interface]:g} {unit}: clipped")
+        return kept
 
     def add(self, stamp: float, values: Values) -> None:
         super().add(stamp, values)
@@ -135,22 +217,28 @@ class JointCommands(CommandQueue):
             self.simulation.adopt(STAND_IN)
 
     def give(self, values: Values) -> None:
-        for joint, (interface, value) in values.items():
-            self.simulation.command(joint, **{interface: value})
+        for joint, given in values.items():
+            self.simulation.command(joint, **given)
 
 
 class FinCommands(CommandQueue):
     """Commands for the servos of fins."""
 
-    topic, what, parts = "fin_command", "fin_command", "fins"
+    topic, parts = FINS, "fins"
 
     def begin(self, simulation: Simulation) -> None:
         """Begin at time 0 of a `simulation`."""
         self._begin(simulation, commanded_names(simulation.fins))
 
     def read(self, message: Any) -> tuple[float, Values]:
+        if not self.names:
+            raise ValueError("no fin is commanded: angle=commanded in the parameter fins makes one")
         stamp, angles = fin_command_from_message(message, self.simulation.time)
         return stamp, checked_commands(self.simulation.fins, angles)
 
     def give(self, values: Values) -> None:
         self.simulation.command_fins(values)
+
+
+def _for(name: str) -> str:
+    return f" for {name}" if name else ""

@@ -1,48 +1,44 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Passes samples of the topic `current` to the simulation; logs refusals, and when samples stop and return."""
+"""Passes samples of the topic `current` to the simulation at their times; logs when samples stop and return."""
+
+from typing import Any
 
 import numpy as np
-from eel_ros.loop.diagnostics import ERROR, Report
+from eel_ros.loop.diagnostics import Report
 
-from eel_dynamics.ros.loop.awaited import Awaited, Echo
+from eel_dynamics.ros.command_messages import Values
+from eel_dynamics.ros.loop.awaited import ALL, CURRENT, Awaited
+from eel_dynamics.ros.loop.command_queue import CommandQueue
+from eel_dynamics.ros.messages import current_from_message
 from eel_dynamics.simulation.simulation import Simulation
 
-NAMES = ("current",)
 
+class Currents(CommandQueue):
+    """Samples of a current in the frame `world_frame`. Each is reached after it has acted (`CurrentStream`)."""
 
-class CurrentTaker:
-    """Passes samples to a simulation, which may be another one after a reset. For the run loop's thread.
+    topic, hold = CURRENT, False
 
-    Attributes:
-        awaited: Awaited.
-    """
+    def __init__(self, awaited: Awaited, lockstep: bool, report: Report, world_frame: str) -> None:
+        super().__init__(awaited, lockstep, report)
+        self._world_frame, self._taken = world_frame, False
 
-    def __init__(self, report: Report) -> None:
-        self._report, self._taken = report, False
-        self.awaited, self._echo = Awaited("current", "current", report), Echo()
+    def begin(self, simulation: Simulation) -> None:
+        """Begin at time 0 of a `simulation`."""
+        self._begin(simulation, (ALL,))
 
-    def take(self, simulation: Simulation, stamp: float, velocity: np.ndarray) -> None:
-        """Add the `velocity` (3,) [m/s], world, of the time `stamp` [s], 0: the present one; log a refusal."""
-        time = simulation.time
-        if self._echo.holds(stamp - time):
-            self._report.note("echo", f"current of {stamp:g} s left out: sent before the reset")
-            return
-        try:
-            simulation.add_current(stamp or time, velocity)
-        except ValueError as error:
-            self._report.event("current", f"{error}: left out", ERROR)
-        else:
-            self._echo.take(stamp - time)
-            self.awaited.come(NAMES, stamp, time)
+    def read(self, message: Any) -> tuple[float, Values]:
+        stamp, velocity = current_from_message(message, self.simulation.time, self._world_frame)
+        return stamp, {ALL: tuple(velocity.tolist())}
 
-    def reset(self) -> None:
-        """The run begins again."""
-        self.awaited.reset(NAMES)
-        self._echo.reset()
+    def give(self, values: Values) -> None:
+        self.simulation.add_current(self.simulation.time, np.array(values[ALL]))
 
-    def look(self, simulation: Simulation) -> None:
+    def values(self) -> dict[str, Any]:
+        return {}
+
+    def look(self) -> None:
         """Log when samples are adopted, have stopped, or are back."""
-        stream, time, reported = simulation.currents, simulation.time, self._report.lasts("current held")
+        stream, time, reported = self.simulation.currents, self.simulation.time, self._report.lasts("current held")
         if stream.course is None:
             self._taken = False
             self._report.end("current held")

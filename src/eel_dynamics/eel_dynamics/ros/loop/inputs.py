@@ -1,44 +1,61 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What comes to a swimmer besides laws: commands of joints and fins, and currents; and which of it a run waits for."""
+"""What comes to a swimmer besides laws: commands of joints and fins, and currents; and what of all a run waits for."""
 
+from eel_model.fins.fins import commanded_names
 from eel_ros.loop.diagnostics import Report
 
 from eel_dynamics.ros.command_messages import interfaces_of
-from eel_dynamics.ros.loop.command_queue import FinCommands, JointCommands
-from eel_dynamics.ros.loop.current_taker import CurrentTaker
+from eel_dynamics.ros.loop.awaited import FINS, JOINTS, Awaited, wanted_inputs
+from eel_dynamics.ros.loop.command_queue import STAND_IN, FinCommands, JointCommands
+from eel_dynamics.ros.loop.current_taker import Currents
+from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.simulation.simulation import Simulation
 
 
 class Inputs:
-    """The inputs of a `simulation` whose joints are driven by `interfaces`: one for all, or one for each.
+    """The inputs of a `simulation`, by the parameters `values`.
 
     Attributes:
-        joints: JointCommands. fins: FinCommands. current: CurrentTaker.
+        joints: JointCommands. fins: FinCommands. current: Currents. queues: all three.
+        awaited: Awaited.
         acted: the number of times that commands have taken effect since the last sample.
     """
 
-    def __init__(self, simulation: Simulation, interfaces: tuple[str, ...], report: Report) -> None:
-        self.joints, self.fins, self.current = JointCommands(report), FinCommands(report), CurrentTaker(report)
-        self._queues = self.joints, self.fins
-        self._awaited = self.joints.awaited, self.fins.awaited, self.current.awaited
-        self.begin(simulation, interfaces)
+    def __init__(self, simulation: Simulation, values: DynamicsParameters, report: Report) -> None:
+        self.awaited, lockstep = Awaited(report), values.real_time_factor == 0.0
+        self.joints = JointCommands(self.awaited, lockstep, report)
+        self.fins = FinCommands(self.awaited, lockstep, report)
+        self.current = Currents(self.awaited, lockstep, report, values.world_frame)
+        self.queues = self.joints, self.fins, self.current
+        self.begin(simulation, values)
 
-    def begin(self, simulation: Simulation, interfaces: tuple[str, ...]) -> None:
+    def begin(self, simulation: Simulation, values: DynamicsParameters) -> None:
         """Begin at time 0 of a `simulation`, which may be another one, without commands and currents so far."""
-        self.joints.begin(simulation, interfaces_of(simulation.robot, interfaces))
+        self.joints.begin(simulation, interfaces_of(simulation.robot, values.command_interfaces))
         self.fins.begin(simulation)
-        self.current.reset()
+        self.current.begin(simulation)
+        self.awaited.begin(values.wait_for, parts_of(simulation), 1.0 / values.rate)
+        if self.awaited.names(JOINTS) and not simulation.ready:
+            simulation.adopt(STAND_IN)  # a controller manager begins to command once time goes on
         self.acted = 0
-
-    def missing(self, time: float, now: float, timeout: float) -> list[str]:
-        """The topics to wait for at the sample of `time` [s], for `timeout` [s] at most. now: [s, steady clock]."""
-        return [each.topic for each in self._awaited if each.waits(time, now, timeout)]
 
     def next_instant(self, before: float) -> float:
         """The time [s] of the next command, or of the next sample, `before` [s], if none comes first."""
-        return min(queue.next_instant(before) for queue in self._queues)
+        return min(queue.next_instant(before) for queue in self.queues)
 
     def act(self) -> None:
         """Give the commands of the present time."""
-        for queue in self._queues:
+        for queue in self.queues:
             self.acted += queue.act()
+
+
+def parts_of(simulation: Simulation) -> dict[str, tuple[str, ...]]:
+    """Names of the joints and fins of a `simulation` that can be commanded, by topic."""
+    robot = simulation.robot
+    return {JOINTS: () if robot is None else robot.driven_names, FINS: commanded_names(simulation.fins)}
+
+
+def check_inputs(simulation: Simulation, values: DynamicsParameters) -> None:
+    """`ValueError` for parameters `values` of inputs that do not fit a `simulation`."""
+    interfaces_of(simulation.robot, values.command_interfaces)
+    wanted_inputs(values.wait_for, parts_of(simulation))

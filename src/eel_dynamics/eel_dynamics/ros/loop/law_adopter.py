@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Passes laws, and a controller's samples of laws, to the simulation; logs refusals, and when samples run out."""
 
-import math
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,7 @@ from eel_gaits.laws.law import Law
 from eel_ros.loop.diagnostics import ERROR, WARN, Report
 
 from eel_dynamics.curvature.curvature_samples import LateSample
-from eel_dynamics.ros.loop.awaited import Echo
+from eel_dynamics.ros.loop.awaited import LAW, SAMPLES, Awaited
 from eel_dynamics.ros.messages import refused
 from eel_dynamics.simulation.simulation import Simulation
 
@@ -19,7 +18,7 @@ REFUSALS = ValueError, ArithmeticError, MemoryError  # errors with which the sim
 
 
 class LawAdopter:
-    """Passes laws and samples to the `simulation`. For the run loop's thread.
+    """Passes laws and samples to the `simulation`. For the run loop's thread. awaited: of the run.
 
     `SimulationStopped` if the simulation cannot continue with a law.
 
@@ -27,16 +26,13 @@ class LawAdopter:
         simulation: may be replaced at a reset.
     """
 
-    def __init__(self, simulation: Simulation, report: Report) -> None:
-        self.simulation, self._report = simulation, report
+    def __init__(self, simulation: Simulation, awaited: Awaited, report: Report) -> None:
+        self.simulation, self._awaited, self._report = simulation, awaited, report
         self._origin = 0.0  # s: simulation time of the law's t = 0
         self._first: dict[
             float, int
         ] = {}  # time [s] of the instants that were added at the start, and a hash of the values
         self._driven = False  # whether a controller's samples drove the swimmer when it was last looked at
-        self._again = False  # whether samples drove the swimmer before the last reset, and none has come since
-        self._echo = Echo()
-        self._missing_since = math.inf  # s, steady clock: since when samples are missing; -inf: no longer waited for
 
     @property
     def name(self) -> str:
@@ -58,7 +54,9 @@ class LawAdopter:
         except REFUSALS as error:
             self._report.event("law", f"law {shown(law.name)} refused: {error}", ERROR, differing=True)
             return
-        self._origin, self._driven, self._again = origin, False, False
+        self._origin, self._driven = origin, False
+        self._awaited.come(LAW, origin, simulation.time)
+        self._awaited.end(SAMPLES)
         self._report.end("resting")
         self._report.note("law adopted", f"law {shown(law.name)} adopted at t = {simulation.time:g} s")
         if until is not None and until > simulation.time:
@@ -76,7 +74,7 @@ class LawAdopter:
         swing of the body once they run out, and is refused.
         """
         ahead = samples["time"] - self.simulation.time
-        if self._echo.holds(ahead):
+        if self._awaited.is_echo(SAMPLES, ahead):
             self._report.note("echo", f"curvature samples of {samples['time']:g} s left out: sent before the reset")
             return
         if samples["time"] in self._first and self._first[samples["time"]] == _hash(samples):
@@ -92,52 +90,14 @@ class LawAdopter:
             driven = self.simulation.sampled or self.simulation.resting
             self._report.event("samples", refused(error, driven), level)
         else:
-            self._again = False
-            self._echo.take(ahead)
+            self._awaited.come(SAMPLES, samples["time"], self.simulation.time)
             if self.simulation.time == 0.0:
                 self._first[samples["time"]] = _hash(samples)
 
-    def waits_again(self, now: float, timeout: float) -> bool:
-        """Whether to wait at the start for samples, which drove the swimmer before the reset.
-
-        For `timeout` [s] at most; now: [s, steady clock].
-        """
-        if not self._again:
-            return False
-        self._missing_since = min(self._missing_since, now)
-        if now - self._missing_since >= timeout:
-            self._again, self._missing_since = False, math.inf
-            text = f"no curvature sample since the reset within {timeout:g} s: the law goes on alone"
-            self._report.event("missing samples", text)
-        return self._again
-
-    def waits_for_samples(self, instant: float, period: float, now: float, timeout: float) -> bool:
-        """Whether to wait for samples up to `instant` [s], a `period` [s] ahead, for `timeout` [s] at most in each gap.
-
-        now: [s, steady clock]. A wait in vain is logged.
-        """
-        until = self.simulation.samples_until
-        if until is None or until >= instant or self.simulation.resting:
-            self._missing_since = math.inf
-            return False
-        self._missing_since = min(self._missing_since, now)
-        waits = now - self._missing_since < timeout
-        if not waits and self._missing_since > -math.inf:
-            self._missing_since = -math.inf
-            self._report.event(
-                "missing samples",
-                f"no curvature sample for t >= {instant:.9g} s within {timeout:g} s, the newest is for t = "
-                f"{until:.9g} s: at real_time_factor 0 a controller's samples must lie at least 1/rate = "
-                f"{period:.9g} s ahead of the simulation",
-            )
-        return waits
-
     def reset(self) -> None:
         """Set the law's own t = 0 back to simulation time 0."""
-        self._again, self._missing_since = self._driven, math.inf
         self._origin, self._driven = 0.0, False
         self._first.clear()
-        self._echo.reset()
         self._report.end("resting")
 
     def report_samples(self, instant: float) -> None:

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Finds what keeps a run from its next sample: another node, a failure, no law, missing subscribers, or a pause."""
+"""Finds what keeps a run from its next sample: another node, a failure, missing inputs or subscribers, or a pause."""
 
 import time
+from collections.abc import Callable
 
 from eel_ros.loop.requests import Answer
 
+from eel_dynamics.ros.loop.awaited import JOINTS, LAW, SAMPLES
 from eel_dynamics.ros.publishers import Publishers
 from eel_dynamics.simulation.simulation import Simulation
-
-WAITING = "waiting for curvature_law or curvature_samples"
 
 
 class RunGate:
@@ -30,21 +30,30 @@ class RunGate:
         self._steps: Answer | None = None
         self._steps_left = 0
 
-    def held_by(self, simulation_time: float) -> str:
-        """What holds the run, as text, at `simulation_time` [s]; empty if there is none."""
+    def held_by(self, simulation_time: float, late: list[str], missing: Callable[[], list[str]]) -> str:
+        """What holds the run, as text, at `simulation_time` [s]; empty if there is none.
+
+        late: inputs that have to come before the next sample. missing(): those of them that are still waited for; it is
+        called once all else is there.
+        """
         if self.held:
             return self.held
         if self.failed:
             return f"stopped at t = {simulation_time:g} s until it is reset"
+        plural = "" if self._wanted == 1 else "s"
+        audience = f"{self._wanted} subscriber{plural}" if self._wanted else "the present subscribers"
         if not self.simulation.ready:
             robot = self.simulation.robot
-            return WAITING if robot is None or not robot.driven_names else f"{WAITING}, or joint_commands"
+            drivers = (LAW, SAMPLES) if robot is None or not robot.driven_names else (LAW, SAMPLES, JOINTS)
+            needed = [] if {*drivers} & {each.split(" ")[0] for each in late} else [" or ".join(drivers)]
+            return f"waiting for {', '.join([*needed, *late, *([] if self._subscribers_complete else [audience])])}"
         if not self._subscribers_complete:
             self._subscribers_complete = self._publishers.subscribers_complete(self._wanted, time.monotonic())
             if not self._subscribers_complete:
-                plural = "" if self._wanted == 1 else "s"
-                return f"waiting for {self._wanted or 'the present'} subscriber{plural}"
+                return f"waiting for {', '.join([*late, audience])}"
             self._publishers.wait_until_body_received()
+        if late and (names := missing()):
+            return f"waiting for {', '.join(names)}"
         return f"paused at t = {simulation_time:g} s" if self._paused and self._steps is None else ""
 
     def start_may_be_shown(self, now: float) -> bool:

@@ -27,6 +27,7 @@ from eel_ros.loop.requests import Answer, RequestQueue
 
 from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration
+from eel_dynamics.ros.loop.awaited import MESSAGES
 from eel_dynamics.ros.loop.command_queue import STAND_IN, CommandQueue
 from eel_dynamics.ros.loop.inputs import Inputs
 from eel_dynamics.ros.loop.law_adopter import LawAdopter
@@ -75,7 +76,8 @@ class RunLoop:
         self.gate = RunGate(simulation, publishers, values.wait_for_subscribers)
         self.pace = (FollowedClock if values.follow_clock else Pace)(1.0 / values.rate, values.real_time_factor)
         self._lateness = Lateness(report)
-        self.laws, self.inputs = LawAdopter(simulation, report), Inputs(simulation, values.command_interfaces, report)
+        self.inputs = Inputs(simulation, values, report)
+        self.laws = LawAdopter(simulation, self.inputs.awaited, report)
         self.servo_limit = ServoLimit(simulation, report)
         self.output = SampleOutput(simulation, parameters, publishers, report)
         self._sample_begun: float | None = None  # s, steady clock: when the computation of the next sample began
@@ -121,7 +123,7 @@ class RunLoop:
             request.answer.give(*self._execute(request.action, *request.arguments))
         if self._parameters.values.servo_torque_limit != self.servo_limit.present:
             self._execute(self._limit_servos, self._parameters.values.servo_torque_limit)
-        reason = self.gate.held_by(self.time) or self._awaited_at_start() or self.pace.held_by(self.samples_published)
+        reason = self._held_by() or self.pace.held_by(self.samples_published)
         if reason:
             self._idle(reason)
         elif self._wait_for_turn():
@@ -145,22 +147,25 @@ class RunLoop:
         """Wait for one tick while something holds the run; /clock continues."""
         self._sample_begun = None
         if reason != self.standing:
-            self.standing = reason
-            self._report.info(reason)
+            before, self.standing = self.standing, reason
+            if not {*reason.split(", ")} <= {*before.split(", ")}:  # what is left of it needs no line
+                self._report.info(reason)
         now = time.monotonic()
         self.output.clock.repeat(self._stamp, now)
         if self.samples_published == 0 and self.output.start_is_due(now) and self.gate.start_may_be_shown(now):
             self.output.show_start(now)
         self.requests.wait(TICK)
 
-    def _awaited_at_start(self) -> str:
-        """What a run as fast as possible waits for after a reset, as text: the first of all that came before it."""
+    def _held_by(self) -> str:
+        """What holds the run, as text; at the start of one as fast as possible also the inputs that it awaits."""
         if self.samples_published or self.pace.factor > 0.0:
-            return ""
-        now, timeout = time.monotonic(), self._parameters.values.subscriber_timeout
-        topics = self.inputs.missing(0.0, now, timeout)
-        topics += ["curvature_samples"] if self.laws.waits_again(now, timeout) else []
-        return f"waiting for {', '.join(topics)}" if topics else ""
+            return self.gate.held_by(self.time, [], list)
+        return self.gate.held_by(self.time, self.inputs.awaited.late(0.0), self._missing)
+
+    def _missing(self) -> list[str]:
+        """The inputs that a run as fast as possible waits for before its next sample."""
+        timeout = self._parameters.values.subscriber_timeout
+        return self.inputs.awaited.missing(self._next_time, time.monotonic(), timeout)
 
     def _wait_for_turn(self) -> bool:
         """Wait until the next sample is due; False if a request or a tick comes first."""
@@ -170,10 +175,8 @@ class RunLoop:
         if self.standing or values.real_time_factor != self.pace.factor:
             self.standing = ""
             self.pace.restart(self.samples_published, now, values.real_time_factor)
-        next_time, period, timeout = self._next_time, self.pace.period, values.subscriber_timeout
-        if self.pace.factor == 0.0 and (
-            self.laws.waits_for_samples(next_time, period, now, timeout) or self.inputs.missing(self.time, now, timeout)
-        ):
+        next_time = self._next_time
+        if self.pace.factor == 0.0 and self.samples_published and self._missing():
             self.output.clock.repeat(self._stamp, now)
             self.requests.wait(TICK)
             return False
@@ -198,7 +201,7 @@ class RunLoop:
         self.wall_time, self._lap = self.wall_time + now - self._lap, now
         self.laws.report_samples(self.time)
         self.inputs.joints.check(self._parameters.values.command_timeout)
-        self.inputs.current.look(self._simulation)
+        self.inputs.current.look()
         self._lateness.check(self.pace, self.samples_published, self.time, now)
         if self.samples_published > 0:
             self.gate.count_step(self.time)
@@ -253,23 +256,13 @@ class RunLoop:
         self.laws.try_law(law, origin)
         self.output.forget_start()
 
-    def take_current(self, stamp: float, velocity: np.ndarray) -> None:
-        """Take a sample of a current, as `Simulation.add_current` does; a `stamp` of 0 is the present time.
-
-        As fast as possible, one without a stamp that comes where a stamped one is awaited answers a repeated sample 0.
-        """
-        if stamp == 0.0 < self.time and self.pace.factor == 0.0 and self.inputs.current.awaited.late(self.time):
-            return
-        self.inputs.current.take(self._simulation, stamp, velocity)
-        self.output.forget_start()
-
     def take_command(self, queue: CommandQueue, message: Any) -> None:
         """Put the command in a `message` into a `queue`; log a refusal."""
         try:
             stamp, values = queue.read(message)
             queue.add(self._meant(stamp), values)
         except ValueError as error:
-            self._report.event(queue.topic, f"{queue.what} refused: {error}", ERROR, differing=True)
+            self._report.event(queue.topic, f"{MESSAGES[queue.topic]} refused: {error}", ERROR, differing=True)
 
     def _limit_servos(self, torque: float) -> None:
         self.servo_limit.change(torque)
@@ -322,7 +315,7 @@ class RunLoop:
         self._report.end("stopped")
         self.pace.restart(0, now)
         self.laws.reset()
-        self.inputs.begin(self._simulation, self._parameters.values.command_interfaces)
+        self.inputs.begin(self._simulation, self._parameters.values)
         self._report.info("reset to t = 0 s")
 
 
