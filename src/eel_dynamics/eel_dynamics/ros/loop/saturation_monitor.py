@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which servos are at their limit of torque, and how long: for /diagnostics and the log."""
+"""Which servos are at their limit of torque, and how long: for /diagnostics and the log.
+
+A step of a set point brings a servo to its limit for a moment, and a gait again and again: the first is not told, the
+second once.
+"""
 
 from typing import Any
 
@@ -9,6 +13,9 @@ from eel_ros.loop.diagnostics import Report
 
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
+
+
+TOLD_AFTER, OVER_AFTER = 0.25, 1.5  # s at the limit at a stretch, and below it
 
 
 class SaturationMonitor:
@@ -21,6 +28,7 @@ class SaturationMonitor:
         self._report, count = report, len(self._names)
         self._total, self._lasting = np.zeros(count), np.zeros(count)  # s
         self._before, self._time = np.zeros(count, dtype=bool), 0.0
+        self._below = 0.0  # s, for how long no servo has been at its limit
 
     def add(self, snapshot: Snapshot) -> None:
         """Look at the motors of an instant."""
@@ -30,10 +38,12 @@ class SaturationMonitor:
         self._total += step * self._before
         self._lasting = np.where(here, self._lasting + step * self._before, 0.0)
         self._before, self._time = here, snapshot.time
-        if here.any():
-            listed = ", ".join(f"{self._names[k]} for {self._lasting[k]:.3g} s" for k in np.flatnonzero(here))
+        self._below = 0.0 if here.any() else self._below + step
+        long = np.flatnonzero(self._lasting >= TOLD_AFTER)
+        if len(long):
+            listed = ", ".join(f"{self._names[k]} for {self._lasting[k]:.3g} s" for k in long)
             self._report.begin("saturated", f"at the torque limit at t = {snapshot.time:.4g} s: {listed}")
-        else:
+        elif self._below >= OVER_AFTER:
             self._report.end("saturated", f"all motors are below their torque limits at t = {snapshot.time:.4g} s")
 
     def end(self) -> None:
