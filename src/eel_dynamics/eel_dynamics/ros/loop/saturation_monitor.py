@@ -14,7 +14,6 @@ from eel_ros.loop.diagnostics import Report
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
 
-
 TOLD_AFTER, OVER_AFTER = 0.25, 1.5  # s at the limit at a stretch, and below it
 
 
