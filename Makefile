@@ -15,8 +15,7 @@ test: build   ## all tests but the long ones (ARGS=... goes to pytest)
 	@$(RUN) tools/test.sh $(ARGS)
 
 sanitize: build   ## the mechanics under AddressSanitizer and UndefinedBehaviorSanitizer, and ThreadSanitizer
-	@$(RUN) tools/core_tests.sh threads
-	@$(RUN) tools/core_tests.sh sanitize
+	@$(RUN) tools/core_tests.sh sanitizers
 
 aarch64: build   ## the C++ tests of the mechanics compiled for 64-bit ARM, run by qemu
 	@$(RUN) tools/core_tests.sh aarch64

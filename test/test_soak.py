@@ -61,6 +61,7 @@ def test_an_hour(start, fresh_domain):
 @pytest.mark.timeout(3 * 3600)
 def test_ten_minutes_of_a_robot_with_fins_in_a_flow(start, fresh_domain):
     result = soak(start, TEN_MINUTES, limit=3 * 3600.0, swimmer=ROBOT)
+    result.write(OUT / "soak_robot.csv")
     assert set(result.counts.values()) == {round(TEN_MINUTES * RATE) + 1}, result.counts
     spread = result.spread("visualiser", after=TWO_MINUTES)
     assert result.memory["visualiser"].max() < MOST and spread < 0.02, spread

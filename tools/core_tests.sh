@@ -4,10 +4,20 @@
 #   tests      for this machine
 #   sanitize   with AddressSanitizer and UndefinedBehaviorSanitizer, and the Python tests of the mechanics with them
 #   threads    those of marches over threads, with ThreadSanitizer
+#   sanitizers both, side by side: each is one compiler for most of its time
 #   aarch64    for 64-bit ARM, run by qemu; skipped where the tools are missing
 #   clang      compiled by Clang; skipped where it is missing
 set -euo pipefail
 kind="$1"
+if [ "$kind" = sanitizers ]; then
+    mkdir -p out
+    "$0" threads > out/test-threads.log 2>&1 &
+    status=0
+    "$0" sanitize || status=$?
+    wait "$!" || status=$?
+    cat out/test-threads.log
+    exit "$status"
+fi
 folder="build/eel_core_$kind"
 
 skip_without() {   # COMMAND PACKAGE
@@ -17,7 +27,7 @@ case "$kind" in
     tests | sanitize | threads) ;;
     aarch64) skip_without aarch64-linux-gnu-g++ g++-aarch64-linux-gnu; skip_without qemu-aarch64 qemu-user ;;
     clang) skip_without clang++ clang ;;
-    *) echo "core_tests.sh: the kind must be tests, sanitize, threads, aarch64 or clang, got '$kind'" >&2; exit 2 ;;
+    *) echo "core_tests.sh: the kind must be tests, sanitize, threads, sanitizers, aarch64 or clang, got '$kind'" >&2; exit 2 ;;
 esac
 
 mkdir -p "$folder"
