@@ -55,13 +55,14 @@ def own_gait(figure: Figure, values: Values) -> None:
 
 
 def own_controller(figure: Figure, values: Values) -> None:
-    """The heading that the controller of the page reaches."""
-    axes = figure.subplots()
-    axes.plot(0.02 * np.arange(len(values["headings"])), values["headings"], color=BLUE, label="heading")
-    axes.axhline(0.6, color=ORANGE, linestyle=(0, (4, 2)), label="goal")
-    axes.set(xlabel="time [s]", ylabel="heading [rad]")
-    axes.legend()
-    axes.margins(x=0.0)
+    """The heading and the depth that the controller of the page reaches."""
+    rows = ("headings", 0.6, "heading [rad]"), ("depths", 0.3, "depth [m]")
+    for axes, (name, goal, label) in zip(figure.subplots(1, 2), rows, strict=True):
+        axes.plot(0.02 * np.arange(len(values[name])), values[name], color=BLUE, label="swimmer")
+        axes.axhline(goal, color=ORANGE, linestyle=(0, (4, 2)), label="goal")
+        axes.set(xlabel="time [s]", ylabel=label)
+        axes.legend()
+        axes.margins(x=0.0)
 
 
 def own_body(figure: Figure, values: Values) -> None:
@@ -112,6 +113,7 @@ def main() -> int:
 
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
+        Path("docs").symlink_to(DOCS)
         write_bag(Path("bag"), simulate(straight(period=0.8), 10.0, sample_period=0.02, load=True))
         for name, draw in TUTORIALS.items():
             path = DOCS / "images" / f"tutorial_{name}.png"

@@ -131,7 +131,7 @@ def test_python_of_a_page_runs_and_its_shell_names_what_exists(page, folder):
         (folder / "scene.yaml").write_text(blocks(page, "yaml")[0])
     space = run_python(page)
     if page.stem == "own_controller":
-        assert space["heading"] > 0.3  # it turns left
+        assert space["heading"] == pytest.approx(0.6, abs=0.1) and space["depth"] == pytest.approx(0.3, abs=0.03)
     for block in blocks(page, ""):
         for words in lines_of(block):
             check(words)
