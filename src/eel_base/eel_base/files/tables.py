@@ -82,10 +82,10 @@ def _read(path: Path, file: InputFile, what: str, lenient: bool) -> Table:
         head = _Head(list(_split(first, delimiter, strict=False)))
         cells, lost = _Cells(head.width, comma), list[int]()
         for line, row in _split(itertools.chain(first, lines), delimiter):
-            if line < head.start or row[0].startswith("#"):
-                continue
             while len(row) > head.width and not row[-1]:
                 row.pop()
+            if line < head.start or (row[0].startswith("#") and len(row) != head.width):
+                continue
             if len(row) == head.width:
                 cells.add(line, row)
             elif lenient:
@@ -204,6 +204,9 @@ class _Head:
             elif not self.rows:
                 before += 1
         filled = max(len(_trimmed(row)) for row in later)
+        if before and not self.rows and len(last := rows[before - 1][1]) > 1 and not any(map(_is_number, last)):
+            rule = f"{len(last)} names stand above {usual} numbers"
+            raise Misplaced(f"line {rows[before - 1][0]}", f"{rule}: decimal commas need another separator")
         if before:
             self.notes.append(f"{before} lines above the header left out" if self.rows else f"{before} lines left out")
         if not self.rows:

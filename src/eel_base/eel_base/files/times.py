@@ -16,7 +16,7 @@ import numpy as np
 from eel_base.files.table import UNITS, Table, split_name
 from eel_base.wording import shown
 
-CALLED = re.compile(r".*(?:time|stamp|zeit|temps|tiempo)(?!s).*|(?:.*[_./])?(?:t|ts)")
+CALLED = re.compile(r".*(?:time|date|stamp|zeit|temps|tiempo)(?!s).*|(?:.*[_./])?(?:t|ts)")
 EPOCH = 9.5e8, 4.1e9  # s since 1970: the years 2000 to 2099
 PARTS = {1.0: "s", 1e-3: "ms", 1e-6: "us", 1e-9: "ns"}
 DAY = 86400.0  # s
@@ -46,7 +46,7 @@ def time_of(table: Table, column: str = "", besides: Sequence[int] = (), *, miss
     seconds = factor * (values - (values[np.isfinite(values)][0] if dates else 0.0))
     if factor == 1.0 and (part := _part_of(table, place, values)) is not None:
         seconds, told = seconds + part[1], f"{told}, and {table.label(part[0])}"
-    plain = not column and split_name(table.head[place])[0] in ("time", "t") and not told.endswith("1970")
+    plain = not column and split_name(table.head[place])[0] in ("time", "t") and told == PARTS[1.0]
     return Time(seconds, f"time from {table.label(place)}, {told}", plain)
 
 
@@ -57,7 +57,7 @@ def _place_of_time(table: Table, column: str, besides: Sequence[int]) -> int:
         return found[0]
     places = [place for place in range(len(table.head)) if place not in besides]
     called = [place for place in places if _is_called(table.head[place])]
-    if called:
+    if called := called or [place for place in places if _is_dated(table, place)]:
         return min(called, key=table.is_empty)  # the first that is not
     rising = [place for place in places if _rises(table.raw(place))]
     if len(rising) != 1:
@@ -71,6 +71,20 @@ def _is_called(name: str) -> bool:
     return CALLED.fullmatch(base) is not None or (not base and unit != "" and UNITS[unit][0] == "s")
 
 
+def _is_dated(table: Table, place: int) -> bool:
+    """Whether most cells of a column are dates."""
+    if not table.has_numbers(place):
+        return math.isfinite(_seconds(table.texts(place)[len(table) // 2]))
+    values = table.raw(place)
+    return _of_epoch(values) is not None and bool(np.mean(np.diff(values) >= 0.0) > RISING)
+
+
+def _of_epoch(values: np.ndarray) -> float | None:
+    """The unit [s] in which most `values` are times since 1970, if any."""
+    size = float(np.nanmedian(np.abs(values)))
+    return next((by for by in PARTS if EPOCH[0] <= size * by <= EPOCH[1]), None)
+
+
 def _rises(values: np.ndarray) -> bool:
     """Whether nearly all steps of the `values` are upward, and they are no count."""
     steps = np.diff(values)
@@ -82,10 +96,10 @@ def _numbers(table: Table, place: int) -> tuple[np.ndarray, float, str]:
     """The times of a column of numbers, their unit [s], and what they are."""
     values, (_, unit) = table.raw(place), split_name(table.head[place])
     size = float(np.nanmedian(np.abs(values)))
-    by_size = next((by for by in PARTS if EPOCH[0] <= size * by <= EPOCH[1]), 1.0)
-    dimension, factor = UNITS.get(unit, ("s", by_size))
+    dimension, factor = UNITS.get(unit, ("s", _of_epoch(values) or 1.0))
     if dimension != "s" or size * factor > EPOCH[1]:
-        raise table.error(f"{table.label(place)} must be a time in the unit of its name, got {size:g} {unit}", 0)
+        rule = "must be a time before the year 2100 in s, or the unit of its name"
+        raise table.error(f"{table.label(place)} {rule}, got {size:g} {unit or 's'}", 0)
     if size * factor < EPOCH[0]:
         return values, factor, PARTS[factor]
     return np.where(values == 0.0, np.nan, values), factor, f"{PARTS[factor]} since 1970"  # 0: not set

@@ -43,7 +43,7 @@ def film_of(path: str, options: argparse.Namespace) -> Film:
     scale = None if options.scale == 1.0 else options.scale
     points = None if options.points is None else [name.strip() for name in options.points.split(",")]
     return read_film(
-        path, units=options.units, scale=scale, time=options.time, rate=options.rate, animal=options.animal, 
+        path, units=options.units, scale=scale, time=options.time, rate=options.rate, animal=options.animal,
         points=points, likely=options.likely,
     )  # fmt: skip
 

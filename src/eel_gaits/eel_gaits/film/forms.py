@@ -23,7 +23,7 @@ from eel_base.files.times import time_of
 from eel_base.wording import shown
 
 from eel_gaits.film.hdf5 import Columns, read_hdf5
-from eel_gaits.sources.frames import check_rising, frame_starts
+from eel_gaits.sources.frames import check_rising, check_steps, frame_starts
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}  # metres in each; pixels have no length
 COORDINATE = re.compile(  # x, x0, head_x, x_head, each before a unit; mxmm of fishmechr
@@ -88,6 +88,8 @@ def _of_columns(table: Table, column: str) -> Tracks:
         marks = _names_in_frames(table, len(starts))
     else:
         check_rising(table, time, starts)
+    if times is not None:
+        check_steps(table, time[starts], 2)
     points = points.reshape(len(starts), -1, 2)
     return Tracks(time[starts], {"": points}, {"": marks}, units.pop(), times is None, {}, ", ".join(notes))
 

@@ -19,6 +19,7 @@ from eel_gaits.sources.sampled_law import SampledLaw, points_for
 from eel_gaits.sources.smoothing import FEWEST, interpolated, smoothed, smoothed_in_time
 
 FEWEST_FRAMES = 16
+STEPS = 1e-5, 0.4  # s, of films and logs of swimmers; beyond them time is not in s
 TOLERANCE = 5e-5  # part of the greatest curvature by which the rows may miss the splines along the body
 MATERIAL = 0.02  # part of the length by which the arc length of a point may differ from frame to frame
 
@@ -51,7 +52,7 @@ def frames_of(
     seconds = time_of(table, time).seconds
     starts = frame_starts(table, seconds)
     instants, count = seconds[starts], len(table) // len(starts)
-    check_number(table, instants)
+    check_steps(table, instants)
     if count < FEWEST:
         raise table.error(f"a frame must have {FEWEST} points or more, got {count}", 0, count - 1)
     found = Frames(table, instants - instants[0], fields.reshape(len(starts), count, -1))
@@ -78,10 +79,12 @@ def check_rising(table: Table, time: np.ndarray, rows: np.ndarray) -> None:
         raise table.error(f"time must rise, {got}: two swimmers in one file?", after)
 
 
-def check_number(table: Table, instants: np.ndarray) -> None:
-    """`ValueError` where the `instants` (N,) are too few for a motion."""
-    if len(instants) < FEWEST_FRAMES:
-        raise table.error(f"there must be {FEWEST_FRAMES} instants or more, got {len(instants)}")
+def check_steps(table: Table, instants: np.ndarray, fewest: int = FEWEST_FRAMES) -> None:
+    """`ValueError` where the `instants` (N,) [s] are too few for a motion, or not as close as those of a swimmer."""
+    if len(instants) < fewest:
+        raise table.error(f"there must be {fewest} instants or more, got {len(instants)}")
+    if not STEPS[0] <= (step := float(np.median(np.diff(instants)))) <= STEPS[1]:
+        raise table.error(f"its instants are {step:.3g} s apart: is its time in s? Name the unit, such as time_ms")
 
 
 def _material(frames: Frames, arc: np.ndarray) -> np.ndarray:

@@ -131,7 +131,7 @@ def joint_log(
         angles = np.radians(angles)
     elif np.max(np.abs(angles)) > LARGEST:
         raise ValueError(f"an angle must be at most {LARGEST} rad, got {np.max(np.abs(angles)):.4g}: give --units deg")
-    check_pace(time, angles)
+    _check_pace(time, angles)
     angles, jumps = _without_jumps(time, angles)
     if jumps:
         notes.append(f"{jumps} of {angles.size} readings have jumped: replaced by their neighbours")
@@ -140,7 +140,7 @@ def joint_log(
     return JointLog(name, time, angles, joints, tuple(notes))
 
 
-def check_pace(time: np.ndarray, angles: np.ndarray) -> None:
+def _check_pace(time: np.ndarray, angles: np.ndarray) -> None:
     """`ValueError` where no joint moves as the `angles` (N, n) [rad] would at the `time` (N,) [s]."""
     rate = float(np.sqrt(np.mean((np.diff(angles, axis=0) / np.diff(time)[:, None]) ** 2)))
     step = float(np.median(np.diff(time)))

@@ -32,8 +32,7 @@ from eel_base.files.times import time_of
 from eel_base.quantity import positive
 from eel_base.wording import shown
 
-from eel_gaits.sources.frames import Frames, SmoothedFrames, check_number, check_rising, frames_of, law_of_frames
-from eel_gaits.sources.joint_log import check_pace
+from eel_gaits.sources.frames import Frames, SmoothedFrames, check_rising, check_steps, frames_of, law_of_frames
 from eel_gaits.sources.midlines import Midlines
 from eel_gaits.sources.sampled_law import SampledLaw
 
@@ -154,9 +153,8 @@ def _law_of_joints(table: Table, length: float, name: str, column: str, smooth: 
             )
     time = time_of(table, column).seconds
     check_rising(table, time, np.arange(len(time)))
-    check_number(table, time)
+    check_steps(table, time)
     angles = {axis: np.stack([table.column(each, "rad") for each in names]) for axis, names in axes.items()}
-    check_pace(time, np.concatenate(list(angles.values())).T)
     splines = {}
     for axis, each in angles.items():
         sums = np.concatenate((np.zeros((1, len(time))), np.cumsum(each, axis=0)))  # at the ends of the segments
