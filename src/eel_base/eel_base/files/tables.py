@@ -16,6 +16,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,11 +29,27 @@ SUFFIXES = ".csv", ".tsv", ".txt", ".dat"  # of tables of text, in any case
 MOST_BYTES, MOST_LINES, LONGEST_LINE, MOST_COLUMNS = 200_000_000, 5_000_000, 1_000_000, 10_000
 FIRST_LINES, FIRST_CHARACTERS = 200, 1_000_000  # that tell the form
 DELIMITERS = {";": "semicolons", "\t": "tabs", ",": "commas", "|": "bars", " ": "blanks"}
-TRACKER = ("scorer", "individuals", "bodyparts", "coords")  # rows of DeepLabCut's header, whose names may be numbers
+TRACKER = "scorer", "individuals", "bodyparts", "coords"  # rows of DeepLabCut's header, whose names may be numbers
 WITH_COMMA, WITH_POINT = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?"), re.compile(r"[+-]?\d*\.\d+(?:[eE][+-]?\d+)?")
 THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 SWAPPED = str.maketrans(",.", ".,")
-Row = tuple[int, list[str]]  # its line, and its cells
+
+
+class Row(NamedTuple):
+    """The cells of a row up to the last that is not empty; its line; and how many cells there are."""
+
+    cells: list[str]
+    line: int
+    size: int
+
+
+class Head(NamedTuple):
+    """The header: names of the columns, all its rows, the line after it, and what was guessed."""
+
+    names: list[str]
+    rows: list[list[str]]
+    start: int
+    notes: list[str]
 
 
 def is_table(path: str | os.PathLike[str], *others: str) -> bool:
@@ -74,35 +91,54 @@ def _flat(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 
 def _read(path: Path, file: InputFile, what: str, lenient: bool) -> Table:
+    values, marks, lines = array.array("d"), array.array("i"), array.array("q")
+    words, lost = dict[str, int](), list[int]()
     encoding = _encoding(file)
     with io.TextIOWrapper(file, encoding=encoding, newline="") as text:
-        lines = _lines(text)
-        first = _first(lines)
+        rest, first = _lines(text), list[str]()
+        while len(first) < FIRST_LINES and sum(map(len, first)) < FIRST_CHARACTERS and (line := next(rest, "")):
+            first.append(line)
         delimiter, comma = _form(first)
-        head = _Head(list(_split(first, delimiter, strict=False)))
-        cells, lost = _Cells(head.width, comma), list[int]()
-        for line, row in _split(itertools.chain(first, lines), delimiter):
-            while len(row) > head.width and not row[-1]:
-                row.pop()
-            if line < head.start or (row[0].startswith("#") and len(row) != head.width):
+        head = _head(list(_split(first, delimiter, strict=False)))
+        width = len(head.names)
+        for row in _split(itertools.chain(first, rest), delimiter):
+            fits = len(row.cells) <= width <= row.size
+            if row.line < head.start or (row.cells[0].startswith("#") and not fits):
                 continue
-            if len(row) == head.width:
-                cells.add(line, row)
-            elif lenient:
-                lost.append(line)
-            else:
-                hint = ": numbers with decimal commas, in quotes?" if delimiter == "," and not comma else ""
-                rule = f"a row must have {head.width} fields, as the header has, got {len(row)}{hint}"
-                raise Misplaced(f"line {line}", rule)
-    if not cells.lines and not lost:
+            if len(values) + width > MOST_NUMBERS:
+                raise Misplaced(f"line {row.line}", f"a table must hold at most {MOST_NUMBERS} numbers")
+            if not fits and not lenient:
+                rule = f"a row must have {width} fields, as the header has, got {max(len(row.cells), row.size)}"
+                raise Misplaced(f"line {row.line}", rule)
+            if not fits:
+                lost.append(row.line)
+                continue
+            cells = row.cells + [""] * (width - len(row.cells))
+            made = [cell.translate(SWAPPED) for cell in cells] if comma else cells
+            known = [is_number(each) for each in made]
+            values.extend(float(each) if number else np.nan for each, number in zip(made, known, strict=True))
+            marks.extend(
+                0 if number else words.setdefault(cell, len(words) + 1)
+                for cell, number in zip(cells, known, strict=True)
+            )
+            lines.append(row.line)
+    if not lines and not lost:
         raise ValueError("it has a header and no row")
-    notes = [
-        *([DELIMITERS[delimiter]] if delimiter != "," else []),
-        *(["decimal commas"] if comma else []),
-        *([] if encoding.startswith("utf-8") else [encoding]),
-        *head.notes,
-    ]
-    return cells.table(path, head, notes, lost, what)
+    read = [DELIMITERS[delimiter]] if delimiter != "," else []
+    read += ["decimal commas"] if comma else []
+    read += [] if encoding.startswith("utf-8") else [encoding]
+    return Table(
+        path,
+        head.names,
+        np.frombuffer(values).reshape(-1, width),
+        np.frombuffer(marks, dtype=np.int32).reshape(-1, width),
+        list(words),
+        np.frombuffer(lines, dtype=np.int64),
+        heads=head.rows,
+        notes=[*read, *head.notes],
+        lost=lost,
+        what=what,
+    )
 
 
 def _encoding(file: InputFile) -> str:
@@ -129,15 +165,6 @@ def _lines(text: io.TextIOBase) -> Iterator[str]:
     raise ValueError(f"a table must have fewer than {MOST_LINES} lines")
 
 
-def _first(lines: Iterator[str]) -> list[str]:
-    """The lines that tell the form."""
-    found, left = list[str](), FIRST_CHARACTERS
-    while len(found) < FIRST_LINES and left > 0 and (line := next(lines, "")):
-        found.append(line)
-        left -= len(line)
-    return found
-
-
 def _split(lines: Iterable[str], delimiter: str, strict: bool = True) -> Iterator[Row]:
     """The rows that are not empty. `Misplaced` for quotes that are not as they should be, if `strict`."""
     if delimiter == " ":
@@ -146,8 +173,10 @@ def _split(lines: Iterable[str], delimiter: str, strict: bool = True) -> Iterato
     try:
         for row in rows:
             cells = [cell.strip() for cell in row]
-            if any(cells):
-                yield rows.line_num, cells
+            while cells and not cells[-1]:
+                cells.pop()
+            if cells:
+                yield Row(cells, rows.line_num, len(row))
     except csv.Error as error:
         if strict:
             raise Misplaced(f"line {rows.line_num}", str(error)) from None
@@ -155,21 +184,26 @@ def _split(lines: Iterable[str], delimiter: str, strict: bool = True) -> Iterato
 
 def _form(first: list[str]) -> tuple[str, bool]:
     """What separates the cells: that which gives most numbers; and whether these have decimal commas."""
-    found = dict[str, list[str]]()
-    score = dict[str, tuple[float, float]]()
+    score, found = dict[str, tuple[float, float]](), dict[str, list[str]]()
     for delimiter in DELIMITERS:
-        rows = [row for _, row in _split(first, delimiter, strict=False)]
-        if (width := _usual(map(len, rows))) > 1:
-            whole = [row for row in rows if len(row) == width]
-            cells = [cell for row in whole for cell in row if cell.lower() not in MISSING]
-            numbers, alike = sum(map(_is_number, cells)) / max(1, len(cells)), len(whole) / len(rows)
-            found[delimiter], score[delimiter] = cells, (numbers * alike, alike)
+        rows = list(_split(first, delimiter, strict=False))
+        if (size := _usual(row.size for row in rows)) > 1:
+            whole = [row.cells for row in rows if row.size == size]
+            found[delimiter] = [cell for row in whole for cell in row if cell.lower() not in MISSING]
+            alike = len(whole) / len(rows)
+            score[delimiter] = alike * _part_of_numbers(found[delimiter]), alike
     delimiter = max(score, key=lambda each: score[each], default=",")
     commas = [cell for cell in found.get(delimiter, []) if WITH_COMMA.fullmatch(cell)]
     comma = len(commas) > sum(WITH_POINT.fullmatch(cell) is not None for cell in found.get(delimiter, []))
     if comma and delimiter != ";" and all(map(THOUSANDS.fullmatch, commas)):
         raise ValueError(f"{shown(commas[0])} may have a decimal comma or one of thousands: write it without")
     return delimiter, comma
+
+
+def _part_of_numbers(cells: Iterable[str]) -> float:
+    """The part of the cells that are numbers, of those that are not empty."""
+    filled = [cell for cell in cells if cell.lower() not in MISSING]
+    return sum(map(_is_number, filled)) / max(1, len(filled))
 
 
 def _is_number(cell: str) -> bool:
@@ -182,102 +216,40 @@ def _usual(sizes: Iterable[int]) -> int:
     return max(Counter(sizes).items(), key=lambda each: each[1], default=(0, 0))[0]
 
 
-class _Head:
-    """The header of a table with these first `rows`: `names` (width,), all its rows, and the line after it."""
-
-    def __init__(self, rows: list[Row]) -> None:
-        if not rows:
-            raise ValueError("it is empty")
-        usual = _usual(len(row) for _, row in rows)
-        whole = [row for _, row in rows if len(row) == usual]
-        later = whole[len(whole) // 2 :]
-        self._numeric = {place for place in range(usual) if _mostly_numbers([row[place] for row in later])}
-        self.rows, self.notes, self.start, before = list[list[str]](), list[str](), 0, 0
-        for line, row in rows:
-            fits = usual - 1 <= len(_trimmed(row)) <= usual or len(row) == usual
-            if fits and self._is_head(row, first=not self.rows):
-                self.rows.append([row[0].lstrip("#% "), *row[1:]])
-                self.start = line + 1
-            elif fits and not row[0].startswith("#"):
-                self.start = self.start or line
-                break
-            elif not self.rows:
-                before += 1
-        filled = max(len(_trimmed(row)) for row in later)
-        if before and not self.rows and len(last := rows[before - 1][1]) > 1 and not any(map(_is_number, last)):
-            rule = f"{len(last)} names stand above {usual} numbers"
-            raise Misplaced(f"line {rows[before - 1][0]}", f"{rule}: decimal commas need another separator")
-        if before:
-            self.notes.append(f"{before} lines above the header left out" if self.rows else f"{before} lines left out")
-        if not self.rows:
-            self.width, self.names = filled, [str(place + 1) for place in range(filled)]
-            self.notes.append("no header")
-            return
-        *above, names = self.rows
-        if above and all(unit.strip("[]()").lower() in (*UNITS, "") for unit in names):
-            both = itertools.zip_longest(above[-1], names, fillvalue="")
-            names = [f"{name} [{unit.strip('[]()')}]" if unit else name for name, unit in both]
-        self.width = max(len(_trimmed(names)), min(filled, len(names)))
-        self.names = names[: self.width]
-        if self.width > MOST_COLUMNS:
-            raise Misplaced(f"line {self.start - 1}", f"there must be at most {MOST_COLUMNS} columns, got {self.width}")
-
-    def _is_head(self, row: list[str], first: bool) -> bool:
-        """Whether a row has names where the columns have numbers; of the `first` row one will do."""
-        cells = [cell for place, cell in enumerate(row) if place in self._numeric and cell.lower() not in MISSING]
-        names = [cell for cell in cells if not _is_number(cell)]
-        if first and not self._numeric:
-            return not any(map(_is_number, row))
-        if first or row[0].lower() in TRACKER or row[0].startswith("#"):
-            return bool(names)
-        return bool(names) and len(names) == len(cells)
-
-
-def _mostly_numbers(cells: list[str]) -> bool:
-    filled = [cell for cell in cells if cell.lower() not in MISSING]
-    return bool(filled) and 2 * sum(map(_is_number, filled)) >= len(filled)
-
-
-def _trimmed(row: list[str]) -> list[str]:
-    """The row without empty cells at its end."""
-    return row[: max((place + 1 for place, cell in enumerate(row) if cell), default=0)]
-
-
-class _Cells:
-    """The cells of a table, row by row: numbers, and texts, each kept once."""
-
-    def __init__(self, width: int, comma: bool) -> None:
-        self._width, self._comma, self._plain = width, comma, array.array("i", bytes(4 * width))
-        self._values, self._marks, self.lines = array.array("d"), array.array("i"), array.array("q")
-        self._words = dict[str, int]()
-
-    def add(self, line: int, row: list[str]) -> None:
-        """Add a `row`. `ValueError` where the table becomes too large."""
-        if len(self._values) + len(row) > MOST_NUMBERS:
-            raise Misplaced(f"line {line}", f"a table must hold at most {MOST_NUMBERS} numbers")
-        self.lines.append(line)
-        made = [cell.translate(SWAPPED) for cell in row] if self._comma else row
-        try:
-            self._values.extend([float(cell) for cell in made])
-            self._marks.extend(self._plain)
-        except ValueError:
-            for cell, number in zip(row, made, strict=True):
-                known = is_number(number)
-                self._values.append(float(number) if known else np.nan)
-                self._marks.append(0 if known else self._words.setdefault(cell, len(self._words) + 1))
-
-    def table(self, path: Path, head: _Head, notes: list[str], lost: list[int], what: str) -> Table:
-        """The table of all rows."""
-        values, marks = np.frombuffer(self._values), np.frombuffer(self._marks, dtype=np.int32)
-        return Table(
-            path,
-            head.names,
-            values.reshape(-1, self._width),
-            marks.reshape(-1, self._width),
-            list(self._words),
-            np.frombuffer(self.lines, dtype=np.int64),
-            heads=head.rows,
-            notes=notes,
-            lost=lost,
-            what=what,
-        )
+def _head(first: list[Row]) -> Head:
+    """The header in the first rows: names where the columns have numbers; of its first row, one will do."""
+    if not first:
+        raise ValueError("it is empty")
+    size = _usual(row.size for row in first)
+    whole = [row.cells for row in first if row.size == size]
+    columns = list(itertools.zip_longest(*whole[len(whole) // 2 :], fillvalue=""))
+    numeric = {place for place, cells in enumerate(columns) if _part_of_numbers(cells) >= 0.5}
+    rows, skipped, start = list[list[str]](), list[Row](), 0
+    for row in first:
+        loose = not rows or row.cells[0].lower() in TRACKER or row.cells[0].startswith("#")
+        there = [cell for place, cell in enumerate(row.cells) if place in numeric or not numeric]
+        there = [cell for cell in there if cell.lower() not in MISSING]
+        names = sum(not _is_number(cell) for cell in there)
+        if row.size != size and len(row.cells) != len(columns):
+            skipped += [] if rows else [row]
+        elif names and (names == len(there) or (loose and numeric)):
+            rows.append([row.cells[0].lstrip("#% "), *row.cells[1:]])
+            start = row.line + 1
+        elif not row.cells[0].startswith("#"):
+            start = start or row.line
+            break
+    if not rows and skipped and len(last := skipped[-1].cells) > 1 and not any(map(_is_number, last)):
+        rule = f"{len(last)} names stand above {size} numbers: decimal commas need another separator"
+        raise Misplaced(f"line {skipped[-1].line}", rule)
+    notes = [f"{len(skipped)} lines above left out"] if skipped else []
+    if not rows:
+        return Head([str(place + 1) for place in range(len(columns))], rows, start, [*notes, "no header"])
+    *above, names_row = rows
+    width = max(len(names_row), len(columns))
+    if width > MOST_COLUMNS:
+        raise Misplaced(f"line {start - 1}", f"there must be at most {MOST_COLUMNS} columns, got {width}")
+    units = [cell.strip("[]()") for cell in names_row]
+    if above and all(unit.lower() in (*UNITS, "") for unit in units):
+        both = itertools.zip_longest(above[-1], units, fillvalue="")
+        names_row = [f"{name} [{unit}]" if unit else name for name, unit in both]
+    return Head(names_row + [""] * (width - len(names_row)), rows, start, notes)

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import numpy as np
 from eel_base.command.command_line import Parser
+from eel_base.files.table import Table
 from eel_base.quantity import positive
 from eel_base.wording import shown
-from eel_gaits.sources.joint_log import JointLog, joint_log, law_of_links, read_joint_log
+from eel_gaits.sources.joint_log import JointLog, law_of_links, read_joint_log
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.body.body import Body
 from eel_model.body.links import ALONE, FLUSH, joint_drag_of
@@ -76,15 +77,24 @@ def logged_robot(path: str, options: argparse.Namespace) -> LoggedRobot:
 
 
 def _log(path: Path, options: argparse.Namespace) -> JointLog:
-    how = {"unit": options.units or "", "tail_first": options.tail_first, "clock": positive("--clock", options.clock)}
+    source: Path | Table = path
+    columns, time = options.columns, options.time
     if path.is_dir() or path.suffix in BAGS:
-        if options.columns or options.time:
+        if columns or time:
             raise ValueError("--columns and --time belong to a .csv file; joints of a bag have names")
-        time, angles, names = function_of_eel_viz("joints")(path, options.topic)
-        return joint_log(path.name, time, angles, tuple(names), **how)
-    if options.topic is not None:
+        seconds, angles, names = function_of_eel_viz("joints")(path, options.topic)
+        head = ["time [s]", *(f"{name} [rad]" for name in names)]
+        source, columns = Table(path, head, np.column_stack((seconds, angles))), f"2-{len(head)}"
+    elif options.topic is not None:
         raise ValueError("--topic belongs to a bag")
-    return read_joint_log(path, columns=options.columns, time=options.time, **how)
+    return read_joint_log(
+        source,
+        columns=columns,
+        time=time,
+        unit=options.units or "",
+        tail_first=options.tail_first,
+        clock=positive("--clock", options.clock),
+    )
 
 
 def _links(text: str | None, joints: int) -> np.ndarray:

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 from eel_base.files.input_file import reading
-from eel_base.files.table import Table
+from eel_base.files.table import UNITS, Table
 from eel_base.files.tables import read_table
 from eel_base.files.times import time_of
 from eel_base.quantity import checked_row
@@ -57,7 +57,7 @@ class JointLog(NamedTuple):
 
 
 def read_joint_log(
-    path: Path,
+    source: Path | Table,
     *,
     columns: str = "",
     time: str = "",
@@ -65,79 +65,43 @@ def read_joint_log(
     tail_first: bool = False,
     clock: float = 1.0,
 ) -> JointLog:
-    """The log in a table of text. `ValueError` names the file and what does not fit.
+    """The log in a table, or in a file of one. `ValueError` names the file and what does not fit.
 
     columns: which hold joints: numbers from 1 ("8-13"), names with commas between them, or a pattern ("*Fbck*"); "":
     those that look like it. time: the column of times. unit: rad or deg; "": as the columns' names say, else rad.
     clock: true time by that of the log.
     """
+    path = source.path if isinstance(source, Table) else source
     with reading(shown(str(path))):
-        table = read_table(path, lenient=True)
+        table = source if isinstance(source, Table) else read_table(source, lenient=True)
         chosen = table.chosen(columns, "columns") if columns else _joint_columns(table)
         times = time_of(table, time, besides=chosen, missing=True)
-        names = tuple(table.head[place] for place in chosen)
-        factors = np.array([table.factor(place, "rad") for place in chosen])
-        said = {word for word in map(table.unit, chosen) if word}
-        if unit and said and np.any(factors != (1.0 if unit == "rad" else np.radians(1.0))):
-            raise ValueError(f"its columns are in {', '.join(sorted(said))}, the units given are {unit}")
-        angles = np.stack([table.raw(place) for place in chosen], axis=1) * (1.0 if unit else factors)
-        mine = np.asarray(np.isfinite(angles).any(axis=1))
-        read = [
-            *table.notes,
-            times.about,
-            f"joints {names[0]} to {names[-1]}, {unit or ', '.join(sorted(said)) or 'rad'}",
-        ]
-        if not mine.all():
-            read.append(f"{np.sum(~mine)} rows without any of them")
-        log = joint_log(
-            path.name,
-            times.seconds[mine],
-            angles[mine],
-            names,
-            unit=unit,
-            tail_first=tail_first,
-            clock=clock,
-            lines=table.lines[mine],
-            lost=table.lost,
-        )
-        return log._replace(read=", ".join(read))
-
-
-def joint_log(
-    name: str,
-    time: np.ndarray,
-    angles: np.ndarray,
-    joints: tuple[str, ...],
-    *,
-    unit: str = "",
-    tail_first: bool = False,
-    clock: float = 1.0,
-    lines: np.ndarray | None = None,
-    lost: Sequence[int] = (),
-) -> JointLog:
-    """The checked log of `angles` (N, n), in `unit`, at `time` (N,) [s]. NaN for what is missing.
-
-    lines (N,): of the file, for messages. lost: those of rows that were left out.
-    """
-    if unit not in ("", "rad", "deg"):
-        raise ValueError(f"units of angles must be rad or deg, got {shown(unit)}")
-    time, angles, notes = _mended(time, angles, np.arange(1, len(time) + 1) if lines is None else lines, lost)
-    if len(time) < FEWEST_ROWS or len(joints) < FEWEST_JOINTS:
-        raise ValueError(
-            f"there must be {FEWEST_JOINTS} joints in {FEWEST_ROWS} rows or more, got {len(joints)} in {len(time)}"
-        )
-    time = clock * (time - time[0])
-    if unit == "deg":
-        angles = np.radians(angles)
-    elif np.max(np.abs(angles)) > LARGEST:
-        raise ValueError(f"an angle must be at most {LARGEST} rad, got {np.max(np.abs(angles)):.4g}: give --units deg")
-    _check_pace(time, angles)
-    angles, jumps = _without_jumps(time, angles)
+        joints, units = tuple(table.head[place] for place in chosen), {table.unit(place) for place in chosen} - {""}
+        factors = [table.factor(place, "rad") for place in chosen]
+        if unit not in ("", "rad", "deg"):
+            raise ValueError(f"units of angles must be rad or deg, got {shown(unit)}")
+        if unit and units and any(by != UNITS[unit][1] for by in factors):
+            raise ValueError(f"its columns are in {', '.join(sorted(units))}, the units given are {unit}")
+        angles = np.stack([table.raw(place) for place in chosen], axis=1) * (UNITS[unit][1] if unit else factors)
+        told = unit or ", ".join(sorted(units)) or "rad"
+        read = [*table.notes, times.about, f"joints {joints[0]} to {joints[-1]}, {told}"]
+        mine = np.isfinite(angles).any(axis=1)
+        if others := int(np.sum(~mine)):
+            read.append(f"{others} rows without any of them")
+        seconds, angles, notes = _mended(times.seconds[mine], angles[mine], table.lines[mine], table.lost)
+        if len(seconds) < FEWEST_ROWS or len(joints) < FEWEST_JOINTS:
+            rule = f"{FEWEST_JOINTS} joints in {FEWEST_ROWS} rows or more"
+            raise ValueError(f"there must be {rule}, got {len(joints)} in {len(seconds)}")
+        if (most := np.max(np.abs(angles))) > LARGEST and told == "rad":
+            raise ValueError(f"an angle must be at most {LARGEST} rad, got {most:.4g}: give --units deg")
+        seconds = clock * (seconds - seconds[0])
+        _check_pace(seconds, angles)
+        angles, jumps = _without_jumps(seconds, angles)
     if jumps:
         notes.append(f"{jumps} of {angles.size} readings have jumped: replaced by their neighbours")
     if tail_first:
         angles, joints = angles[:, ::-1], joints[::-1]
-    return JointLog(name, time, angles, joints, tuple(notes))
+    return JointLog(path.name, seconds, angles, joints, tuple(notes), ", ".join(read))
 
 
 def _check_pace(time: np.ndarray, angles: np.ndarray) -> None:
@@ -197,10 +161,11 @@ def _joint_columns(table: Table) -> list[int]:
 def _mended(
     time: np.ndarray, angles: np.ndarray, lines: np.ndarray, lost: Sequence[int]
 ) -> tuple[np.ndarray, np.ndarray, list[str]]:
-    """Times that rise, and their angles, and what was done. `ValueError` where that would leave out much."""
-    whole, notes = np.isfinite(time) & np.isfinite(angles).all(axis=1), list[str]()
-    if lost:
-        notes.append(f"{len(lost)} rows left out, the first in line {lost[0]}: they have another number of cells")
+    """Times (N,) that rise, their angles, and what was done. `ValueError` where that would leave out much.
+
+    A row whose stamp alone is bad is left out; where a clock is set back and the angles go on, so does the time.
+    """
+    notes, count = list[str](), len(time) + len(lost)
 
     def keep(good: np.ndarray, why: str) -> None:
         nonlocal time, angles, lines
@@ -208,43 +173,28 @@ def _mended(
             notes.append(f"{np.sum(~good)} rows left out, the first in line {lines[~good][0]}: {why}")
             time, angles, lines = time[good], angles[good], lines[good]
 
-    keep(whole, "a time or an angle is missing or no number")
-    again = np.concatenate(([False], (np.diff(time) == 0.0) & np.all(np.diff(angles, axis=0) == 0.0, axis=1)))
-    count = len(time) - np.sum(again) + len(lost) + np.sum(~whole)
-    keep(~again, "they stand there twice")
-    good, time, sets = _rising(time.copy(), angles, lines)
-    notes += sets
-    keep(good, "time does not rise")
-    if count - len(time) > MOST_LOST * count:
+    if lost:
+        notes.append(f"{len(lost)} rows left out, the first in line {lost[0]}: they have another number of cells")
+    keep(np.isfinite(time) & np.isfinite(angles).all(axis=1), "a time or an angle is missing or no number")
+    twice = (np.diff(time) == 0.0) & np.all(np.diff(angles, axis=0) == 0.0, axis=1)
+    keep(np.append(True, ~twice)[: len(time)], "they stand there twice")
+    rises = np.diff(time)[np.diff(time) > 0.0]
+    step = float(np.median(rises)) if len(rises) else 0.0
+    before, after = np.append(-np.inf, time[:-1]), np.append(time[1:], np.inf)
+    alone = (time <= before) | (time > after)
+    keep(~(alone & ((after - before > SINGLE * step) | (time == before))), "the time does not rise there alone")
+    if len(time) < count - np.sum(twice) - MOST_LOST * count:
         raise ValueError(f"only {len(time)} of its {count} rows can be read: {'; '.join(notes)}")
-    return time, angles, notes
-
-
-def _rising(time: np.ndarray, angles: np.ndarray, lines: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[str]]:
-    """Rows to keep, so that `time` rises; the time, that goes on where the clock was set back; and notes of that."""
-    good, notes = np.ones(len(time), dtype=bool), list[str]()
-    steps = np.diff(time)
-    step = float(np.median(steps[steps > 0.0])) if np.any(steps > 0.0) else 0.0
-    most = np.percentile(np.abs(np.diff(angles, axis=0)), 99.0) if len(steps) else 0.0
-    before, last = -1, 0  # the last two rows that are kept
-    for row in range(1, len(time)):
-        if time[row] > time[last]:
-            before, last = last, row
-            continue
-        spike = time[row] - time[before] if before >= 0 else 2.0 * step  # without the row `last`
-        dip = time[row + 1] - time[last] if row + 1 < len(time) else 2.0 * step  # without this one
-        if spike > SINGLE * step and abs(spike - 2.0 * step) < abs(dip - 2.0 * step):
-            good[last], last = False, row
-        elif dip > SINGLE * step or time[row] == time[last]:
-            good[row] = False
-        else:
-            back = time[last] - time[row]
-            if np.max(np.abs(angles[row] - angles[last])) > SEAM * most + FINEST or len(notes) == MOST_SETS:
-                raise ValueError(f"its clock is set back by {back:.4g} s in line {lines[row]}: two logs in one file?")
-            time[row:] += back + step
-            notes.append(f"the clock is set back by {back:.4g} s in line {lines[row]}: time goes on by a step there")
-            before, last = last, row
-    return good, time, notes
+    moves = np.max(np.abs(np.diff(angles, axis=0)), axis=1, initial=0.0)
+    back = np.flatnonzero(np.diff(time) <= 0.0)
+    for place in back:
+        told = f"the clock is set back by {time[place] - time[place + 1]:.4g} s in line {lines[place + 1]}"
+        if moves[place] > SEAM * np.percentile(moves, 99.0) + FINEST or len(back) > MOST_SETS:
+            raise ValueError(f"{told}: two logs in one file?")
+        notes.append(f"{told}: time goes on by a step there")
+    steps = np.diff(time, prepend=time[:1])
+    steps[back + 1] = step
+    return (time[0] + np.cumsum(steps) if len(back) else time), angles, notes
 
 
 def _without_jumps(time: np.ndarray, angles: np.ndarray) -> tuple[np.ndarray, int]:
