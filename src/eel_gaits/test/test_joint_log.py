@@ -59,6 +59,71 @@ def test_rows_that_do_not_fit_and_readings_that_jump_are_told(tmp_path):
     assert np.allclose(log.angles, np.delete(ANGLES, 59, axis=0), atol=2e-3)
 
 
+STAMPS = {
+    "a clock set back": (np.where(TIME < 3.0, TIME, TIME - 2.5), 0, "the clock is set back by 2.48 s in line 152"),
+    "a clock that wraps": (TIME % 3.0, 0, "the clock is set back by 2.98 s in line 152"),
+    "one stamp ahead": (np.where(np.arange(300) == 150, 1e9, TIME), 1, "1 rows left out, the first in line 152"),
+    "one stamp behind": (np.where(np.arange(300) == 150, 0.0, TIME), 1, "1 rows left out, the first in line 152"),
+    "one that is missing": (
+        np.where(np.arange(300) == 150, np.nan, TIME),
+        1,
+        "line 152: a time or an angle is missing",
+    ),
+    "one that comes twice": (np.where(np.arange(300) == 150, 2.98, TIME), 1, "1 rows left out, the first in line 152"),
+}
+
+
+@pytest.mark.parametrize("what", STAMPS)
+def test_bad_stamps_are_mended_and_told(tmp_path, what):
+    time, lost, words = STAMPS[what]
+    log = read_joint_log(write(tmp_path / "log.csv", ["time", *(f"q{j}" for j in range(5))], (time, ANGLES)))
+    kept = np.delete(np.arange(300), 150) if lost else np.arange(300)
+    assert np.allclose(log.time, TIME[kept]) and np.allclose(log.angles, ANGLES[kept], atol=2e-6)
+    assert len(log.notes) == 1 and words in log.notes[0]
+
+
+@pytest.mark.parametrize(
+    ("time", "angles", "words"),
+    [
+        (
+            np.where(TIME < 3.0, TIME, TIME - 3.0),
+            np.where(TIME[:, None] < 3.0, 1.0, -1.0) * ANGLES,
+            "two logs in one file",
+        ),
+        (np.floor(5.0 * TIME) / 5.0, ANGLES, "only 30 of its 300 rows can be read: 270 rows left out"),
+        (np.where(TIME < 5.0, TIME, np.nan), ANGLES, "only 250 of its 300 rows can be read"),
+        (1e3 * TIME, ANGLES, r"rad/s \(RMS\) in steps of 20 s: time in s\?.*--clock 0.001"),
+        (1e-3 * TIME, ANGLES, r"rad/s \(RMS\) in steps of 2e-05 s: time in s\?.*--clock 1000"),
+    ],
+)
+def test_half_a_log_or_another_clock_is_refused(tmp_path, time, angles, words):
+    path = write(tmp_path / "log.csv", ["time", *(f"q{j}" for j in range(5))], (time, angles + 0.1 * TIME[:, None]))
+    with pytest.raises(ValueError, match=words):
+        read_joint_log(path)
+    if "--clock" in words:
+        assert read_joint_log(path, clock=float(words.split()[-1])).time[-1] == pytest.approx(TIME[-1], rel=1e-3)
+
+
+def test_joints_of_one_topic_are_found_among_others(tmp_path):
+    head = [
+        "__time",
+        *(f"/{topic}/joint_{j}/position" for topic in ("joint_commands", "joint_states") for j in range(5)),
+    ]
+    rows = []
+    for time, row in zip(TIME, ANGLES, strict=True):
+        cells = ",".join(f"{value:.6f}" for value in row)
+        rows += [f"{1.7e9 + time:.3f},{cells},,,,,", f"{1.7e9 + time + 0.003:.3f},,,,,,{cells}"]
+    path = tmp_path / "log.csv"
+    path.write_text("\n".join([",".join(head), *rows]))
+    for columns in ("", "*states*", "7-11"):
+        log = read_joint_log(path, columns=columns)
+        assert np.allclose(log.angles, ANGLES, atol=2e-6) and np.allclose(log.time, TIME, atol=2e-6)
+        assert "joints /joint_states/joint_0/position to" in log.read and "300 rows without any of them" in log.read
+    path.write_text(path.read_text().replace("commands", "others"))
+    with pytest.raises(ValueError, match=r"may be any of .*give --columns '/joint_others/joint_\*/position'"):
+        read_joint_log(path)
+
+
 def test_the_law_of_links_keeps_each_angle_where_its_joint_lies(tmp_path):
     log = read_joint_log(write(tmp_path / "log.csv", ["time", *(f"q{j}" for j in range(5))], (TIME, ANGLES)))
     law = law_of_links(log, PLACES, 1.0)

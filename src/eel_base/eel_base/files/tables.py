@@ -226,7 +226,7 @@ def _head(first: list[Row]) -> Head:
     numeric = {place for place, cells in enumerate(columns) if _part_of_numbers(cells) >= 0.5}
     rows, skipped, start = list[list[str]](), list[Row](), 0
     for row in first:
-        loose = not rows or row.cells[0].lower() in TRACKER or row.cells[0].startswith("#")
+        loose = not rows or row.cells[0].lower() in TRACKER
         there = [cell for place, cell in enumerate(row.cells) if place in numeric or not numeric]
         there = [cell for cell in there if cell.lower() not in MISSING]
         names = sum(not _is_number(cell) for cell in there)
@@ -239,8 +239,8 @@ def _head(first: list[Row]) -> Head:
             start = start or row.line
             break
     if not rows and skipped and len(last := skipped[-1].cells) > 1 and not any(map(_is_number, last)):
-        rule = f"{len(last)} names stand above {size} numbers: decimal commas need another separator"
-        raise Misplaced(f"line {skipped[-1].line}", rule)
+        hint = ": decimal commas need another separator" if size > len(last) else ""
+        raise Misplaced(f"line {skipped[-1].line}", f"{len(last)} names stand above {size} numbers{hint}")
     notes = [f"{len(skipped)} lines above left out"] if skipped else []
     if not rows:
         return Head([str(place + 1) for place in range(len(columns))], rows, start, [*notes, "no header"])

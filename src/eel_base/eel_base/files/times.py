@@ -16,9 +16,9 @@ import numpy as np
 from eel_base.files.table import UNITS, Table, split_name
 from eel_base.wording import shown
 
-CALLED = re.compile(r".*(?:time|date|stamp|zeit|temps|tiempo)(?!s).*|(?:.*[_./])?(?:t|ts)")
+CALLED = re.compile(r".*(?:time|date|stamp|clock|elapsed|zeit|temps|tiempo)(?!s).*|(?:.*[_./])?(?:t|ts)")
 EPOCH = 9.5e8, 4.1e9  # s since 1970: the years 2000 to 2099
-PARTS = {1.0: "s", 1e-3: "ms", 1e-6: "us", 1e-9: "ns"}
+PARTS = {1.0: "s", 1e-3: "ms", 1e-6: "us", 1e-9: "ns"}  # units of times since 1970
 DAY = 86400.0  # s
 RISING, MOVING = 0.95, 0.5  # parts of a column's steps that do not fall, and that rise, if it is a time
 
@@ -46,7 +46,7 @@ def time_of(table: Table, column: str = "", besides: Sequence[int] = (), *, miss
     seconds = factor * (values - (values[np.isfinite(values)][0] if dates else 0.0))
     if factor == 1.0 and (part := _part_of(table, place, values)) is not None:
         seconds, told = seconds + part[1], f"{told}, and {table.label(part[0])}"
-    plain = not column and split_name(table.head[place])[0] in ("time", "t") and told == PARTS[1.0]
+    plain = not column and split_name(table.head[place])[0] in ("time", "t") and told == "s"
     return Time(seconds, f"time from {table.label(place)}, {told}", plain)
 
 
@@ -101,8 +101,8 @@ def _numbers(table: Table, place: int) -> tuple[np.ndarray, float, str]:
         rule = "must be a time before the year 2100 in s, or the unit of its name"
         raise table.error(f"{table.label(place)} {rule}, got {size:g} {unit or 's'}", 0)
     if size * factor < EPOCH[0]:
-        return values, factor, PARTS[factor]
-    return np.where(values == 0.0, np.nan, values), factor, f"{PARTS[factor]} since 1970"  # 0: not set
+        return values, factor, unit or "s"
+    return np.where(values == 0.0, np.nan, values), factor, f"{unit or PARTS[factor]} since 1970"  # 0: not set
 
 
 def _stamps(table: Table, place: int) -> tuple[np.ndarray, float, str]:

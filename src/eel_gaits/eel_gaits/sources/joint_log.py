@@ -29,8 +29,10 @@ from eel_gaits.sources.sampled_law import SampledLaw
 from eel_gaits.sources.smoothing import smoothed_in_time
 
 KNOWN = (  # what numbered columns of joints are called, the best first; # stands for the number
-    r"yaw_?#", r".*(?:pos|angle|theta|phi|fbck|encoder|present|actual|measured).*", r".*(?:joint|servo|motor|\bq_?#).*",
-)  # fmt: skip
+    r"yaw[ _.]?#.*",
+    r".*(?:pos|angle|winkel|theta|phi|fbck|encoder|present|actual|measured).*",
+    r".*(?:joint|gelenk|servo|motor|module|link|\b[jq]_?#).*",
+)
 OTHER = re.compile(  # columns of joints that are no angles, or not measured
     r"vel|speed|rate|effort|torque|force|curr|volt|temp|load|pwm|goal|cmd|command|desired|target|ref|set_?point|err|acc"
 )

@@ -26,6 +26,7 @@ from typing import Any
 
 import numpy as np
 from eel_base.files.input_file import Misplaced
+from eel_base.files.tables import is_table
 from eel_base.files.yaml_tree import check_keys, fail, read_yaml, tried
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
@@ -191,7 +192,7 @@ def _moment(entries: Mapping[str, Any]) -> Law:
 def _body(given: Any, folder: Path) -> Body:
     if not isinstance(given, str):
         raise ValueError(f"must be a name or a file, got {shown(given)}")
-    if Path(given).suffix not in (".csv", ".npz"):
+    if not is_table(given, ".npz"):
         return Body.named(given)
     return Body.from_file(folder / given)
 
