@@ -57,6 +57,7 @@ def main(options: argparse.Namespace) -> None:
     beats = [beat_from(file, options) for file in options.files]
     for beat in beats:
         print(f"{beat.film.name}: points {', '.join(beat.film.names)}")
+        print(*(f"{beat.film.name}, doubtful: {text}\n" for text in beat.doubts), sep="", end="")
     table, draw, size = (_lamprey if options.swimmer == "lamprey" else _robot)(beats, options)
     print(table.text())
     write_files(outs, table.write_csv, draw, size)

@@ -24,6 +24,7 @@ from typing import Any
 
 import numpy as np
 
+from eel_gaits.film.doubts import doubts_of
 from eel_gaits.film.film import Film, filled
 from eel_gaits.film.kinematics import Kinematics, harmonics, kinematics
 from eel_gaits.laws.law import Law
@@ -78,6 +79,11 @@ class Beat:
         size = np.max(np.hypot(self.curvature[1], self.curvature[2]))
         return float(np.mean(jackknife([each.curvature[1:3] for each in self.others])) / size)
 
+    @property
+    def doubts(self) -> list[str]:
+        """What in the film no body does, in sentences."""
+        return doubts_of(self.film, self.period, self.measured.stride)
+
     def law(self, length: float, name: str | None = None) -> Law:
         """The beat for ever, on a body of `length` [m]: bends by the same angles, so curvature goes like 1 / length."""
         ratio, count = self.film.length / length, OF_LAW if self.rigid else self.knots
@@ -101,6 +107,7 @@ class Beat:
             *([("read", film.read)] if film.read else []),
             *([("points", ", ".join(film.names))] if film.names else []),
             *(("repaired", note) for note in film.notes),
+            *(("doubtful", text) for text in self.doubts),
             ("beat", f"period {self.period:.4g} +- {float(periods):.2g} s (95 %), {kept}"),
             ("along the body", f"splines through {self.knots} knots{rigid}"),
             ("fit", f"{self.share:.1%} of the variance, {self.predicted:.1%} predicted from the other beats; residual "
@@ -208,6 +215,7 @@ class _Fit:
             raise ValueError(
                 f"{self.film.name}: the motion does not repeat: at its best period, {self.period:.3g} s, the other "
                 f"beats predict {max(predicted, 0.0):.0%} of its variance. Motions that are not steady: --file"
+                + "".join(f"; {text}" for text in doubts_of(self.film, self.period)[:1])
             )
         rests = [self.beats != beat for beat in range(self.beats[-1] + 1)]
         others = [self._beat(order, knots, self._refined(period, order, rest), rest, predicted) for rest in rests]
@@ -289,7 +297,8 @@ class _Fit:
 
     def _missed(self, period: float, order: int, frames: np.ndarray) -> float:
         design, values = self._in_time(period, order)[frames], self.angles[frames]
-        return float(np.sum((design @ np.linalg.lstsq(design, values, rcond=None)[0] - values) ** 2))
+        along = np.linalg.qr(design)[0]
+        return float(np.sum((values - along @ (along.T @ values)) ** 2))
 
     def _in_time(self, period: float, order: int) -> np.ndarray:
         """1, cos and sin (N, 1 + 2 order) from the middle of the film on, where the phase is least uncertain."""
@@ -311,7 +320,8 @@ class _Fit:
 
 def _solved(design: np.ndarray, values: np.ndarray, along: np.ndarray) -> np.ndarray:
     """The coefficients C (2 H + 1, P) with which design C along^T comes nearest to the `values`."""
-    rows = np.linalg.lstsq(design, values, rcond=None)[0]
+    basis, root = np.linalg.qr(design)  # a small matrix is left, which takes no threads
+    rows = np.linalg.lstsq(root, basis.T @ values, rcond=None)[0]
     return np.asarray(np.linalg.lstsq(along, rows.T, rcond=1.0 / CONDITION)[0].T)
 
 

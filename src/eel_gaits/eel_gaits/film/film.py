@@ -7,6 +7,8 @@ swimmer need no repair: the body's bending does not contain them. Points that do
 are refused.
 """
 
+import itertools
+import math
 import os
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
@@ -21,7 +23,7 @@ from eel_base.wording import shown
 from eel_gaits.film.animals import of_one
 from eel_gaits.film.forms import UNITS, Tracks, read_tracks
 from eel_gaits.film.kinematics import arc_of
-from eel_gaits.sources.order import check_order
+from eel_gaits.sources.order import FOLD, check_order
 
 FEWEST_POINTS, FEWEST_FRAMES = 5, 16
 MISSING = 0.25  # part of a frame's points that may be missing
@@ -139,10 +141,13 @@ def _likely(points: np.ndarray, scores: np.ndarray, names: list[str], likely: fl
     low = (scores < likely) & np.isfinite(points).all(axis=2)
     if not np.any(low):
         return points, []
-    of = ", ".join(name for name, any_low in zip(names, low.any(axis=0), strict=True) if any_low)
-    return np.where(low[..., None], np.nan, points), [
-        f"{np.sum(low)} of {low.size} points have a likelihood below {likely:g} and count as missing: {of}"
-    ]
+    what = f"have a likelihood below {likely:g} and count as missing"
+    return np.where(low[..., None], np.nan, points), [f"{np.sum(low)} of {low.size} points {what}: {_of(names, low)}"]
+
+
+def _of(names: list[str], which: np.ndarray) -> str:
+    """The `names` (n,) of points that occur in `which` (N, n)."""
+    return ", ".join(names[place] for place in np.flatnonzero(which.any(axis=0)))
 
 
 def _repaired(name: str, time: np.ndarray, points: np.ndarray, names: list[str], notes: list[str], parts: bool) -> Film:
@@ -170,11 +175,13 @@ def _repaired(name: str, time: np.ndarray, points: np.ndarray, names: list[str],
         raise ValueError(f"there must be {rule}, got {len(apart)} in {len(time)}{in_brackets()}")
     check_order(points, names, apart, parts)
     points, names = points[:, apart], [names[place] for place in apart]
+    points, swapped = _unswapped(points, names)
+    notes += swapped
     jumped = _jumps(points)
     points = np.where(jumped[..., None], np.nan, points)
     missing = ~np.all(np.isfinite(points), axis=2)
     if np.any(jumped):
-        notes.append(f"{np.sum(jumped)} points have jumped along the body and count as missing")
+        notes.append(f"{np.sum(jumped)} points have jumped along the body and count as missing: {_of(names, jumped)}")
     keep(~(missing[:, 0] | missing[:, -1]), "an end of the body is missing")
     keep(np.mean(~np.all(np.isfinite(points), axis=2), axis=1) <= MISSING, "more than a quarter of the points missing")
     if len(time) < FEWEST_FRAMES:
@@ -182,29 +189,69 @@ def _repaired(name: str, time: np.ndarray, points: np.ndarray, names: list[str],
     missing = ~np.all(np.isfinite(points), axis=2)
     if np.any(missing):
         notes.append(f"{np.sum(missing)} of {missing.size} points filled in")
-        steps = np.nanmedian(np.linalg.norm(np.diff(points, axis=1), axis=2), axis=0)
+        steps = _usual(np.linalg.norm(np.diff(points, axis=1), axis=2))[0]
+        steps = np.where(np.isfinite(steps), steps, np.nanmedian(steps))  # of neighbours that are never seen together
         points = filled(points, missing, np.concatenate(([0.0], np.cumsum(steps))))
     return Film(name, time, points, tuple(notes), tuple(names), missing=missing)
 
 
 def _apart(points: np.ndarray) -> list[int]:
     """The places without those that lie on the one ahead: two marks that were mixed up have no direction."""
-    usual = float(np.nanmedian(np.nanmedian(np.linalg.norm(np.diff(points, axis=1), axis=2), axis=0)))
+    usual = float(np.nanmedian(_usual(np.linalg.norm(np.diff(points, axis=1), axis=2))[0]))
     kept = [0]
     for place in range(1, points.shape[1]):
-        if np.nanmedian(np.linalg.norm(points[:, place] - points[:, kept[-1]], axis=1)) > CLOSE * usual:
+        if not _usual(np.linalg.norm(points[:, [place]] - points[:, [kept[-1]]], axis=2))[0] <= CLOSE * usual:
             kept.append(place)
     return kept
+
+
+def _unswapped(points: np.ndarray, names: list[str]) -> tuple[np.ndarray, list[str]]:
+    """The points with those exchanged whose exchange makes all distances of a frame usual and takes its folds away; and
+    notes of these."""
+    steps = np.linalg.norm(np.diff(points, axis=1), axis=2)
+    usual, spread = _usual(steps)
+    frames, notes = np.flatnonzero(_off(steps, usual, spread).any(axis=1) & _folded(points)), []
+    for one, other in itertools.combinations(range(points.shape[1]), 2) if len(frames) else ():
+        tried = points[frames]
+        tried[:, [one, other]] = tried[:, [other, one]]
+        good = ~_off(np.linalg.norm(np.diff(tried, axis=1), axis=2), usual, spread).any(axis=1) & ~_folded(tried)
+        if np.any(good):
+            notes.append(f"{names[one]} and {names[other]} were exchanged in {np.sum(good)} frames: put back")
+            points = points.copy()
+            points[frames[good]] = tried[good]
+            frames = frames[~good]
+    return points, notes
+
+
+def _folded(points: np.ndarray) -> np.ndarray:
+    """In which frames (N,) the line through the points (N, n, 2) folds back at one."""
+    steps = np.diff(points, axis=1)
+    along = np.sum(steps[:, 1:] * steps[:, :-1], axis=2)
+    with np.errstate(invalid="ignore"):
+        turned = along < math.cos(FOLD) * np.prod(
+            [np.linalg.norm(each, axis=2) for each in (steps[:, 1:], steps[:, :-1])], axis=0
+        )
+    return np.asarray(turned.any(axis=1))
+
+
+def _usual(steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The median (n - 1,) of distances (N, n - 1), and their robust spread; NaN for those that are never known."""
+    found, known = np.full((2, steps.shape[1]), np.nan), np.isfinite(steps).any(axis=0)
+    found[0, known] = np.nanmedian(steps[:, known], axis=0)
+    found[1, known] = 1.4826 * np.nanmedian(np.abs(steps - found[0])[:, known], axis=0)
+    return found[0], found[1]
+
+
+def _off(steps: np.ndarray, usual: np.ndarray, spread: np.ndarray) -> np.ndarray:
+    """Which distances (N, n - 1) are far from the usual (n - 1,); not those that are not known."""
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.abs(steps - usual) > np.maximum(JUMP * usual, SPREADS * spread))
 
 
 def _jumps(points: np.ndarray) -> np.ndarray:
     """(N, n), whether both distances of a point to its neighbours, or the one of an end, are far from the usual."""
     steps = np.linalg.norm(np.diff(points, axis=1), axis=2)
-    usual = np.nanmedian(steps, axis=0)
-    spread = 1.4826 * np.nanmedian(np.abs(steps - usual), axis=0)
-    with np.errstate(invalid="ignore"):
-        off = np.abs(steps - usual) > np.maximum(JUMP * usual, SPREADS * spread)
-    found = np.zeros(points.shape[:2], dtype=bool)
+    off, found = _off(steps, *_usual(steps)), np.zeros(points.shape[:2], dtype=bool)
     found[:, 1:-1] = off[:, 1:] & off[:, :-1]
     found[:, 0] = off[:, 0] & ~found[:, 1]
     found[:, -1] = off[:, -1] & ~found[:, -2]

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Films that lie: what tracked points do that no body does.
+
+A body does not stretch. So the distance of two neighbours must not follow the beat, as where a part of the points is
+seen moved sideways as a whole, nor change slowly, as where a tracker slips along the body. Of each distance the part
+counts that means over whole beats and the first harmonic of the beat explain, less what all have in common (a camera
+that comes nearer): noise has little of it, and the chords of a bent body change at twice the beat.
+
+Points that are moved as a whole where the body hardly turns show as a segment that is askew between parallel ones.
+
+A body that is bent in the mean swims in a curve: in this model it turns by 1.07 to 2.5 times its bend in a length of
+way, on three bodies at bends of 0.1 to 1.2 rad.
+"""
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from eel_gaits.film.film import Film
+from eel_gaits.film.kinematics import harmonics
+from eel_gaits.sources.order import FOLD
+
+STRETCH, OTHERS, SURE = 0.08, 3.0, 4.0  # RMS part of a distance, times that of steady ones, and standard errors
+STEADY, PARTS = 0.25, 8  # quantile of the distances that count as steady; most parts of a film with a mean each
+ASKEW, PARALLEL = 0.25, 0.5  # rad, of a segment in the mean; part of it by which those beside it may differ
+FOLDED = 0.1  # part of the frames in which a point may fold the line back
+BENT, TURNED, STILL = 0.18, 0.5, 0.1  # rad, of a mean bend; part of it that the path must turn a length; L a beat
+WINDOW, PLACES = 0.25, 61  # of the length, over which the body's angle is averaged, and where along it
+
+
+def doubts_of(film: Film, period: float, stride: float | None = None) -> list[str]:
+    """What a `film` whose beat has this `period` [s] shows that no body does, in sentences.
+
+    stride: way in a beat, by the length; without it the mean bend is not looked at.
+    """
+    segments = np.diff(film.points, axis=1)
+    angles = np.unwrap(np.arctan2(segments[..., 1], segments[..., 0]), axis=1)
+    whole = np.average(angles, axis=1, weights=np.diff(film.arc))
+    beats = (film.time - film.time[0]) / period
+    number = np.unique(np.floor(beats + 1e-6), return_inverse=True)[1]
+    bends = np.array([(angles - whole[:, None])[number == beat].mean(axis=0) for beat in range(number.max() + 1)])
+    stretched, odd = _stretched(film, beats)
+    found = stretched + _folding(film, angles) + _askew(film, bends, odd)
+    return found + (_bent(film, bends, np.unwrap(whole), beats, stride) if stride is not None else [])
+
+
+def _stretched(film: Film, beats: np.ndarray) -> tuple[list[str], np.ndarray]:
+    """Which points are moved along the body or aside, and which segments (n - 1,) tell so."""
+    part, length = _stretches(film, beats)
+    size = np.sqrt(np.mean(part**2, axis=0))
+    odd = (size > STRETCH) & (size * length > OTHERS * np.quantile(size * length, STEADY))
+    found, place = [], 0
+    while place < len(odd):
+        end = place + 1
+        while odd[place] and end < len(odd) and odd[end] and np.mean(part[:, end - 1] * part[:, end]) < 0.0:
+            end += 1
+        if odd[place]:
+            slipped = f"{_names(film, range(place + 1, end))} slipped along the body"
+            who = slipped if end > place + 1 else _moved(film, place)
+            way = f"{math.sqrt(8.0) * size[place]:.0%}"  # from end to end of a sine
+            pair = _names(film, (place, place + 1), " to ")
+            found.append(f"{who}: the distance from {pair} changes by {way}, and bodies do not stretch")
+        place = end
+    return found, odd
+
+
+def _stretches(film: Film, beats: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Part (N, n - 1) by which each distance of neighbours is longer or shorter, 0 where that is not sure, and the mean
+    distances (n - 1,) [m]."""
+    steps = np.linalg.norm(np.diff(film.points, axis=1), axis=2)
+    seen = np.ones(steps.shape, dtype=bool)
+    if film.missing is not None:
+        seen = ~(film.missing[:, 1:] | film.missing[:, :-1])
+    count = int(np.clip(beats[-1], 2.0, PARTS))
+    parts = np.unique(np.minimum(count * beats // beats[-1], count - 1), return_inverse=True)[1]
+    design = np.column_stack((np.eye(parts.max() + 1)[parts], *harmonics(2.0 * math.pi * beats, 1)))
+    mean, found = np.ones(steps.shape[1]), np.zeros(steps.shape)
+    errors = np.full(steps.shape[1], np.inf)
+    for place, here in enumerate(seen.T):
+        if np.sum(here) > 2 * design.shape[1]:
+            mean[place] = steps[here, place].mean()
+            fitted = np.linalg.lstsq(design[here], steps[here, place] / mean[place] - 1.0, rcond=None)[0]
+            found[:, place] = design @ fitted
+            rest = steps[here, place] / mean[place] - 1.0 - found[here, place]
+            kept = np.clip(np.mean(rest[1:] * rest[:-1]) / max(np.mean(rest**2), 1e-300), 0.0, 0.98)
+            free = max(len(rest) * (1.0 - kept) / (1.0 + kept), design.shape[1])  # errors last for several frames
+            errors[place] = np.std(rest) * math.sqrt((design.shape[1] - 1) / free)
+    found -= np.median(found, axis=1, keepdims=True)
+    return np.where(np.sqrt(np.mean(found**2, axis=0)) > SURE * errors, found, 0.0), mean
+
+
+def _folding(film: Film, angles: np.ndarray) -> list[str]:
+    """Which points fold the line back in some frames; angles (N, n - 1) [rad]: of the segments."""
+    often = np.sum(np.abs(np.diff(angles, axis=1)) > FOLD, axis=0)
+    places = np.flatnonzero(often > FOLDED * len(angles)) + 1
+    if not len(places):
+        return []
+    return [f"{_names(film, places)} fold the line back in {often.max()} of {len(angles)} frames: exchanged?"]
+
+
+def _askew(film: Film, bends: np.ndarray, known: np.ndarray) -> list[str]:
+    """Which points stand aside by their mean angles `bends` (B, n - 1) [rad] in each beat; not the segments `known`."""
+    aside = bends[:, 1:-1] - 0.5 * (bends[:, 2:] + bends[:, :-2])
+    mean, error = np.abs(aside.mean(axis=0)), aside.std(axis=0) / math.sqrt(len(bends))
+    odd = (mean > np.maximum(ASKEW, SURE * error)) & ~known[1:-1]
+    odd &= np.abs((bends[:, 2:] - bends[:, :-2]).mean(axis=0)) < PARALLEL * mean
+    return [
+        f"{_moved(film, place + 1)}: the body is askew by {mean[place]:.2f} rad from "
+        f"{_names(film, (place + 1, place + 2), ' to ')} alone"
+        for place in np.flatnonzero(odd).tolist()
+    ]
+
+
+def _bent(film: Film, bends: np.ndarray, whole: np.ndarray, beats: np.ndarray, stride: float) -> list[str]:
+    """Whether the body is bent in the mean, by `bends` (B, n - 1) [rad], and its angle `whole` (N,) hardly turns."""
+    ways = np.insert(np.cumsum(bends * np.diff(film.arc), axis=1), 0, 0.0, axis=1)
+    starts, width = np.linspace(0.0, (1.0 - WINDOW) * film.length, PLACES), WINDOW * film.length
+    angles = (
+        np.array([np.interp(starts + width, film.arc, row) - np.interp(starts, film.arc, row) for row in ways]) / width
+    )
+    ends = sorted((int(np.argmin(angles.mean(axis=0))), int(np.argmax(angles.mean(axis=0)))))
+    each = np.diff(angles[:, ends], axis=1)
+    size, error = abs(float(each.mean())), float(each.std()) / math.sqrt(len(each))
+    design = np.column_stack((np.ones_like(beats), beats, *harmonics(2.0 * math.pi * beats, 1)))
+    turn = abs(float(np.linalg.lstsq(design, whole, rcond=None)[0][1]))  # rad in a beat
+    least = size * max(stride, STILL)
+    if size <= max(BENT, SURE * error) or turn >= TURNED * least:
+        return []
+    points = [int(np.argmin(np.abs(film.arc - starts[place] - 0.5 * width))) for place in ends]
+    return [
+        f"the body is bent by {size:.2f} rad in the mean from {_names(film, points, ' to ')}, yet turns by {turn:.2g} "
+        f"rad in a beat, where such a bend gives {least:.2g} or more: points moved aside?"
+    ]
+
+
+def _moved(film: Film, place: int) -> str:
+    """That the points behind a `place` and those up to it are moved."""
+    ahead, behind = range(place + 1), range(place + 1, film.points.shape[1])
+    return f"{_names(film, behind)} moved as a whole against {_names(film, ahead)}"
+
+
+def _names(film: Film, places: Iterable[int], between: str = ", ") -> str:
+    return between.join(film.names[place] if film.names else str(place + 1) for place in places)
