@@ -143,6 +143,8 @@ def managed(threshold, active_at, duration=0.6, **parameters):
 
     def publish(snapshot, nanoseconds):
         time, joints = 1e-9 * nanoseconds, snapshot.joints
+        if time == 0.0:  # repeated at the start
+            angles.clear()
         angles.append(joints["joint_angle"].copy())
         for name, own in system.joints.items():
             for each, measured in zip(("position", "velocity", "effort"), ("angle", "rate", "torque"), strict=True):

@@ -389,3 +389,61 @@ def test_a_command_that_fits_no_more_when_it_acts_is_told_and_left_out():
     run.run()
     assert run.time == 0.05
     assert [text for level, text in log.lines if level == "error"] == ["joint command refused: joint joint_1 has gone"]
+
+
+def test_a_run_begins_once_the_publishers_are_there_that_wait_for_names(monkeypatch):
+    """However long that takes; then it gives timers half a second to see the clock at 0, and waits for messages."""
+    time, log, begun = MadeUpTime(monkeypatch), Log(), []
+    monkeypatch.setattr("eel_dynamics.ros.loop.awaited.wall", SimpleNamespace(monotonic=lambda: time.now))
+    values = {"real_time_factor": 0.0, "duration": 0.05, "subscriber_timeout": 2.0}
+    values["wait_for"] = ("joint_commands/joint_2 0.02", "curvature_law")
+    simulation = Simulation(accuracy=1e-2, robot=Robot.named("eight_servos"))
+
+    def publish(snapshot, nanoseconds):
+        if time.now > 160.0:
+            run.inputs.awaited.offered.add("joint_commands")
+        if time.now > 150.0 and not begun:
+            begun.append(time.now)
+            run.inputs.awaited.offered.add("curvature_law")
+            run.take_law(straight(), 0.0)
+        if nanoseconds == 20_000_000:
+            begun.append(time.now)
+            run.take_command(run.inputs.joints, joint_command(0.02, joint_2=0.1))
+
+    report = Report(log, now=lambda: time.now)
+    run = run_loop(simulation, fake_publishers(publish), report, time, **values)
+    run.inputs.awaited.offered = set()
+    run.run()
+    assert begun == pytest.approx([150.0, 160.5], abs=0.3)
+    assert log.lines[0] == ("info", "waiting for joint_commands (joint_2), curvature_law")
+    assert [text for level, text in log.lines if level == "warning"] == [
+        "no joint command for joint_2 for 2 s of wall time before t = 0.05 s, the newest is of t = 0.02 s: it holds, "
+        "and the run does not wait until they are back"
+    ]
+
+
+@pytest.mark.fault(
+    "samples",
+    "commands out of order, of one stamp with two values, and for one joint from two publishers",
+    "the newest acts; each is told once",
+)
+def test_of_commands_in_disorder_the_newest_acts_and_it_is_told_once():
+    given, log = [], Log()
+    simulation = Simulation(accuracy=1e-2, robot=Robot.named("eight_servos"), law=straight())
+    simulation.command = lambda joint, **value: given.append((round(simulation.time, 3), value["position"]))
+
+    def publish(snapshot, nanoseconds):
+        if nanoseconds == 50_000_000:
+            for stamp, angle in ((0.05, 0.1), (0.03, 0.2), (0.04, 0.3), (0.05, 0.4), (0.06, 0.5), (0.05, 0.6)):
+                run.take_command(run.inputs.joints, joint_command(stamp, joint_1=angle))
+        if nanoseconds in (70_000_000, 80_000_000):
+            for stamp in (0.04, 0.05):
+                run.take_command(run.inputs.joints, joint_command(stamp, joint_1=0.9))
+
+    run = run_loop(simulation, fake_publishers(publish), Report(log), real_time_factor=1000.0, duration=0.1)
+    run.run()
+    assert given == [(0.05, 0.6), (0.06, 0.5)]
+    assert [text for level, text in log.lines if level == "warning" and "joint command" in text] == [
+        "a joint command of t = 0.05 s for joint_1 came with another value: the newest is taken",
+        "a joint command of t = 0.04 s is older than that of t = 0.06 s for joint_1: left out, as are further ones",
+    ]

@@ -38,6 +38,7 @@ from eel_dynamics.ros.command_subscriptions import subscribe_to_commands
 from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.law_subscription import LawSubscription
+from eel_dynamics.ros.loop.awaited import INPUTS
 from eel_dynamics.ros.loop.inputs import check_inputs
 from eel_dynamics.ros.loop.run_loop import RunLoop
 from eel_dynamics.ros.messages import diagnostic_array, root_message, state_from_message, values_of_status
@@ -117,6 +118,7 @@ class DynamicsNode(ParameterNode):
         if not self._thread.is_alive():
             return self._end()
         self._inbox.look()
+        self.run_loop.inputs.awaited.offered = {topic for topic in INPUTS if self.count_publishers(topic)}
         self._look_at_neighbours()
         self._publish_root()
         if self._followed_clock is not None:

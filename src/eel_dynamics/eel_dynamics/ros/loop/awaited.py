@@ -5,7 +5,7 @@ One rule holds for samples, commands of joints and fins, and currents: each mess
 next one for the same joint or fin is due an interval later: the period that `wait_for` gives, or the longest of the
 last three, at first that of the samples. The run goes on to the next sample once no message is due before that. So it
 is the same each time, however fast the others are. At the start, and after a reset, the first of each is due: at once,
-or after the period that is given, as a timer's is.
+or after the period that is given, as a timer's is. Before the start it waits for publishers of what `wait_for` names.
 
 `wait_for` names what is awaited. Without it that is what has come once with a stamp. What does not come in time is not
 awaited until it is back.
@@ -26,6 +26,7 @@ INPUTS = (LAW, SAMPLES, JOINTS, FINS, CURRENT)
 MESSAGES = {LAW: "law", SAMPLES: "curvature sample", JOINTS: "joint command", FINS: "fin command", CURRENT: "current"}
 ALL = ""  # in place of a joint's or a fin's name: any
 ECHO = 5.0  # s after a reset, within which messages that were sent before it may come
+SETTLING = 0.5  # s of wall time in which timers see the clock at 0, from where their periods count
 ALIKE = 1e-9  # s: times that are closer are one
 INTERVALS = 3  # of which the longest counts: a timer's vary by a sample
 MOST_NAMED = 5
@@ -60,14 +61,16 @@ class Awaited:
 
     Attributes:
         period: [s], between samples.
+        offered: topics that have a publisher; None: not known.
     """
 
     def __init__(self, report: Report) -> None:
         self._report, self.period = report, 0.0
+        self.offered: set[str] | None = None
         self._wanted: dict[tuple[str, str], float | None] = {}  # periods by topic and name
         self._sources: dict[tuple[str, str], Source] = {}
         self._farthest: dict[str, float] = {}  # s by which a message of a topic lay ahead
-        self._reset_at = -math.inf  # s, steady clock
+        self._begun = self._reset_at = -math.inf  # s, steady clock
         self._late_since = math.inf  # s, steady clock
 
     def begin(self, wait_for: Iterable[str], parts: Mapping[str, tuple[str, ...]], period: float) -> None:
@@ -88,7 +91,8 @@ class Awaited:
         for topic, name in list(self._sources):
             if name != ALL:
                 self._sources.pop((topic, ALL), None)
-        self._reset_at = wall.monotonic() if self._farthest else -math.inf
+        self._begun = wall.monotonic()
+        self._reset_at = self._begun if self._farthest else -math.inf
         for topic in INPUTS:
             self._report.end(_kind(topic))
 
@@ -144,7 +148,7 @@ class Awaited:
         if not late:
             self._late_since = math.inf
             return []
-        self._late_since = min(self._late_since, now)
+        self._late_since = now if self._begins(instant) else min(self._late_since, now)
         if now - self._late_since < timeout:
             return [_text(topic, names) for topic, names in late.items()]
         self._late_since = math.inf
@@ -154,11 +158,20 @@ class Awaited:
                 self._sources[topic, name].due = math.inf
         return []
 
+    def _begins(self, instant: float) -> bool:
+        """Whether publishers have to come yet that `wait_for` names, or timers to see the clock at the start."""
+        wanted = {topic for topic, _ in self._wanted}
+        if self._reset_at == -math.inf and self.offered is not None and not wanted <= self.offered:
+            self._begun = wall.monotonic()
+        return instant == 0.0 and wall.monotonic() < self._begun + SETTLING
+
     def _late(self, instant: float) -> dict[str, list[str]]:
         """Names by topic; the whole topic's is `ALL`."""
         late: dict[str, list[str]] = {}
+        begins = self._begins(instant)
         for (topic, name), source in self._sources.items():
-            if source.due < instant - ALIKE:
+            is_timer = source.due == source.period and source.period > 0.0  # without a message so far
+            if source.due < instant - ALIKE or (begins and is_timer):
                 late.setdefault(topic, []).append(name)
         return late
 
