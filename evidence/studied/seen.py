@@ -27,7 +27,7 @@ class Seen:
     def of_file(cls, path: Path) -> "Seen":
         """From columns of time, x and y. `ValueError` for others."""
         table = read_table(path)
-        time, rows = time_of(table).seconds, np.column_stack((table.column("x", "m"), table.column("y", "m")))
+        time, rows = time_of(table), np.column_stack((table.column("x", "m"), table.column("y", "m")))
         instants = np.unique(time)
         if len(instants) < 3:
             raise table.error(f"points must be of 3 instants or more, got {len(instants)}")

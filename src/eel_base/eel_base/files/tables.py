@@ -33,14 +33,7 @@ TRACKER = "scorer", "individuals", "bodyparts", "coords"  # rows of DeepLabCut's
 WITH_COMMA, WITH_POINT = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?"), re.compile(r"[+-]?\d*\.\d+(?:[eE][+-]?\d+)?")
 THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 SWAPPED = str.maketrans(",.", ".,")
-
-
-class Row(NamedTuple):
-    """The cells of a row up to the last that is not empty; its line; and how many cells there are."""
-
-    cells: list[str]
-    line: int
-    size: int
+Row = tuple[list[str], int, int]  # cells up to the last that is not empty; its line; how many cells there are
 
 
 class Head(NamedTuple):
@@ -96,32 +89,35 @@ def _read(path: Path, file: InputFile, what: str, lenient: bool) -> Table:
     encoding = _encoding(file)
     with io.TextIOWrapper(file, encoding=encoding, newline="") as text:
         rest, first = _lines(text), list[str]()
-        while len(first) < FIRST_LINES and sum(map(len, first)) < FIRST_CHARACTERS and (line := next(rest, "")):
-            first.append(line)
+        while len(first) < FIRST_LINES and sum(map(len, first)) < FIRST_CHARACTERS and (each := next(rest, "")):
+            first.append(each)
         delimiter, comma = _form(first)
         head = _head(list(_split(first, delimiter, strict=False)))
         width = len(head.names)
-        for row in _split(itertools.chain(first, rest), delimiter):
-            fits = len(row.cells) <= width <= row.size
-            if row.line < head.start or (row.cells[0].startswith("#") and not fits):
+        plain = array.array("i", bytes(4 * width))
+        for cells, line, size in _split(itertools.chain(first, rest), delimiter):
+            fits = len(cells) <= width <= size
+            if line < head.start or (not fits and cells[0].startswith("#")):
                 continue
             if len(values) + width > MOST_NUMBERS:
-                raise Misplaced(f"line {row.line}", f"a table must hold at most {MOST_NUMBERS} numbers")
+                raise Misplaced(f"line {line}", f"a table must hold at most {MOST_NUMBERS} numbers")
             if not fits and not lenient:
-                rule = f"a row must have {width} fields, as the header has, got {max(len(row.cells), row.size)}"
-                raise Misplaced(f"line {row.line}", rule)
+                rule = f"a row must have {width} fields, as the header has, got {max(len(cells), size)}"
+                raise Misplaced(f"line {line}", rule)
             if not fits:
-                lost.append(row.line)
+                lost.append(line)
                 continue
-            cells = row.cells + [""] * (width - len(row.cells))
+            cells += [""] * (width - len(cells))
             made = [cell.translate(SWAPPED) for cell in cells] if comma else cells
-            known = [is_number(each) for each in made]
-            values.extend(float(each) if number else np.nan for each, number in zip(made, known, strict=True))
-            marks.extend(
-                0 if number else words.setdefault(cell, len(words) + 1)
-                for cell, number in zip(cells, known, strict=True)
-            )
-            lines.append(row.line)
+            lines.append(line)
+            try:
+                values.extend(list(map(float, made)))
+                marks.extend(plain)
+            except ValueError:
+                for cell, number in zip(cells, made, strict=True):
+                    known = is_number(number)
+                    values.append(float(number) if known else np.nan)
+                    marks.append(0 if known else words.setdefault(cell, len(words) + 1))
     if not lines and not lost:
         raise ValueError("it has a header and no row")
     read = [DELIMITERS[delimiter]] if delimiter != "," else []
@@ -176,7 +172,7 @@ def _split(lines: Iterable[str], delimiter: str, strict: bool = True) -> Iterato
             while cells and not cells[-1]:
                 cells.pop()
             if cells:
-                yield Row(cells, rows.line_num, len(row))
+                yield cells, rows.line_num, len(row)
     except csv.Error as error:
         if strict:
             raise Misplaced(f"line {rows.line_num}", str(error)) from None
@@ -187,8 +183,8 @@ def _form(first: list[str]) -> tuple[str, bool]:
     score, found = dict[str, tuple[float, float]](), dict[str, list[str]]()
     for delimiter in DELIMITERS:
         rows = list(_split(first, delimiter, strict=False))
-        if (size := _usual(row.size for row in rows)) > 1:
-            whole = [row.cells for row in rows if row.size == size]
+        if (usual := _usual(size for _, _, size in rows)) > 1:
+            whole = [cells for cells, _, size in rows if size == usual]
             found[delimiter] = [cell for row in whole for cell in row if cell.lower() not in MISSING]
             alike = len(whole) / len(rows)
             score[delimiter] = alike * _part_of_numbers(found[delimiter]), alike
@@ -220,27 +216,28 @@ def _head(first: list[Row]) -> Head:
     """The header in the first rows: names where the columns have numbers; of its first row, one will do."""
     if not first:
         raise ValueError("it is empty")
-    size = _usual(row.size for row in first)
-    whole = [row.cells for row in first if row.size == size]
+    usual = _usual(size for _, _, size in first)
+    whole = [cells for cells, _, size in first if size == usual]
     columns = list(itertools.zip_longest(*whole[len(whole) // 2 :], fillvalue=""))
     numeric = {place for place, cells in enumerate(columns) if _part_of_numbers(cells) >= 0.5}
     rows, skipped, start = list[list[str]](), list[Row](), 0
     for row in first:
-        loose = not rows or row.cells[0].lower() in TRACKER
-        there = [cell for place, cell in enumerate(row.cells) if place in numeric or not numeric]
+        cells, line, size = row
+        there = [cell for place, cell in enumerate(cells) if place in numeric or not numeric]
         there = [cell for cell in there if cell.lower() not in MISSING]
         names = sum(not _is_number(cell) for cell in there)
-        if row.size != size and len(row.cells) != len(columns):
+        loose = numeric and (not rows or cells[0].lower() in TRACKER)
+        if size != usual and len(cells) != len(columns):
             skipped += [] if rows else [row]
-        elif names and (names == len(there) or (loose and numeric)):
-            rows.append([row.cells[0].lstrip("#% "), *row.cells[1:]])
-            start = row.line + 1
-        elif not row.cells[0].startswith("#"):
-            start = start or row.line
+        elif names and (names == len(there) or loose):
+            rows.append([cells[0].lstrip("#% "), *cells[1:]])
+            start = line + 1
+        elif not cells[0].startswith("#"):
+            start = start or line
             break
-    if not rows and skipped and len(last := skipped[-1].cells) > 1 and not any(map(_is_number, last)):
-        hint = ": decimal commas need another separator" if size > len(last) else ""
-        raise Misplaced(f"line {skipped[-1].line}", f"{len(last)} names stand above {size} numbers{hint}")
+    if not rows and skipped and len(last := skipped[-1][0]) > 1 and not any(map(_is_number, last)):
+        hint = ": decimal commas need another separator" if usual > len(last) else ""
+        raise Misplaced(f"line {skipped[-1][1]}", f"{len(last)} names stand above {usual} numbers{hint}")
     notes = [f"{len(skipped)} lines above left out"] if skipped else []
     if not rows:
         return Head([str(place + 1) for place in range(len(columns))], rows, start, [*notes, "no header"])

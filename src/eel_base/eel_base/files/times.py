@@ -9,7 +9,6 @@ import math
 import re
 from collections.abc import Sequence
 from datetime import UTC, datetime
-from typing import NamedTuple
 
 import numpy as np
 
@@ -23,16 +22,9 @@ DAY = 86400.0  # s
 RISING, MOVING = 0.95, 0.5  # parts of a column's steps that do not fall, and that rise, if it is a time
 
 
-class Time(NamedTuple):
-    """Times of the rows of a table."""
-
-    seconds: np.ndarray  # (rows,) s, from the first on where they are dates; NaN where one is missing
-    about: str  # which column, and what of, in words
-    plain: bool  # whether its name tells all
-
-
-def time_of(table: Table, column: str = "", besides: Sequence[int] = (), *, missing: bool = False) -> Time:
-    """The times of the rows of a `table`.
+def time_of(table: Table, column: str = "", besides: Sequence[int] = (), *, missing: bool = False) -> np.ndarray:
+    """The times (rows,) [s] of a `table`, from the first on where they are dates. What is not plain from the column's
+    name goes into the table's notes.
 
     column: its name or number; "": the first that is called so, or the only one that rises and is none of those
     `besides`. missing: NaN for a cell that is no time, in place of a `ValueError`.
@@ -46,8 +38,10 @@ def time_of(table: Table, column: str = "", besides: Sequence[int] = (), *, miss
     seconds = factor * (values - (values[np.isfinite(values)][0] if dates else 0.0))
     if factor == 1.0 and (part := _part_of(table, place, values)) is not None:
         seconds, told = seconds + part[1], f"{told}, and {table.label(part[0])}"
-    plain = not column and split_name(table.head[place])[0] in ("time", "t") and told == "s"
-    return Time(seconds, f"time from {table.label(place)}, {told}", plain)
+    about = f"time from {table.label(place)}, {told}"
+    plain = not column and table.head[place] in ("time", "time_s", "t_s") and told == "s"
+    table.notes += [] if plain or about in table.notes else [about]
+    return np.asarray(seconds)
 
 
 def _place_of_time(table: Table, column: str, besides: Sequence[int]) -> int:
@@ -56,7 +50,7 @@ def _place_of_time(table: Table, column: str, besides: Sequence[int]) -> int:
             raise table.error(f"the time must be one column, got {shown([table.head[place] for place in found])}")
         return found[0]
     places = [place for place in range(len(table.head)) if place not in besides]
-    called = [place for place in places if _is_called(table.head[place])]
+    called = [place for place in places if is_time(table.head[place])]
     if called := called or [place for place in places if _is_dated(table, place)]:
         return min(called, key=table.is_empty)  # the first that is not
     rising = [place for place in places if _rises(table.raw(place))]
@@ -65,7 +59,7 @@ def _place_of_time(table: Table, column: str, besides: Sequence[int]) -> int:
     return rising[0]
 
 
-def _is_called(name: str) -> bool:
+def is_time(name: str) -> bool:
     """Whether a column's name is one of a time."""
     base, unit = split_name(name)
     return CALLED.fullmatch(base) is not None or (not base and unit != "" and UNITS[unit][0] == "s")
@@ -113,8 +107,8 @@ def _stamps(table: Table, place: int) -> tuple[np.ndarray, float, str]:
 
 
 def _seconds(text: str) -> float:
-    """A stamp of ISO 8601 in s since 1970, in UTC where it does not say; a time of day in s; NaN for anything else."""
-    plain = text.strip().replace(",", ".").replace("/", "-")
+    """A stamp of ISO 8601, or 28.11.2026, in s since 1970, in UTC where it does not say, or a time of day; or NaN."""
+    plain = re.sub(r"^(\d\d)\.(\d\d)\.(\d{4})", r"\3-\2-\1", text).replace(",", ".").replace("/", "-")
     if re.match(r"\d{1,2}:", plain):
         plain = f"1970-01-01T{plain if plain[2] == ':' else f'0{plain}'}"
     try:

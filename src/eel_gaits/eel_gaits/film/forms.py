@@ -19,7 +19,7 @@ import numpy as np
 from eel_base.files.archive import MOST_NUMBERS
 from eel_base.files.table import LARGEST, Table, split_name
 from eel_base.files.tables import is_table, read_table
-from eel_base.files.times import time_of
+from eel_base.files.times import is_time, time_of
 from eel_base.wording import shown
 
 from eel_gaits.film.hdf5 import Columns, read_hdf5
@@ -79,9 +79,9 @@ def _of_columns(table: Table, column: str) -> Tracks:
         marks.sort(key=int)
     points = table.numbers([places[axis, mark] for mark in marks for axis in "xy"])
     frames = [place for place, (name, _) in enumerate(names) if name in FRAMES]
-    times = time_of(table, column, besides=[*used, *frames]) if column or not frames or "time" in table else None
-    time = table.numbers(frames[:1], missing=False)[:, 0] if times is None else times.seconds
-    notes = [*table.notes, *([] if times is None or times.plain else [times.about])]
+    timed = column or not frames or any(map(is_time, table.head))
+    times = time_of(table, column, besides=[*used, *frames]) if timed else None
+    time = table.numbers(frames[:1], missing=False)[:, 0] if times is None else times
     starts = np.arange(len(time))
     if marks == [""]:
         starts = frame_starts(table, time)
@@ -91,7 +91,7 @@ def _of_columns(table: Table, column: str) -> Tracks:
     if times is not None:
         check_steps(table, time[starts], 2)
     points = points.reshape(len(starts), -1, 2)
-    return Tracks(time[starts], {"": points}, {"": marks}, units.pop(), times is None, {}, ", ".join(notes))
+    return Tracks(time[starts], {"": points}, {"": marks}, units.pop(), times is None, {}, ", ".join(table.notes))
 
 
 def _names_in_frames(table: Table, frames: int) -> list[str]:

@@ -49,7 +49,7 @@ def frames_of(
     si, length = (unit, "m") if scale == 1.0 else ("", "")
     fields = np.stack([table.column(name, si) for name in names], axis=-1)
     arc = scale * table.column("arc_length", length) if "arc_length" in table else None
-    seconds = time_of(table, time).seconds
+    seconds = time_of(table, time)
     starts = frame_starts(table, seconds)
     instants, count = seconds[starts], len(table) // len(starts)
     check_steps(table, instants)

@@ -86,11 +86,11 @@ def read_joint_log(
             raise ValueError(f"its columns are in {', '.join(sorted(units))}, the units given are {unit}")
         angles = np.stack([table.raw(place) for place in chosen], axis=1) * (UNITS[unit][1] if unit else factors)
         told = unit or ", ".join(sorted(units)) or "rad"
-        read = [*table.notes, times.about, f"joints {joints[0]} to {joints[-1]}, {told}"]
+        read = [*table.notes, f"joints {joints[0]} to {joints[-1]}, {told}"]
         mine = np.isfinite(angles).any(axis=1)
         if others := int(np.sum(~mine)):
             read.append(f"{others} rows without any of them")
-        seconds, angles, notes = _mended(times.seconds[mine], angles[mine], table.lines[mine], table.lost)
+        seconds, angles, notes = _mended(times[mine], angles[mine], table.lines[mine], table.lost)
         if len(seconds) < FEWEST_ROWS or len(joints) < FEWEST_JOINTS:
             rule = f"{FEWEST_JOINTS} joints in {FEWEST_ROWS} rows or more"
             raise ValueError(f"there must be {rule}, got {len(joints)} in {len(seconds)}")

@@ -151,7 +151,7 @@ def _law_of_joints(table: Table, length: float, name: str, column: str, smooth: 
                 f"joints of {axis} must be {axis}_1 to {axis}_{max(FEWEST_JOINTS, len(names))} without gaps, "
                 f"got {shown(names)}"
             )
-    time = time_of(table, column).seconds
+    time = time_of(table, column)
     check_rising(table, time, np.arange(len(time)))
     check_steps(table, time)
     angles = {axis: np.stack([table.column(each, "rad") for each in names]) for axis, names in axes.items()}

@@ -57,8 +57,9 @@ def read_measured(
     """
     if is_table(path, ".npz"):
         table = read_table(path)
+        measured_there = [_angles_of_table(table, robot)] if angles else _of_table(table, station)
         table.tell()
-        return MeasuredFile([_angles_of_table(table, robot)] if angles else _of_table(table, station))
+        return MeasuredFile(measured_there)
     run = (
         Run.load(path) if Path(path).suffix == ".nc" else Run.from_bag(path, namespace, robot=robot if angles else None)
     )
@@ -94,13 +95,13 @@ def _angles_of_table(table: Table, robot: Robot | None) -> MeasuredAngles:
         raise table.error(f"its columns must be time and the robot's joints, got none of {', '.join(missing)}")
     angles = np.concatenate([table.numbers(table.places(name), "rad") for name in names], axis=1)
     with reading(shown(str(table.path))):
-        return MeasuredAngles(time_of(table).seconds, angles)
+        return MeasuredAngles(time_of(table), angles)
 
 
 def _of_table(table: Table, station: float) -> list[Any]:
     if "x" in table and "y" in table:
         position = np.stack([table.column(name, "m") for name in ("x", "y", "z") if name in table], axis=1)
-        time = time_of(table).seconds
+        time = time_of(table)
         check_rising(table, time, np.arange(len(time)))
         with reading(shown(str(table.path))):
             return [MeasuredPath(time, position, station)]
