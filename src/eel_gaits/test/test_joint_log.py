@@ -124,6 +124,20 @@ def test_joints_of_one_topic_are_found_among_others(tmp_path):
         read_joint_log(path)
 
 
+def test_joints_of_two_topics_are_brought_to_one_time(tmp_path):
+    head = ["__time", *(f"/front/joint_{j}/position" for j in range(3)), *(f"/rear/joint_{j}/position" for j in (3, 4))]
+    rows = []
+    for time, row in zip(TIME, ANGLES, strict=True):
+        later = 0.4 * np.sin(2.0 * np.pi * (time + 0.004 - 0.15 * np.arange(5)))
+        rows.append(f"{time:.3f}," + ",".join(f"{value:.6f}" for value in row[:3]) + ",,")
+        rows.append(f"{time + 0.004:.3f},,,," + ",".join(f"{value:.6f}" for value in later[3:]))
+    path = tmp_path / "log.csv"
+    path.write_text("\n".join([",".join(head), *rows]))
+    log = read_joint_log(path)
+    assert np.allclose(log.angles, ANGLES[1:], atol=1e-5) and np.allclose(log.time, TIME[:-1])
+    assert "joints of several topics" in log.read and "1 rows left out, the first in line 2" in log.notes[0]
+
+
 def test_the_law_of_links_keeps_each_angle_where_its_joint_lies(tmp_path):
     log = read_joint_log(write(tmp_path / "log.csv", ["time", *(f"q{j}" for j in range(5))], (TIME, ANGLES)))
     law = law_of_links(log, PLACES, 1.0)

@@ -88,6 +88,10 @@ def read_joint_log(
         told = unit or ", ".join(sorted(units)) or "rad"
         read = [*table.notes, f"joints {joints[0]} to {joints[-1]}, {told}"]
         mine = np.isfinite(angles).any(axis=1)
+        if not np.isfinite(angles).all(axis=1).any():
+            angles = _in_one_row(times, angles)
+            mine = np.isfinite(angles[:, 0])
+            read.append("joints of several topics brought to the times of the first")
         if others := int(np.sum(~mine)):
             read.append(f"{others} rows without any of them")
         seconds, angles, notes = _mended(times[mine], angles[mine], table.lines[mine], table.lost)
@@ -153,11 +157,26 @@ def _joint_columns(table: Table) -> list[int]:
         found = [
             key for key, each in groups.items() if len(each) >= FEWEST_JOINTS and re.fullmatch(pattern, key.lower())
         ]
-        if len(found) == 1:
-            return [place for _, place in sorted(groups[found[0]].items())]
+        joints = [each for key in found for each in sorted(groups[key].items())]
+        if found and len({number for number, _ in joints}) == len(joints):  # perhaps of several topics
+            return [place for _, place in sorted(joints)]
         if found:
             raise ValueError(f"its joints may be any of {shown(found)}: give --columns {found[0].replace('#', '*')!r}")
     raise ValueError(f"its joints are not plain from {shown(table.head)}: give --columns, such as 8-13, or names")
+
+
+def _in_one_row(time: np.ndarray, angles: np.ndarray) -> np.ndarray:
+    """The angles (N, n) of joints that have rows of their own: those of the first, with splines of the others there."""
+    from scipy.interpolate import CubicSpline
+
+    found = np.full_like(angles, np.nan)
+    first = np.isfinite(angles[:, 0])
+    for joint, each in enumerate(angles.T):
+        own = np.isfinite(each) & np.isfinite(time)
+        if np.sum(own) < FEWEST_ROWS or np.any(np.diff(time[own]) <= 0.0):
+            raise ValueError("its joints have rows of their own: the time of each must rise")
+        found[first, joint] = CubicSpline(time[own], each[own], extrapolate=False)(time[first])
+    return found
 
 
 def _mended(
