@@ -91,6 +91,7 @@ def test_bad_stamps_are_mended_and_told(tmp_path, what):
             "two logs in one file",
         ),
         (np.floor(5.0 * TIME) / 5.0, ANGLES, "only 30 of its 300 rows can be read: 270 rows left out"),
+        (TIME, np.where(TIME[:, None] < 5.0, ANGLES, np.nan), "only 250 of its 300 rows can be read"),
         (np.where(TIME < 5.0, TIME, np.nan), ANGLES, "only 250 of its 300 rows can be read"),
         (1e3 * TIME, ANGLES, r"rad/s \(RMS\) in steps of 20 s: time in s\?.*--clock 0.001"),
         (1e-3 * TIME, ANGLES, r"rad/s \(RMS\) in steps of 2e-05 s: time in s\?.*--clock 1000"),
@@ -118,7 +119,7 @@ def test_joints_of_one_topic_are_found_among_others(tmp_path):
     for columns in ("", "*states*", "7-11"):
         log = read_joint_log(path, columns=columns)
         assert np.allclose(log.angles, ANGLES, atol=2e-6) and np.allclose(log.time, TIME, atol=2e-6)
-        assert "joints /joint_states/joint_0/position to" in log.read and "300 rows without any of them" in log.read
+        assert "joints /joint_states/joint_0/position to" in log.read and "300 rows of other topics" in log.read
     path.write_text(path.read_text().replace("commands", "others"))
     with pytest.raises(ValueError, match=r"may be any of .*give --columns '/joint_others/joint_\*/position'"):
         read_joint_log(path)

@@ -155,15 +155,14 @@ class Table:
         """The numbers (rows,) of a column as they stand in the file; NaN for any other cell."""
         return np.asarray(self._values[:, place])
 
-    def is_empty(self, place: int) -> bool:
-        """Whether no cell of a column has a value."""
-        return bool(np.all(self._empty[self._marks[:, place]]))
+    def filled(self, place: int) -> np.ndarray:
+        """Which cells (rows,) of a column have a value."""
+        marks = self._marks[:, place]
+        return np.asarray(np.where(marks == 0, np.isfinite(self._values[:, place]), ~self._empty[marks]))
 
     def has_numbers(self, place: int) -> bool:
         """Whether most cells of a column that have a value are numbers."""
-        cells = self._marks[:, place]
-        numbers, values = np.sum((cells == 0) & np.isfinite(self._values[:, place])), np.sum(~self._empty[cells])
-        return bool(numbers and 2 * numbers > values)
+        return bool(2 * np.sum(np.isfinite(self._values[:, place])) > np.sum(self.filled(place)))
 
     def factor(self, place: int, unit: str) -> float:
         """What a column's numbers must be multiplied by to be in this SI `unit`; 1 where its name has none."""

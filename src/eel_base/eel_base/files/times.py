@@ -52,7 +52,7 @@ def _place_of_time(table: Table, column: str, besides: Sequence[int]) -> int:
     places = [place for place in range(len(table.head)) if place not in besides]
     called = [place for place in places if is_time(table.head[place])]
     if called := called or [place for place in places if _is_dated(table, place)]:
-        return min(called, key=table.is_empty)  # the first that is not
+        return max(called, key=lambda place: bool(table.filled(place).any()))  # the first that is not empty
     rising = [place for place in places if _rises(table.raw(place))]
     if len(rising) != 1:
         raise table.error(f"its time is not plain from {shown(table.head)}: say which column it is (--time)")

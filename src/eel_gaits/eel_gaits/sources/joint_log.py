@@ -41,6 +41,7 @@ SPREADS, FINEST = 6.0, 2e-3  # robust spreads beyond which a reading has jumped,
 PASSES = 3
 LARGEST = 3.2  # rad, of a joint: beyond it the file is in degrees
 MOST_LOST, MOST_SETS = 0.1, 5  # part of the rows that may be left out; times that a clock may be set back
+RARE = 0.5  # part of the rows of the joints in which a column of another topic has a value
 SINGLE = 0.75  # of a step, that is left without a row whose stamp alone is bad
 SEAM = 3.0  # greatest steps of the angles by which they may differ where the clock is set back
 FASTEST, SLOWEST, LONGEST = 50.0, 0.05, 0.5  # rad/s (RMS), of joints; s, of a step: beyond them time is not in s
@@ -92,8 +93,10 @@ def read_joint_log(
             angles = _in_one_row(times, angles)
             mine = np.isfinite(angles[:, 0])
             read.append("joints of several topics brought to the times of the first")
-        if others := int(np.sum(~mine)):
-            read.append(f"{others} rows without any of them")
+        filled = [table.filled(place) for place in range(len(table.head))]
+        rare = [each for each in filled if np.mean(each[mine]) < RARE]  # of other topics, if any
+        if others := int(np.sum(~(mine := mine | ~np.any(rare, axis=0)))):
+            read.append(f"{others} rows of other topics")
         seconds, angles, notes = _mended(times[mine], angles[mine], table.lines[mine], table.lost)
         if len(seconds) < FEWEST_ROWS or len(joints) < FEWEST_JOINTS:
             rule = f"{FEWEST_JOINTS} joints in {FEWEST_ROWS} rows or more"
@@ -203,7 +206,7 @@ def _mended(
     step = float(np.median(rises)) if len(rises) else 0.0
     before, after = np.append(-np.inf, time[:-1]), np.append(time[1:], np.inf)
     alone = (time <= before) | (time > after)
-    keep(~(alone & ((after - before > SINGLE * step) | (time == before))), "the time does not rise there alone")
+    keep(~(alone & ((after - before > SINGLE * step) | (time == before))), "their stamps alone do not rise")
     if len(time) < count - np.sum(twice) - MOST_LOST * count:
         raise ValueError(f"only {len(time)} of its {count} rows can be read: {'; '.join(notes)}")
     moves = np.max(np.abs(np.diff(angles, axis=0)), axis=1, initial=0.0)
