@@ -2,7 +2,7 @@
 """`python evidence/life.py`: filmed swimmers beside what was measured on them.
 
 python evidence/life.py lamprey docs/data/lamprey_midlines.csv --widths docs/data/widths.csv --out lamprey.png
-python evidence/life.py robot docs/data/tendon_fish_hinges_?.??Hz.csv --body docs/data/tendon_fish_body.csv --rigid 0.64
+python evidence/life.py robot docs/data/tendon_fish_hinges_?.??Hz.csv --rigid 0.64
 """
 
 import argparse
@@ -23,12 +23,13 @@ from eel_studies.pictures import BLACK, BLUE, GREY, LOOKS, PALE_BLUE, Axes, Draw
 from studied.lamprey import HEIGHTS, LampreySwim, Thickened, in_thick_water, lamprey, swims, thickened
 from studied.lamprey import PLANAR as WATER_OF_FILM
 from studied.leave_out import PLANAR, Choice, choices, computed, swum
+from studied.tendon_fish import tendon_fish
 
 from eel_dynamics import Run
 
 NAME = "life.py"
 Drawn: TypeAlias = tuple[Table, Draw, tuple[float, float]]  # with the picture and its size, inches
-FIRST = {"nose_drag": 1.0}  # one number: with two, films that are left out are predicted worse
+FIRST = {"appendage_factor": 1.0}  # one number: with two, films that are left out are predicted worse
 SHOWN = 6  # midlines of a beat
 
 
@@ -41,7 +42,7 @@ def _add_options(parser: Parser) -> None:
     )
     parser.add_argument("files", nargs="+", metavar="FILE", help="films: tracked points, docs/howto/motions.md")
     add_film_options(parser)
-    add_options(parser, "--scale", "--body", "--scene")
+    add_options(parser, "--scale", "--body", "--scene", body=(None, "of the robot: that of the tendon fish"))
     add_repeated(parser, "--set", "NAME=VALUE", "a number of the body")
     parser.add_argument("--widths", metavar="FILE", help="of a lamprey: columns s_by_length, lamprey_width_by_length")
     parser.add_argument("--mass", type=float, metavar="KG", help="of the robot (by its body's density)")
@@ -118,7 +119,7 @@ def _against(measured: float, ours: list[float]) -> tuple[str, str]:
 def _robot(beats: list[Beat], options: argparse.Namespace) -> Drawn:
     if len(beats) <= options.fit or options.fit < 1:
         raise ValueError(f"robot needs more films than the {options.fit} that --fit takes, got {len(beats)}")
-    body = body_of(options.body)
+    body = tendon_fish() if options.body is None else body_of(options.body)
     if options.mass is not None:
         body = body.changed(density=positive("mass", options.mass, "kg") / body.volume)
     body = body.changed(**set_numbers(options.set))

@@ -4,45 +4,34 @@
 python evidence/robot_swims.py --out docs/data/robots.csv
 
 Mamba swims by its published gaits and AmphiBot III by the log of its joints, on bodies of links; the tendon fish by its
-hinges, on its published sections with appendages. Nothing is fitted to a speed but c_s = 0.65, to Mamba's undulation,
-in another code; the eel-like gait is then predicted. That the added mass falls with s^2 was chosen with both gaits of
-Mamba in view. AmphiBot's ends have textbook numbers, which its own coasting confirms. The areas of the tendon fish's
-appendages are textbook coefficients times published sizes (docs/data/README.md); its band goes with the lowest and the
-highest of these coefficients.
+hinges, on its published sections and masses with appendages. Nothing is fitted to a speed but c_s = 0.65, to Mamba's
+undulation, in another code; the eel-like gait is then predicted. That the added mass falls with s^2 was chosen with
+both gaits of Mamba in view. AmphiBot's ends have textbook numbers, which its own coasting confirms. The areas of the
+tendon fish's appendages are textbook coefficients times published sizes (docs/data/README.md); its band goes with the
+lowest and the highest of these coefficients.
 """
 
 import argparse
 import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from eel_base.command.command import command
-from eel_base.files.tables import read_table
 from eel_dynamics.commands.options import add_options
-from eel_gaits.film.beat import Beat, beat_of
-from eel_gaits.film.film import read_film
 from eel_gaits.sources.joint_log import law_of_links, read_joint_log
-from eel_model.body.text import appendages_from_file
 from eel_studies.outputs import Table, checked_outs, write_files
 from studied.band import replay
 from studied.leave_out import computed
 from studied.seen import Seen
+from studied.tendon_fish import DATA, FILMS, beat, tendon_fish
 
 from eel_dynamics import Body, Scene
 
-DATA = Path(__file__).resolve().parents[1] / "docs" / "data"
 PLANAR = Scene(planar=True, friction="blended")
 FITTED, ALONE = 0.65, 0.87  # c_s: fitted to Mamba's undulation; each link a blunt cylinder alone
 MAMBA = {"undulation": 0.1288, "eel_like": 0.0894}  # m/s, measured
 CLOCK = 1.078  # AmphiBot's true time by that of its log: its lights have 0.738 s a beat, the log 0.687
-FILMS = ("0.50", "1.00", "1.50", "2.00")  # Hz, as their names say
-RIGID = 0.64  # of the tendon fish's length
-MASS = 1.481  # kg, of the tendon fish
 LOWEST, HIGHEST = 127.0 / 172.0, 261.0 / 172.0  # of its drag areas: lowest and highest textbook coefficients
-FINITE = np.array([[0.0, 1.0], [0.36, 1.0], [0.378, 0.80], [0.445, 0.62], [0.482, 0.82], [0.501, 1.0], [0.52, 0.49],
-                   [0.54, 0.34], [0.5594, 0.25]])  # fmt: skip
-"""X [m], and the added mass of its tail by that of slender sections: vortex rings on its flat planform."""
 NEUTRAL = {"lateral_drag": 1.98, "vertical_drag": 1.0, "round_added_mass": 1.0, "joint_drag": 0.0}
 SMOOTH_ENDS = {"nose_drag": 0.036, "base_drag": 0.0}
 
@@ -53,7 +42,7 @@ def main(options: argparse.Namespace) -> None:
     outs = checked_outs("robot_swims.py", options)
     table = Table(
         ("swimmer", "model", "speed [m/s]", "measured", "by measured", "greatest torque [N m]", "power [W]"),
-        [*mamba(), *amphibot(), *tendon_fish()],
+        [*mamba(), *amphibot(), *tendon_swims()],
     )
     print(table.text())
     write_files(outs, table.write_csv, lambda figure: None, (6.8, 4.0))
@@ -104,37 +93,21 @@ def swum(log: Any, joints: np.ndarray, body: Body) -> tuple[float, str, str]:
     return first.speed, f"{np.max(np.abs(first.torque[later])):.3g}", f"{power:.3g}"
 
 
-def tendon_fish() -> list[tuple[str, ...]]:
-    """Its films, by its hinges."""
+def tendon_swims() -> list[tuple[str, ...]]:
+    """The films of the tendon fish, by its hinges."""
     beats = [beat(frequency) for frequency in FILMS]
-    measured = np.array([each.measured.speed for each in beats])
-    sections = read_table(DATA / "tendon_fish_true_body.csv")
-    x, half_width, half_height = (sections.column(name) for name in ("x", "half_width", "half_height"))
-    body = Body(
-        x=x, half_width=half_width, half_height=half_height, blunt_nose=True,
-        nose_drag=0.0, nose_added_mass=0.0, name="tendon fish",
-    )  # fmt: skip
-    body = body.changed(density=MASS / body.volume)
-    hung = body.changed(appendages=appendages_from_file(DATA / "tendon_fish_parts.csv"))
-    finite = {"lateral_added_mass": np.interp(x, *FINITE.T)}
     models = {
-        "published sections alone": body,
-        "and appendages": hung,
-        "appendages and a tail of finite height": hung.changed(**finite),
-        "the same, lowest coefficients": hung.changed(appendage_factor=LOWEST, **finite),
-        "the same, highest coefficients": hung.changed(appendage_factor=HIGHEST, **finite),
+        "published sections alone": tendon_fish(hung=False, finite=False),
+        "and appendages": tendon_fish(finite=False),
+        "appendages and a tail of finite height": tendon_fish(),
+        "the same, lowest coefficients": tendon_fish(appendage_factor=LOWEST),
+        "the same, highest coefficients": tendon_fish(appendage_factor=HIGHEST),
     }
     rows = []
-    for model, each in models.items():
-        speeds = computed(beats, each)
-        for frequency, ours, seen in zip(FILMS, speeds, measured, strict=True):
-            rows.append(row(f"tendon fish, {frequency} Hz", model, seen, float(ours), "", ""))
+    for model, body in models.items():
+        for frequency, filmed, ours in zip(FILMS, beats, computed(beats, body), strict=True):
+            rows.append(row(f"tendon fish, {frequency} Hz", model, filmed.measured.speed, float(ours), "", ""))
     return rows
-
-
-def beat(frequency: str) -> Beat:
-    """The mean beat of a film."""
-    return beat_of(read_film(DATA / f"tendon_fish_hinges_{frequency}Hz.csv", units="m"), rigid=RIGID)
 
 
 def row(swimmer: str, model: str, measured: float, speed: float, torque: str, power: str) -> tuple[str, ...]:

@@ -88,8 +88,11 @@ def test_robots_swim_as_the_page_says():
     before, after = rows["without the new terms"], rows["c_s 0, as its coasting says"]
     assert float(before[2]) == pytest.approx(0.755, rel=0.02)  # m/s; the target is 1e-2
     assert float(after[2]) == pytest.approx(0.597, rel=0.02) and 0.96 < float(after[4]) < 1.04
-    (film,) = [robot_swims.beat("2.00")]
+    film = robot_swims.beat("2.00")
     assert film.measured.speed == pytest.approx(0.2021, abs=1e-4)
+    for finite, hung, other in ((True, False, 1.046), (True, True, 0.281)):  # m/s, of an independent planar code
+        (speed,) = robot_swims.computed([film], robot_swims.tendon_fish(finite=finite, hung=hung))
+        assert speed == pytest.approx(other, rel=0.06)
 
 
 def test_midlines_come_out_as_they_went_in(tmp_path, capsys):
