@@ -12,7 +12,7 @@ import pytest
 from soak import NODES, RATE, soak
 
 OUT = Path(__file__).parents[1] / "out"
-HOUR, TEN_MINUTES, TWO_MINUTES, SHORT = 3600.0, 600.0, 120.0, 5.0  # s of simulation
+HOUR, TEN_MINUTES, FOUR_MINUTES, SHORT = 3600.0, 600.0, 240.0, 5.0  # s of simulation
 ROBOT = (
     "robot:=eight_servos",
     "fins:=pair station=0.5 area=0.0015 aspect_ratio=2",
@@ -55,7 +55,7 @@ def test_an_hour(start, fresh_domain):
 @pytest.mark.fault(
     "load",
     "ten minutes of a robot with fins in a flow, as fast as possible (`make soak`)",
-    "no sample lost, memory of the visualiser constant to 2 % after two minutes (medians of 80 s)",
+    "no sample lost, memory of the visualiser constant to 2 % after four minutes (medians of a minute)",
 )
 @pytest.mark.soak
 @pytest.mark.timeout(3 * 3600)
@@ -63,7 +63,7 @@ def test_ten_minutes_of_a_robot_with_fins_in_a_flow(start, fresh_domain):
     result = soak(start, TEN_MINUTES, limit=3 * 3600.0, swimmer=ROBOT)
     result.write(OUT / "soak_robot.csv")
     assert set(result.counts.values()) == {round(TEN_MINUTES * RATE) + 1}, result.counts
-    spread = result.spread("visualiser", after=TWO_MINUTES)
+    spread = result.spread("visualiser", after=FOUR_MINUTES)
     assert result.memory["visualiser"].max() < MOST and spread < 0.02, spread
 
 
