@@ -222,7 +222,7 @@ PARTS = {  # names of what there is with each robot, and with each fin
 @pytest.mark.fault(
     "samples",
     "commands of joints and fins, and currents, with any extreme, wrong lengths, unknown names and bad stamps, while "
-    "running, paused, and after a reset with another robot and other fins",
+    "running, paused, and after a reset with another robot, other fins and another body",
     "refused, or acted on within the limits; the node publishes as before",
 )
 @pytest.mark.parametrize("factor", ["1.0", "0.0"])
@@ -249,8 +249,13 @@ def test_the_dynamics_node_stands_any_command(start, network, fresh_domain, tmp_
         swim.until_time(1e-9 * swim.newest("head_pose") + 0.5)
         assert all(is_finite(message) for message in swim.received["head_pose"]), node.output()[-3000:]
 
-    for robot, fins in (("eight_servos", FIN.format("rudder", 0.5)), (str(other), FIN.format("keel", 0.7))):
-        assert all(answer.successful for answer in swim.set(robot=robot, fins=fins)) and swim.reset().success
+    swimmers = (
+        ("eight_servos", FIN.format("rudder", 0.5), "boyer2010"),
+        (str(other), FIN.format("keel", 0.7), "kern2006"),
+    )
+    for robot, fins, body in swimmers:
+        answers = swim.set(robot=robot, fins=fins, body=body)
+        assert all(answer.successful for answer in answers) and swim.reset().success, answers
         goes_on()
         send()
         goes_on()
