@@ -16,8 +16,10 @@ ROS node declares its parameters from the same fields. Metadata of a field:
 """
 
 import math
-from collections.abc import Mapping
+import os
+from collections.abc import Collection, Mapping
 from dataclasses import MISSING, Field, dataclass, field, fields
+from pathlib import Path
 from typing import Any, ClassVar, Self, TypeVar
 
 import numpy as np
@@ -29,6 +31,7 @@ Kind = TypeVar("Kind", bound=type)
 
 AT_RESET = "at the next reset"  # when a change acts
 FEW = 8  # numbers of a row that a message shows
+LARGEST = 1e30  # size of a number; 1 / LARGEST the least that must be above 0: products of some of them are finite
 
 
 def quantity(
@@ -132,6 +135,9 @@ def number(
         raise ValueError(f"{name} must be a number, got {shown(value)}") from None
     if not math.isfinite(result):
         raise ValueError(f"{name} must be finite, got {result}")
+    least = 1.0 / LARGEST if exclusive and minimum == 0.0 and result > 0.0 else 0.0
+    if not least <= abs(result) <= LARGEST:
+        raise ValueError(f"{name} must be {least:g} to {LARGEST:g} in size, got {shown(value)}")
     low = minimum is not None and (result <= minimum if exclusive else result < minimum)
     high = maximum is not None and result > maximum
     if low or high:
@@ -165,10 +171,11 @@ def checked_row(name: str, values: Any, size: int | None) -> np.ndarray:
         if array.ndim == 1:
             got = f"{len(array)}: {got}" if 0 < len(array) <= FEW else f"{len(array)}"
         raise ValueError(f"{name} must be {'a row of' if size is None else size} numbers, got {got}")
-    finite = np.isfinite(array)
-    if np.count_nonzero(finite) < len(array):
-        index = np.flatnonzero(~finite)[0]
-        raise ValueError(f"{name} must be finite, got {array[index]} at index {index}")
+    good = np.abs(array) <= LARGEST
+    if np.count_nonzero(good) < len(array):
+        index = np.flatnonzero(~good)[0]
+        rule = f"0 to {LARGEST:g} in size" if np.isfinite(array[index]) else "finite"
+        raise ValueError(f"{name} must be {rule}, got {array[index]} at index {index}")
     return array
 
 
@@ -177,6 +184,18 @@ def checked_instance(name: str, value: Any, kind: type | tuple[type, ...]) -> An
     if not isinstance(value, kind):
         kinds = kind if isinstance(kind, tuple) else (kind,)
         raise ValueError(f"{name} must be a {' or a '.join(each.__name__ for each in kinds)}, got {shown(value)}")
+    return value
+
+
+def checked_path(name: str, value: Any) -> Path:
+    """`value` as a path."""
+    return Path(checked_instance(name, value, (str, os.PathLike)))
+
+
+def checked_choice(name: str, value: Any, known: Collection[str], *others: str) -> str:
+    """`value`, if it is one of the names `known`; others: what may be given besides, in words."""
+    if not isinstance(value, str) or value not in known:
+        raise ValueError(not_one_of(name, value, (*known, *others)))
     return value
 
 
@@ -200,9 +219,7 @@ def checked(item: Field[Any], value: Any, name: str) -> Any:
         if about.get("number") and is_finite(value):
             return float(value)
         _of_kind(isinstance(value, str), value, f"{name} must be a text{' or a number' if about.get('number') else ''}")
-        if value not in about.get("choices", (value,)):
-            raise ValueError(not_one_of(name, value, about["choices"]))
-        return value
+        return checked_choice(name, value, about.get("choices", (value,)))
     if isinstance(default, tuple):
         return _checked_row(default, value, name)
     if default is None and number(name, value) == 0.0:
@@ -234,6 +251,6 @@ def _checked_row(default: tuple[Any, ...], value: Any, name: str) -> tuple[Any, 
         words: Any = value.split(",") if isinstance(value, str) else value if row else (None,)
         _of_kind(all(isinstance(word, str) for word in words), value, f"{name} must be a list of texts")
         return tuple(word.strip() for word in words)
-    good = row and len(value) == len(default) and all(map(is_finite, value))
+    good = row and getattr(value, "ndim", 1) == 1 and len(value) == len(default) and all(map(is_finite, value))
     _of_kind(good, value, f"{name} must be {len(default)} finite numbers")
-    return tuple(float(number) for number in value)
+    return tuple(checked_row(name, value, len(default)).tolist())

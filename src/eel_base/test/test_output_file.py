@@ -34,6 +34,20 @@ def test_a_file_has_its_name_only_once_it_is_complete(tmp_path):
     assert name.stat().st_mode & 0o777 == 0o666 & ~_umask()
 
 
+@pytest.mark.parametrize("name", ["n" * 251 + ".npz", "\u00fc" * 125 + ".npz"])
+def test_a_name_may_be_as_long_as_the_file_system_allows(tmp_path, name):
+    check_output("--out", tmp_path / name)
+    with command_begins():
+        for expected in (1, 1, 2):
+            with replacing(tmp_path / name) as path:
+                path.write_bytes(b"PK")
+                assert len(os.fsencode(path.name)) <= 255
+                if expected == 2:
+                    (tmp_path / name).write_bytes(OLD)
+            assert len(os.listdir(tmp_path)) == expected
+    assert name in os.listdir(tmp_path)
+
+
 def test_an_error_leaves_the_older_file_and_nothing_else(tmp_path, limit_of_files):
     name = tmp_path / "run.npz"
     name.write_bytes(OLD)

@@ -126,7 +126,7 @@ def test_a_swimmer_that_stops_keeps_its_samples_and_disturbs_no_other():
 @pytest.mark.parametrize("accuracy", [1e-2, "draft, fixed steps", Accuracy(name="long", resolution=10.0, step=0.05)])
 def test_those_of_one_call_do_not_notice_who_stops_beside_them(accuracy):
     """Of the same body, scene and accuracy, up to sixteen at a time swim in the same work space."""
-    wild = [Law(Term(axis=axis, amplitude=(1e150,), wavelength=0.4, period=0.3)) for axis in ("yaw", "pitch")]
+    wild = [Law(Term(axis=axis, amplitude=(1e28,), wavelength=0.4, period=0.3)) for axis in ("yaw", "pitch")]
     laws = [wild[k % 2] if k % 3 == 1 else falling(period=0.8 + 0.02 * k) for k in range(24)]
     settings = {"accuracy": accuracy, "sample_period": 0.1, "stations": 3, "load": True}
     batch = simulate_batch(laws, 0.3, threads=1, **settings)
@@ -136,13 +136,12 @@ def test_those_of_one_call_do_not_notice_who_stops_beside_them(accuracy):
             assert_same(batch[index], simulate(law, 0.3, **settings))
 
 
-def test_a_swimmer_that_cannot_begin_is_told_apart():
+def test_a_swimmer_that_stops_at_its_start_is_told_apart():
     twists = np.zeros((2, 6))
-    twists[1, 3] = 1e200
+    twists[1, 3] = 1e30
     batch = simulate_batch(falling(), 0.1, twists=twists, accuracy=1e-2)
-    assert batch.stopped.tolist() == [False, True] and batch.samples.tolist() == [3, 0]
-    assert batch.error[1].time == 0.0 and "kinetic energy" in str(batch.error[1])
-    assert len(batch[1].time) == 0
+    assert batch.stopped.tolist() == [False, True] and batch.samples.tolist() == [3, 1]
+    assert batch.error[1].time < 1e-9 and "more steps per simulated second" in str(batch.error[1])
 
 
 def test_progress_reaches_the_end():

@@ -125,7 +125,7 @@ def test_a_text_is_a_flow_and_a_flow_a_text(text, flow):
     ("text", "message"),
     [
         ("vortices", "flow must be one of uniform, .* did you mean 'vortex'|flow must be one of"),
-        ("shear width", "flow shear must have fields NAME=VALUE, each once, got 'width'"),
+        ("shear width", r"flow must be one of .*, got 'shear width' .did you mean 'shear'"),
         ("shear width=1 width=2", "each once, got 'width=2'"),
         ("shear breadth=1", "flow Shear has no field 'breadth'"),
         ("shear width=wide", "width"),

@@ -113,10 +113,12 @@ def test_bodies_a_thousandth_and_a_thousand_times_as_dense_as_water(density):
 
 @pytest.mark.parametrize("settings", ["draft", fixed(0.05)])
 def test_what_is_beyond_numbers_is_told(settings):
-    with pytest.raises(SimulationStopped, match="closure is not finite"):
-        simulate(straight(), 0.1, body=Body.boyer2010().changed(density=1e200), accuracy=settings)
+    with pytest.raises(ValueError, match=r"body density must be 1e-30 to 1e\+30 in size, got 1e\+200"):
+        Body.boyer2010().changed(density=1e200)
+    for body in (Body.boyer2010().changed(density=1e30), Body.spindle(1e30, 10.0), Body.spindle(1e-30, 10.0)):
+        assert np.isfinite(simulate(still(), 0.1, body=body, accuracy=settings).twist).all()
     with pytest.raises(ValueError, match="body is too large or too dense for numbers"):
-        simulate(still(), 0.1, body=Body.spindle(1e155, 10.0), accuracy=settings)
+        simulate(still(), 0.1, body=pointed(1e100, 1e100), accuracy=settings)
     assert floors_of(straight(), mass=1.0, length=1e160, duration=1.0).torque == np.inf
 
 
@@ -248,7 +250,7 @@ def test_splines_of_many_knots_keep_the_target(knots, seed):
     ("law", "said"),
     [
         (straight(wavelength=5e-4), "law 'straight' bends the body into 2e.03 waves or turns: at most 200"),
-        (Law(Term(amplitude=(1e300,), period=1.0), name="x"), r"law 'x' bends the body into .*e\+299 waves or turns"),
+        (Law(Term(amplitude=(1e29,), period=1.0), name="x"), r"law 'x' bends the body into .*e\+28 waves or turns"),
         (
             Law(Term(amplitude=(2.0,), envelope=(Ramp(0.5, 0.5 + 1e-12, 1.0),)), name="x"),
             "law 'x' has a ramp at 0.5 s of 1e-12 s: at least 1e-09 s",

@@ -214,7 +214,14 @@ def test_what_does_not_fit_is_named(make, message):
         make()
 
 
-def written(path: Path, units="m/s", time_units="seconds since 2020-01-01", names=("u", "v", "w"), positive="up"):
+def written(
+    path: Path,
+    units="m/s",
+    time_units="seconds since 2020-01-01",
+    names=("u", "v", "w"),
+    positive="up",
+    along=("z", "y", "time", "x"),
+):
     """A file of the classic format with dimensions in another order."""
     t, x, y, z = np.array([10.0, 10.5, 11.0]), np.arange(3.0), np.arange(4.0), np.arange(2.0)
     with netcdf_file(path, "w") as file:
@@ -225,9 +232,9 @@ def written(path: Path, units="m/s", time_units="seconds since 2020-01-01", name
         file.variables["z"].positive = positive
         values = np.arange(72.0).reshape(2, 4, 3, 3)
         for k, name in enumerate(names):
-            variable = file.createVariable(name, "f", ("z", "y", "time", "x") if k < 2 else ("y", "x"))
+            variable = file.createVariable(name, "f", along if k < 2 else ("y", "x"))
             variable.units = units
-            variable[:] = values + k if k < 2 else values[0, :, 0]
+            variable[:] = np.resize(values + k, variable.shape) if k < 2 else values[0, :, 0]
     return values
 
 
@@ -251,6 +258,10 @@ def test_a_file_is_read_by_dimensions_as_xarray_reads_it(tmp_path):
         ({"time_units": "fortnights"}, "flow time must be in seconds, minutes, hours or days, got units 'fortnights'"),
         ({"names": ("vx", "v", "w")}, "flow file must have a variable 'u'"),
         ({"positive": "down"}, "flow z must rise upwards"),
+        ({"positive": "Down"}, "flow z must rise upwards"),
+        ({"positive": 1.0, "units": b"m\xb7s-1"}, r"flow velocity must be in m/s, got units .*xb7s-1"),
+        ({"time_units": b"\xb5s"}, r"flow time must be in seconds, .*got units .*xb5s"),
+        ({"along": ("y", "y", "time", "x")}, r"flow 'u' must have each of its dimensions once, got \('y', 'y', 't"),
     ],
 )
 def test_a_file_that_does_not_fit_is_named(tmp_path, options, message):

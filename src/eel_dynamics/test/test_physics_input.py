@@ -202,8 +202,8 @@ def test_pitch_in_a_planar_scene():
         ({"duration": 1.0, "sample_period": "0.1"}, ("sample_period must be a number, got '0.1'",)),
         ({"duration": 5.0, "sample_period": 10}, ("sample_period must be at most the duration of 5 s, got 10 s",)),
         ({"duration": 1e9}, ("duration", "sample_period", r"2e\+10 samples")),
-        ({"duration": 1e300}, ("duration", "sample_period", "10,000,000 samples")),
-        ({"duration": 1e300, "sample_period": 1e-300}, ("duration", "sample_period", "inf samples")),
+        ({"duration": 1e300}, (r"duration must be 0 to 1e\+30 in size, got 1e\+300",)),
+        ({"duration": 1e29, "sample_period": 1e-29}, ("duration", "sample_period", r"1e\+58 samples")),
         ({"duration": 1.0, "sample_period": 1e-12}, ("duration", "sample_period", r"1e\+12 samples")),
         ({"duration": 100.0, "sample_period": 1e-8}, ("duration", "sample_period", r"1e\+10 samples")),
         ({"duration": 9.0, "sample_period": 1e-6, "stations": 10_000}, ("stations", "1 swimmer of", "GB")),
@@ -284,7 +284,7 @@ def test_samples(time, x, pitch, word):
         simulation.add_samples(time, x, pitch, *[[0.0, 0.0]] * 5)
 
 
-@pytest.mark.parametrize("amplitude", [1e3, 1e4, 1e6, 1e60, 1e200])
+@pytest.mark.parametrize("amplitude", [1e3, 1e4, 1e6, 1e20, 1e29])
 def test_a_law_beyond_all_numbers(amplitude):
     """A body wound up a thousand times and more: refused, or stopped with a hint, or it goes on; NaN it never gives."""
     simulation = Simulation(accuracy="draft", most_evaluations=1e4)

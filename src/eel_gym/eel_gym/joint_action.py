@@ -4,8 +4,8 @@
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import checked_instance, positive
-from eel_base.wording import not_one_of, shown
+from eel_base.quantity import checked_choice, checked_instance, positive
+from eel_base.wording import shown
 from eel_dynamics.simulation.sampled_swimmers import Array
 from eel_model.robot.robot import Robot
 
@@ -31,8 +31,7 @@ class JointAction:
 
     def __init__(self, robot: Robot | str, kind: str = "position", greatest: float | None = None):
         self.robot = Robot.named(robot) if isinstance(robot, str) else checked_instance("robot", robot, Robot)
-        if not isinstance(kind, str) or kind not in KINDS:
-            raise ValueError(not_one_of("kind", kind, KINDS))
+        checked_choice("kind", kind, KINDS)
         driven = [
             (joint.name, servo) for joint, servo in zip(self.robot.joints, self.robot.servos, strict=True) if servo
         ]

@@ -76,7 +76,7 @@ def test_a_file_of_appendages_that_does_not_fit_is_one_line(tmp_path, content, w
         (TEXT + " nose=2", "body nose must be blunt, or a length above 0 and below half"),
         (TEXT + " mass=7", "each once, got 'mass=7'"),
         (TEXT + " lenght=7", "did you mean 'length'"),
-        ("boyer2010 length=2", "NAME=VALUE of .*got 'length=2'"),
+        ("boyer2010 length=2", "body 'boyer2010' has no 'length'.*, it has: density"),
         ("boyer2010 joints=0.5", "joint_drag needs a link_length"),
         ("boyer2011", "body must be one of boyer2010, kern2006, links with its numbers, a file"),
         ("none.csv base_drag=1", "there is no such file"),

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Robots from URDF: chains become joints and a body, what is not kept is said, what cannot be is one line."""
 
+import re
+
 import numpy as np
 import pytest
 from eel_model.robot.compiled import mode_table
@@ -101,6 +103,40 @@ def test_the_shape_at_given_angles_is_that_of_the_urdf(tmp_path, sign):
     assert np.allclose(ends, places, atol=1e-12)
 
 
+def moved(turn):
+    """The chain with axes in yaw and pitch, and other half-axes, in a base whose axes are turned by `turn` (3, 3)."""
+
+    def put(match):
+        vector = turn @ np.array([float(word) for word in match[2].split()])
+        size = np.abs(vector) if match[1] == "size" else vector
+        return f'{match[1]}="{" ".join(f"{each:.17g}" for each in size)}"'
+
+    return re.sub('(xyz|size)="([^"]+)"', put, chain(axes=("0 0 1", "0 -1 0", "0 0 -1", "0 1 0")))
+
+
+@pytest.mark.parametrize(("along", "up"), [("y", "z"), ("-y", "z"), ("z", "x"), ("z", "y"), ("-z", "x"), ("-z", "y")])
+def test_the_chain_may_lead_along_any_axis_of_the_base(tmp_path, along, up):
+    """The same robot as along -x, but for the axes of its base: upright ones of which say which way is up."""
+    axes = {name: np.eye(3)["xyz".index(name[-1])] * (-1.0 if name[0] == "-" else 1.0) for name in (along, up)}
+    turn = np.column_stack([-axes[along], np.cross(axes[up], -axes[along]), axes[up]])
+    robot, other = (robot_of(tmp_path, moved(each)) for each in (turn, np.eye(3)))
+    assert [(part.name, part.axis) for part in robot.joints] == [(part.name, part.axis) for part in other.joints]
+    assert [part.position for part in robot.joints] == pytest.approx([part.position for part in other.joints])
+    x = np.linspace(0.0, 0.5, 11)
+    assert np.allclose(robot.body.half_width(x), other.body.half_width(x), atol=1e-12)
+    assert np.allclose(robot.body.half_height(x), other.body.half_height(x), atol=1e-12)
+    told = [note for note in robot.notes if "stacked along the base link's z" in note]
+    assert len(told) == (along[-1] == "z") and all(str(axes[up].tolist()) in note for note in told)
+
+
+def test_a_chain_that_is_bent_at_rest_is_refused_with_what_to_do(tmp_path):
+    bent = chain().replace('<origin xyz="-0.1 0 0" rpy="0 0 0"', '<origin xyz="-0.1 0 0" rpy="0 0 0.4"', 2)
+    with pytest.raises(
+        ValueError, match=r"must lie on the line of the joints.*at angles of 0 the robot must be straig"
+    ):
+        robot_of(tmp_path, bent)
+
+
 def test_frames_that_turn_along_the_chain_are_followed(tmp_path):
     """Each link's own frame is turned by a quarter about x: its z axis is the base's y, and its y the base's z."""
     text = link("a", -0.05) + link("b", -0.05, size=(0.1, 0.06, 0.04)) + link("c", -0.05, size=(0.1, 0.06, 0.04))
@@ -173,7 +209,7 @@ def test_what_is_not_kept_is_said(tmp_path):
         (chain().replace('xyz="-0.1 0 0"', 'xyz="-0.1 0.05 0"', 2), "must lie on the line of the joints, got"),
         (
             chain().replace('axis xyz="0 0 1"', 'axis xyz="1 0 0"'),
-            "axis of 'j1': must point along the base link's z (yaw)",
+            "axis of 'j1': must point up (yaw) or to the side (pitch), across the line of joints",
         ),
         (chain().replace('axis xyz="0 0 1"', 'axis xyz="0 0 0"'), "axis of 'j1': must have a direction"),
         (chain().replace('upper="0.6"', 'upper="-0.9"'), "limit: lower must be < upper, got -0.8 and -0.9"),
@@ -185,10 +221,6 @@ def test_what_is_not_kept_is_said(tmp_path):
         ),
         (chain().replace('box size="0.1 0.04 0.06"', "blob"), "blob: must be box, cylinder, capsule, sphere or mesh"),
         (chain().replace(f'mass value="{MASS}"', 'mass value="-1"'), "mass: must be >= 0 kg, got -1"),
-        (
-            chain().replace('<origin xyz="-0.1 0 0"', '<origin xyz="0 0 -0.1"'),
-            "along the base link's x or y, got along its z",
-        ),
     ],
 )
 def test_what_a_urdf_cannot_hold_is_one_short_line(tmp_path, text, told):

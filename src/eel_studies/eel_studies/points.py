@@ -16,13 +16,14 @@
 | `initial.omega_x`, ..., `initial.v_z` | twist of the head at the start [rad/s, m/s], its axes |
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import fields, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from eel_base.quantity import number
+from eel_base.files.input_file import reading
+from eel_base.quantity import checked_instance, number
 from eel_base.wording import did_you_mean, shown
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import AT_END, OF_LEDGER, OF_WRENCH, measures_of
@@ -137,11 +138,9 @@ def point_at(values: Numbers, gait: Gait, numbers: Numbers, base: Swim) -> Swim:
         raise ValueError(
             f"gait must be the name of a gait, a function that returns a law, or a Swim, got {shown(gait)}"
         )
-    try:
-        return _point({**numbers, **values}, gait, base)
-    except (ValueError, TypeError) as error:
-        at = ", ".join(f"{name}={label_of(value) if _named(value) else shown(value)}" for name, value in values.items())
-        raise ValueError(f"at {at}: {error}") from None
+    at = ", ".join(f"{name}={label_of(value) if _named(value) else shown(value)}" for name, value in values.items())
+    with reading(f"at {at}"):
+        return _point({**checked_instance("numbers", numbers, Mapping), **values}, gait, base)
 
 
 def law_of_terms(law: object) -> Law:

@@ -10,9 +10,9 @@ import io
 import json
 import os
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
+from eel_base.quantity import checked_path
 from eel_base.wording import one_line
 
 MOST_READS = 10_000  # of one file: a parser takes 10 or so for each variable or member
@@ -29,11 +29,16 @@ class Misplaced(ValueError):
 
 @contextlib.contextmanager
 def reading(what: str) -> Iterator[None]:
-    """Turn every error within into a `ValueError` of one line that begins with `what`: the file in words, or ""."""
+    """Turn every error within into a `ValueError` of one line that begins with `what`: a file or value in words, or "".
+
+    What makes an object of a file, a text or plain values stands within it.
+    """
     try:
         yield
     except BaseException as error:  # parsers raise nearly anything for a damaged file; those in Rust panic
         if not isinstance(error, Exception) and type(error).__module__ != "pyo3_runtime":
+            raise
+        if isinstance(error, Misplaced) and not what:
             raise
         reason = _reason(error)
         if not reason.startswith(what):
@@ -49,7 +54,7 @@ class InputFile(io.BufferedReader):
     """
 
     def __init__(self, path: str | os.PathLike[str], most: int | None = None) -> None:
-        path = Path(path)
+        path = checked_path("path", path)
         if not path.is_file():
             kind = "a folder" if path.is_dir() else "no regular file"
             raise ValueError(f"it is {kind}" if path.exists() else "there is no such file")
@@ -97,4 +102,5 @@ def _reason(error: BaseException) -> str:
         return f"it is no text in {error.encoding}: {error.reason} at byte {error.start}"
     if isinstance(error, (OSError, ValueError)):
         return one_line(error) or type(error).__name__
-    return f"it is damaged or foreign ({type(error).__name__}: {one_line(error)})"
+    what = "does not fit" if isinstance(error, (TypeError, ArithmeticError)) else "is damaged or foreign"
+    return f"it {what} ({type(error).__name__}: {one_line(error)})"

@@ -19,6 +19,7 @@ from pathlib import Path
 from eel_base.wording import shown
 
 BEGINNINGS = {".npz": b"PK", ".nc": b"CDF", ".png": b"\x89PNG", ".rrd": b"RRF", ".svg": b"<?xml"}
+LONGEST_NAME = 255  # bytes, in nearly all file systems
 KINDS = {stat.S_IFLNK: "a symbolic link", stat.S_IFDIR: "a folder", stat.S_IFIFO: "a FIFO", stat.S_IFSOCK: "a socket"}
 
 _starts: list[int] = []  # ns: when the present command began
@@ -82,8 +83,8 @@ class Draft:
 
 
 def part_of(name: Path, mark: str = "part") -> Path:
-    """The path of the output `name` until it is complete."""
-    return name.with_name(f"{name.stem}.{mark}{name.suffix}")
+    """The path of the output `name` until it is complete. Of a long name the end of the stem is left out."""
+    return _beside(name, f".{mark}")
 
 
 @contextlib.contextmanager
@@ -98,7 +99,12 @@ def command_begins() -> Iterator[None]:
 
 def numbered(name: Path, number: int) -> Path:
     """The path of the output `name` with a `number`."""
-    return name.with_name(f"{name.stem}-{number}{name.suffix}")
+    return _beside(name, f"-{number}")
+
+
+def _beside(name: Path, mark: str) -> Path:
+    left = LONGEST_NAME - len(os.fsencode(mark + name.suffix))
+    return name.with_name(os.fsdecode(os.fsencode(name.stem)[:left]) + mark + name.suffix)
 
 
 def written_as(name: str | os.PathLike[str]) -> Path:

@@ -2,12 +2,13 @@
 """Reads a YAML file into mappings, lists and scalars that know their lines. Size, levels and aliases are bounded."""
 
 import os
+import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NoReturn, TypeVar
 
 import yaml
 
-from eel_base.files.input_file import InputFile, Misplaced, is_number
+from eel_base.files.input_file import InputFile, Misplaced, is_number, reading
 from eel_base.wording import did_you_mean, shown
 
 Made = TypeVar("Made")
@@ -36,8 +37,8 @@ def read_yaml(path: str | os.PathLike[str]) -> Any:
 
 def from_yaml(text: str, most: int = MOST_NODES) -> Any:
     """The document in a YAML `text` of at most `most` values. Errors as in `read_yaml`."""
-    loader = _Loader(text, most)
     try:
+        loader = _Loader(text, most)
         node = loader.get_single_node()
         return None if node is None else loader.value(node, 1)
     except yaml.YAMLError as error:
@@ -119,10 +120,12 @@ def check_keys(entries: Mapping[str, Any], known: Iterable[str]) -> None:
 
 
 def tried(entries: Mapping[str, Any], key: str, make: Callable[..., Made], *arguments: Any, **options: Any) -> Made:
-    """What `make` makes of the arguments; its error is one at the `key`."""
+    """What `make` makes of the arguments; its error is one at the `key`, or at the first that its text names."""
     try:
-        return make(*arguments, **options)
+        with reading(""):
+            return make(*arguments, **options)
     except Misplaced:
         raise
-    except (ValueError, TypeError) as error:
-        fail(entries, key, error)
+    except ValueError as error:
+        named = (word for word in re.findall(r"\w+", str(error)) if word in entries)
+        fail(entries, key or next(named, ""), error)

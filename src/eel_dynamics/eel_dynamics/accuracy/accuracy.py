@@ -21,8 +21,8 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import is_finite, number, positive
-from eel_base.wording import did_you_mean, not_one_of, shown
+from eel_base.quantity import checked_choice, is_finite, number, positive
+from eel_base.wording import did_you_mean, shown
 from eel_model.scene import ROUGH_FRICTION, Scene
 from eel_model.section_data import WATCHED
 
@@ -144,8 +144,7 @@ class Accuracy:
             raise ValueError(f"accuracy order of the method {self.method} must be {possible}, got {shown(self.order)}")
         object.__setattr__(self, "order", int(self.order))
         number("accuracy resolution", self.resolution, "points per body length", minimum=1.0, maximum=1000.0)
-        if not isinstance(self.kinks, str) or self.kinks not in KINKS:
-            raise ValueError(not_one_of("accuracy kinks", self.kinks, KINKS))
+        checked_choice("accuracy kinks", self.kinks, KINKS)
         if self.target is not None:
             number("accuracy target", self.target, minimum=FINEST, maximum=COARSEST)
             if self.step is not None:

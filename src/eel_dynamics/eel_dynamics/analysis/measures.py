@@ -5,7 +5,7 @@ from contextlib import suppress
 from typing import Any
 
 import numpy as np
-from eel_base.wording import not_one_of
+from eel_base.quantity import checked_choice
 
 from eel_dynamics.analysis.analysis import Analysis
 
@@ -101,8 +101,7 @@ def checked_measures(argument: str, names, estimate: bool = True) -> tuple[str, 
         return tuple(name for name in MEASURES if estimate or name not in OF_ESTIMATE)
     names = tuple(names) if np.iterable(names) and not isinstance(names, str) else (names,)
     for name in names:
-        if not isinstance(name, str) or name not in MEASURES:
-            raise ValueError(not_one_of(argument, name, MEASURES))
+        checked_choice(argument, name, MEASURES)
         if name in OF_ESTIMATE and not estimate:
             raise ValueError(f"{argument} {name} needs the error estimate, which is off")
     return names

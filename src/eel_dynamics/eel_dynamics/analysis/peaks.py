@@ -43,6 +43,7 @@ def peaks(
     if len(x) < 2:
         return size(values)[0], np.broadcast_to(x[0], size(values)[0].shape)
     inside = np.unique(np.clip(x, start, end)) if np.isfinite([start, end]).any() else x
+    inside = inside[np.diff(inside, prepend=-np.inf) > EQUIDISTANT * (x[1] - x[0])]  # none that differ by round-off
     between = np.arange((len(inside) - 1) * BETWEEN + 1) / BETWEEN
     fine = np.interp(between, np.arange(len(inside)), inside)
     wanted = slice(None) if near is None else np.interp(between, np.arange(len(inside)), near) > 0.0

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 from eel_base.command.command_line import Parser
+from eel_base.texts import TRUTH, value_of
 from eel_base.wording import shown
 from eel_gaits.gaits.registry import GAITS, find
 from eel_model.body.body import NAMED
@@ -26,7 +27,6 @@ from eel_dynamics.runs.swim import Swim
 
 CHANGES = "--scene", "--body", "--flow", "--robot", "--fins", "--duration", "--accuracy", "--sample-period"
 FIELDS = "body", "flow", "robot", "fins", "duration", "accuracy", "sample_period", "stations"  # words of a file
-TRUTH = {"true": True, "on": True, "false": False, "off": False}
 
 
 def add_options(parser: Parser, *options: str, **defaults: Any) -> None:
@@ -126,8 +126,7 @@ def scene_fields(texts: list[str]) -> dict[str, Any]:
         elif item is not None and "choices" in item.metadata:
             found[name] = text
         else:
-            values = [value_of(part) for part in text.split(",")]
-            found[name] = values[0] if len(values) == 1 else tuple(values)
+            found[name] = value_of(text)
     return found
 
 
@@ -147,16 +146,6 @@ def varied_values(text: str, check_count: Callable[[int], None]) -> list[Any]:
     check_count(count)
     values: list[Any] = np.linspace(start, end, count).tolist()
     return values
-
-
-def value_of(text: str) -> Any:
-    """A truth, a number, or the text itself."""
-    if text.lower() in TRUTH:
-        return TRUTH[text.lower()]
-    try:
-        return float(text)
-    except ValueError:
-        return text
 
 
 def add_changes(parser: Parser, *left_out: str, **defaults: Any) -> None:

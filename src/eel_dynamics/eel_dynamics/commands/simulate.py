@@ -143,6 +143,7 @@ def main(options: argparse.Namespace) -> int:
     seconds = time.perf_counter() - start
     if beat is not None:
         _print_lines(beat.about())
+    _print_lines([("robot", note) for note in (swim.robot.notes if swim.robot else ())])
     if robot is not None:
         print(*robot.about(), sep="\n")
     print(run.summary(options.periods))

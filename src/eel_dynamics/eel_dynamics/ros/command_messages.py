@@ -10,7 +10,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from eel_base.wording import not_one_of, shown
+from eel_base.quantity import checked_choice
+from eel_base.wording import shown
 from eel_model.robot.robot import Robot
 from sensor_msgs.msg import JointState
 
@@ -38,8 +39,7 @@ def _interfaces(words: str) -> tuple[str, ...]:
     if words in (ANY, NONE):
         return INTERFACES if words == ANY else ()
     for word in words.split() or [words]:
-        if word not in INTERFACES:
-            raise ValueError(not_one_of("command_interfaces", word, (*INTERFACES, ANY, NONE)))
+        checked_choice("command_interfaces", word, INTERFACES, ANY, NONE)
     return tuple(words.split())
 
 
@@ -54,8 +54,7 @@ def joint_command_from_message(
     if not 1 <= len(names) <= MOST_JOINTS:
         raise ValueError(f"name must hold 1 to {MOST_JOINTS} joints, got {len(names)}")
     for index, name in enumerate(names):
-        if name not in interfaces:
-            raise ValueError(not_one_of("joint", name, interfaces))
+        checked_choice("joint", name, interfaces)
         if names.index(name) < index:
             raise ValueError(f"name must hold each joint once, got {shown(name)} twice")
     joints: Values = {name: {} for name in names}

@@ -28,7 +28,7 @@ import yaml
 from eel_base.files.input_file import reading
 from eel_base.files.output_file import replacing
 from eel_base.files.yaml_tree import read_yaml
-from eel_base.quantity import checked_instance, checked_row, positive
+from eel_base.quantity import checked_instance, checked_path, checked_row, positive
 from eel_base.wording import did_you_mean, shown
 from eel_gaits.gaits.settings import SEQUENCES, Settings
 from eel_model.body.body import Body
@@ -64,7 +64,7 @@ def save_scene(swim: Swim, path: str | os.PathLike[str]) -> None:
     """Write `swim` to a file. `ValueError` for what none can hold; `NotWritten`: it cannot be completed."""
     words = words_of(checked_instance("swim", swim, Swim))
     text = yaml.safe_dump({FOR_ALL: {PARAMETERS: words}}, sort_keys=False, default_flow_style=None)
-    with replacing(Path(path)) as draft:
+    with replacing(checked_path("path", path)) as draft:
         draft.write_text(ABOUT + text, encoding="utf-8")
 
 

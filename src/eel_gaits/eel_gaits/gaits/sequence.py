@@ -30,14 +30,12 @@ The curvature is twice differentiable in time.
 """
 
 import os
-import re
 from collections.abc import Iterable, Sequence
-from pathlib import Path
 from typing import Any
 
 from eel_base.files.input_file import Misplaced, reading
 from eel_base.files.yaml_tree import Entries, check_keys, fail, read_yaml, tried
-from eel_base.quantity import positive
+from eel_base.quantity import checked_instance, checked_path, positive
 from eel_base.wording import shown
 
 from eel_gaits.gaits.registry import find
@@ -58,7 +56,8 @@ def sequence(steps: Iterable[Sequence[Any]], *, blend: float = BLEND, name: str 
     step then lasts. Otherwise the body becomes straight at its end.
     blend: [s], into each step without one of its own, and at the end. `ValueError` names the step that does not fit.
     """
-    rows = [(*step, blend)[:3] for step in steps]
+    listed = enumerate(checked_instance("steps", steps, Iterable))
+    rows = [(*checked_instance(f"steps[{index}]", step, Sequence), blend)[:3] for index, step in listed]
     for index, (_, _, into) in enumerate(rows):
         positive(f"steps[{index}]: blend", into)
     fades = [float(into) for _, _, into in rows[1:]] + [positive("blend", blend)]  # out of each step
@@ -86,7 +85,7 @@ def sequence(steps: Iterable[Sequence[Any]], *, blend: float = BLEND, name: str 
 
 def sequence_from_file(path: str | os.PathLike[str]) -> Law:
     """The `Law` of the sequence in a YAML file. `ValueError` in one line names file, line and key."""
-    path = Path(path)
+    path = checked_path("path", path)
     with reading(shown(str(path))):
         return SequenceReader().law(read_yaml(path), path.stem[:MAXIMUM_NAME])
 
@@ -163,13 +162,8 @@ class SequenceReader:
         make = tried(part, "gait", find, part["gait"])
         if not isinstance(given, Entries):
             fail(part, "set", f"must be a mapping of names to numbers, got {shown(given)}")
-        try:
-            law: Law = make(**given)
-            return law
-        except ValueError as error:
-            words = re.findall(r"\w+", str(error))
-            guilty = min((name for name in given if name in words), key=words.index, default=None)
-            fail(given if guilty else part, guilty or "gait", error)
+        law: Law = tried(given, "", make, **given)
+        return law
 
     # -- places and errors
 

@@ -107,5 +107,5 @@ class Settings:
 
 def numbers_of(gait: str) -> type[Any]:
     """The class of the numbers of a `gait`. `ValueError` for an unknown gait."""
-    kind: type[Any] = FILE_GAITS[gait] if gait in FILE_GAITS else find(gait).numbers
+    kind: type[Any] = FILE_GAITS[gait] if isinstance(gait, str) and gait in FILE_GAITS else find(gait).numbers
     return kind

@@ -20,8 +20,8 @@ from typing import Any
 
 import numpy as np
 from eel_base.cell import cell_of
-from eel_base.quantity import number, numbers, positive
-from eel_base.wording import not_one_of, shown
+from eel_base.quantity import checked_choice, number, numbers, positive
+from eel_base.wording import shown
 
 from eel_gaits.laws.law_picture import lines_of_law, picture_of_law
 from eel_gaits.laws.ramp import begun, ended
@@ -140,8 +140,7 @@ class Law:
 
     def mirrored(self, axis: str = "yaw") -> "Law":
         """The law with the opposite curvature about one `axis`: left and right ("yaw") or up and down ("pitch")."""
-        if not isinstance(axis, str) or axis not in SECTION_COLUMN:
-            raise ValueError(not_one_of("axis", axis, SECTION_COLUMN))
+        checked_choice("axis", axis, SECTION_COLUMN)
         return self._of(term.scaled(-1.0) if term.axis == axis else term for term in self.terms)
 
     def ramped_in(self, start: float, end: float) -> "Law":

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import number
-from eel_base.wording import not_one_of, shown
+from eel_base.quantity import checked_choice, number
+from eel_base.wording import shown
 
 from eel_gaits.laws.ramp import Ramp, envelope_at
 from eel_gaits.laws.spline import natural_spline
@@ -45,8 +45,7 @@ class Term:
     envelope: tuple[Ramp, ...] = ()
 
     def __post_init__(self) -> None:
-        if not isinstance(self.axis, str) or self.axis not in SECTION_COLUMN:
-            raise ValueError(not_one_of("axis", self.axis, SECTION_COLUMN))
+        checked_choice("axis", self.axis, SECTION_COLUMN)
         for field in ("amplitude", "knots"):
             object.__setattr__(self, field, _numbers(field, getattr(self, field)))
         for field, least in (("wavelength", None), ("period", 0.0), ("phase", None)):

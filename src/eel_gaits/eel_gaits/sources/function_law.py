@@ -53,6 +53,8 @@ def sampled(
         raise ValueError(
             f"step must be {duration / MOST_LOOKS:g} s or more for a duration of {duration:g} s, got {step:g} s"
         )
+    if not callable(function):
+        raise ValueError(f"function must be one of t and X, got {shown(function)}")
     curvature = CheckedFunction(function)
     x, looks, seen = _points(curvature, duration, length, tolerance, step)
 

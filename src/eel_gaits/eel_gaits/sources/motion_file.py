@@ -29,7 +29,7 @@ from eel_base.files.output_file import replacing
 from eel_base.files.table import Table, split_name
 from eel_base.files.tables import is_table, read_table
 from eel_base.files.times import time_of
-from eel_base.quantity import positive
+from eel_base.quantity import checked_path, positive
 from eel_base.wording import shown
 
 from eel_gaits.sources.frames import Frames, SmoothedFrames, check_rising, check_steps, frames_of, law_of_frames
@@ -58,7 +58,7 @@ def read_motion(
     splines go through them. name: of the law; by default that of the file. time: the column of times, if its name does
     not tell. `ValueError` in one line names file, line, column and value of what does not fit.
     """
-    path = Path(path)
+    path = checked_path("path", path)
     length, scale = positive("length", length, "m"), positive("scale", scale)
     name = path.stem if name is None else name
     with reading(shown(str(path))):

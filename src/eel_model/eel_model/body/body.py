@@ -18,8 +18,8 @@ import numpy as np
 from eel_base.cell import cell_of
 from eel_base.files.input_file import reading
 from eel_base.files.tables import read_table
-from eel_base.quantity import checked_instance, checked_row, number, positive
-from eel_base.wording import not_one_of, shown
+from eel_base.quantity import checked_choice, checked_instance, checked_row, number, positive
+from eel_base.wording import shown
 from numpy.typing import ArrayLike
 
 from eel_model.body.along import AlongBody, HalfAxis
@@ -418,8 +418,7 @@ class Body:
     @staticmethod
     def named(name: str) -> "Body":
         """The body called `name`: boyer2010 or kern2006. `ValueError` for another name."""
-        if name not in NAMED:
-            raise ValueError(not_one_of("body", name, (*NAMED, "a file")))
+        checked_choice("body", name, NAMED, "a file")
         made: Body = getattr(Body, name)()
         return made
 

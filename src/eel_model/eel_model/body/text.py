@@ -10,19 +10,17 @@ a table with the columns x, y, z, drag1, drag2, drag3 and law; what is left out 
 """
 
 import os
-import re
 from pathlib import Path
 from typing import Any
 
 from eel_base.files.input_file import reading
 from eel_base.files.table import split_name
 from eel_base.files.tables import read_table
-from eel_base.quantity import is_finite
+from eel_base.texts import made, named_fields, value_of
 from eel_base.wording import did_you_mean, not_one_of, shown
 
 from eel_model.body.appendages import MOST_APPENDAGES, Appendage
-from eel_model.body.body import NAMED, NUMBERS, PROFILES, Body
-from eel_model.body.hull import BY_SHAPE
+from eel_model.body.body import NAMED, NUMBERS, Body
 from eel_model.body.links import joint_drag_of
 
 LINKS = "links"
@@ -34,30 +32,26 @@ COLUMNS = "x", "y", "z", "drag1", "drag2", "drag3", "law"
 
 def body_of(text: str) -> Body:
     """The body of a `text`. `ValueError` names what does not fit; `OSError`: not readable."""
-    if text in NAMED or Path(text).is_file():
-        return _plain_body(text)
-    what, *fields = re.split(r"\s+(?=\w+=)", text.strip())
-    values: dict[str, Any] = {}
-    for each in fields:
-        name, _, value = each.partition("=")
-        known = (*OF_LINKS, *OTHERS) if what == LINKS else OTHERS
-        if name not in known or name in values:
-            raise ValueError(
-                f"body {shown(what)} must have NAME=VALUE of {', '.join(known)}, each once, got {shown(each)}"
-                f"{did_you_mean(name, known)}"
-            )
-        values[name] = _value(name, value)
-    if what != LINKS:
-        body = _plain_body(what)
-        if "joints" in values:
-            values["joint_drag"] = joint_drag_of(values.pop("joints"))
-        return body.changed(**values, name=text) if values else body
-    for name in REQUIRED:
-        if name not in values:
-            raise ValueError(f"body links must have {name}, got {shown(text)}{_about(name)}")
-    if "joint_drag" in values:
-        raise ValueError(f"body links has joints in place of joint_drag, got {shown(text)}")
-    return Body.of_links(**values, name=text)
+    with reading("body"):
+        given: dict[str, Any] = named_fields("body", "name", text)
+        what = given.pop("name")
+        links = what == LINKS
+        for name, value in given.items():
+            if name not in (known := (*OF_LINKS, *OTHERS) if links else OTHERS):
+                hint = did_you_mean(name, known)
+                raise ValueError(f"body {shown(what)} has no {shown(name)}{hint}, it has: {', '.join(known)}")
+            given[name] = appendages_from_file(value) if name == "appendages" else value_of(value)
+        if not links:
+            body = _plain_body(what)
+            if "joints" in given:
+                given["joint_drag"] = joint_drag_of(given.pop("joints"))
+            return body.changed(**given, name=text) if given else body
+        for name in REQUIRED:
+            if name not in given:
+                raise ValueError(f"body links must have {name}, got {shown(text)}{_about(name)}")
+        if "joint_drag" in given:
+            raise ValueError(f"body links has joints in place of joint_drag, got {shown(text)}")
+        return Body.of_links(**given, name=text)
 
 
 def appendages_from_file(path: str | os.PathLike[str]) -> tuple[Appendage, ...]:
@@ -82,8 +76,8 @@ def appendages_from_file(path: str | os.PathLike[str]) -> tuple[Appendage, ...]:
         for row in range(len(table)):
             given = {name: each[row] for name, each in columns.items() if each[row] == each[row] != ""}  # or NaN
             try:
-                found.append(Appendage(**given))
-            except (ValueError, TypeError) as error:
+                found.append(made(Appendage, given, "appendage"))
+            except ValueError as error:
                 raise table.error(str(error), row) from None
         table.tell()
     return tuple(found)
@@ -95,23 +89,6 @@ def _plain_body(text: str) -> Body:
     if not Path(text).suffix:
         raise ValueError(not_one_of("body", text, (*NAMED, f"{LINKS} with its numbers", "a file")))
     return Body.from_file(text)
-
-
-def _value(name: str, text: str) -> Any:
-    """A number; the words that some may be; or the appendages in a file."""
-    if name == "appendages":
-        return appendages_from_file(text)
-    if name == "law" or (name in PROFILES and text == BY_SHAPE):
-        return text
-    try:
-        value = float(text)
-    except ValueError:
-        if name in ("joints", "nose", "tail"):
-            return text
-        value = float("nan")
-    if not is_finite(value):
-        raise ValueError(f"body {name} must be a number, got {shown(text)}")
-    return value
 
 
 def _about(name: str) -> str:

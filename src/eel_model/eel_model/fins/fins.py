@@ -14,6 +14,7 @@ from typing import Any, ClassVar
 import numpy as np
 from eel_base.quantity import (
     Quantities,
+    checked_choice,
     checked_instance,
     checked_row,
     documented,
@@ -22,7 +23,7 @@ from eel_base.quantity import (
     quantity,
     required,
 )
-from eel_base.wording import not_one_of, shown
+from eel_base.wording import shown
 
 import eel_core
 from eel_model.body.body import Body
@@ -84,8 +85,7 @@ class Fin(Quantities):
     )
 
     def __post_init__(self) -> None:
-        if self.side not in SIDES:
-            raise ValueError(not_one_of("fin side", self.side, tuple(SIDES)))
+        checked_choice("fin side", self.side, SIDES)
         known = isinstance(self.name, str) and len(self.name) <= LONGEST_NAME and self.name.isprintable()
         if not known or " " in self.name:
             rule = f"a text of at most {LONGEST_NAME} characters without spaces"
@@ -106,6 +106,7 @@ class Fin(Quantities):
 
         name: of the pair, that of a fin begins with its side.
         """
+        checked_instance("fin name", name, str)
         names = {side: f"{side}_{name}" if name else "" for side in ("left", "right")}
         left = Fin(station, "left", area, aspect_ratio, name=names["left"], **others)
         return left, replace(left, side="right", name=names["right"])
@@ -284,8 +285,7 @@ def checked_commands(fins: tuple[Fin, ...], commands: Any) -> dict[str, float]:
     """Angles [rad] by the names of commanded `fins`. `ValueError` for another name, or an angle that is no number."""
     known = commanded_names(fins)
     for name in commands:
-        if name not in known:
-            raise ValueError(not_one_of("commanded fin", name, known))
+        checked_choice("commanded fin", name, known)
     return {name: number(f"angle of fin {name}", angle, "rad") for name, angle in commands.items()}
 
 

@@ -10,12 +10,13 @@ k_p and k_d make a `RollHold` of the angle. angle=commanded: the topic fin_comma
 from dataclasses import fields
 from typing import Any
 
-from eel_base.quantity import is_finite
-from eel_base.wording import not_one_of, shown
+from eel_base.files.input_file import reading
+from eel_base.quantity import checked_choice
+from eel_base.texts import JOINED, made, named_fields, parts_of_text, value_of
 
-from eel_model.fins.fins import COMMANDED, SIDES, Fin, RollHold
+from eel_model.fins.fins import SIDES, Fin, RollHold
 
-JOINED, PAIR = " + ", "pair"
+PAIR = "pair"
 NAME = "name"
 NUMBERS = tuple(item.name for item in fields(Fin) if item.name not in ("side", NAME))
 GAINS = "k_p", "k_d"
@@ -23,37 +24,19 @@ GAINS = "k_p", "k_d"
 
 def fins_from_text(text: str) -> tuple[Fin, ...]:
     """The fins of a `text`; none of an empty one. `ValueError` names what does not fit."""
-    return tuple(fin for part in text.split(JOINED) if part.strip() for fin in _part(part.strip()))
+    with reading("fin"):
+        return tuple(fin for part in parts_of_text(text) if part for fin in _part(part))
 
 
 def _part(text: str) -> tuple[Fin, ...]:
-    name, *given = text.split()
-    if name not in (PAIR, *SIDES):
-        raise ValueError(not_one_of("fins", name, (PAIR, *SIDES)))
-    fields: dict[str, Any] = {}
-    for each in given:
-        field, _, value = each.partition("=")
-        if field not in (*NUMBERS, *GAINS, NAME) or field in fields:
-            known = ", ".join((*NUMBERS, *GAINS, NAME))
-            raise ValueError(f"fins {name} must have fields FIELD=VALUE of {known}, each once, got {shown(each)}")
-        fields[field] = value if field == NAME or value == COMMANDED else _number(f"fin {field}", value)
-    gains = {field: fields.pop(field) for field in GAINS if field in fields}
-    if gains:
-        fields["angle"] = RollHold(**gains)
-    for field in NUMBERS[:3]:
-        if field not in fields:
-            raise ValueError(f"fin {field} must be given, got {shown(text)}")
-    return Fin.pair(**fields) if name == PAIR else (Fin(side=name, **fields),)
-
-
-def _number(name: str, text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = float("nan")
-    if not is_finite(value):
-        raise ValueError(f"{name} must be a number, got {shown(text)}")
-    return value
+    given = named_fields("fins", "side", text)
+    side = given.pop("side")
+    checked_choice("fins", side, (PAIR, *SIDES))
+    values: dict[str, Any] = {field: value if field == NAME else value_of(value) for field, value in given.items()}
+    if gains := {field: values.pop(field) for field in GAINS if field in values}:
+        values["angle"] = RollHold(**gains)
+    fin = made(Fin, values | {"side": "left" if side == PAIR else side}, "fin")
+    return Fin.pair(**values) if side == PAIR else (fin,)
 
 
 def text_of_fins(fins: tuple[Fin, ...]) -> str:

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import number
+from eel_base.quantity import checked_instance, number
 from eel_base.wording import shown
 
 from eel_model.flow.flow import ROWS, Flow, FlowTraits
@@ -53,6 +53,7 @@ class FlowField(Flow):
     wave: float | None = None
 
     def __post_init__(self) -> None:
+        checked_instance("flow name", self.name, str)
         for name, unit in (("step", "m"), ("time_step", "s"), ("period", "s"), ("wave", "m")):
             if (value := getattr(self, name)) is not None:
                 checked = number(f"flow {name}", value, unit, minimum=0.0, exclusive=True)

@@ -40,8 +40,9 @@ def read_grid(source: Any, velocity: tuple[str, str, str | None]) -> tuple[np.nd
             return _grid(variables, velocity, MOST_POINTS)
     if not hasattr(source, "data_vars"):
         raise ValueError(f"flow source must be an xarray.Dataset or a path, got {shown(source)}")
-    variables = _of_xarray(source)
-    return _grid(variables, velocity, max(MOST_POINTS, *(math.prod(each.shape) for each in variables.values())))
+    with reading("flow"):
+        variables = _of_xarray(source)
+        return _grid(variables, velocity, max(MOST_POINTS, *(math.prod(each.shape) for each in variables.values())))
 
 
 def _grid(
@@ -50,6 +51,9 @@ def _grid(
     if missing := [name for name in velocity[:2] if name not in source]:
         raise ValueError(f"flow file must have a variable {shown(missing[0])}, got {sorted(source)}")
     parts = [source[name] for name in velocity if name in source]
+    for name, part in zip(velocity, parts, strict=False):
+        if len(set(part.dims)) < len(part.dims):
+            raise ValueError(f"flow {shown(name)} must have each of its dimensions once, got {shown(part.dims)}")
     sizes = {dim: size for part in parts for dim, size in zip(part.dims, part.shape, strict=True)}
     if odd := set(sizes).difference(AXES):
         raise ValueError(f"flow dimensions must be some of {AXES}, got {shown(sorted(odd)[0])}")
@@ -88,7 +92,7 @@ class _Variable:
     def metres(self, name: str) -> np.ndarray:
         if self._units not in ("", "m", "meter", "metre", "meters", "metres"):
             raise ValueError(f"flow {name} must be in m, got units {shown(self._units)}")
-        if self.attributes.get("positive", "up") in ("down", b"down"):
+        if self._text("positive").lower() == "down":
             raise ValueError(f"flow {name} must rise upwards, got a depth: change its sign, and that of its velocity")
         return self.read().astype(float)
 
@@ -102,8 +106,12 @@ class _Variable:
 
     @property
     def _units(self) -> str:
-        units = self.attributes.get("units", "")
-        return (units.decode() if isinstance(units, bytes) else str(units)).strip()
+        return self._text("units")
+
+    def _text(self, name: str) -> str:
+        """An attribute as a text; empty where there is none. What is not UTF-8 is escaped."""
+        value = self.attributes.get(name, "")
+        return (value.decode(errors="backslashreplace") if isinstance(value, bytes) else str(value)).strip()
 
 
 @contextlib.contextmanager

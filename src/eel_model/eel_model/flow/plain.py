@@ -6,7 +6,8 @@ from dataclasses import fields
 from typing import Any
 
 import numpy as np
-from eel_base.wording import did_you_mean, not_one_of, shown
+from eel_base.quantity import checked_choice
+from eel_base.texts import made
 
 from eel_model.flow.flow import Flow, FlowSum, parts_of
 from eel_model.flow.functions import FlowField, LostFunction
@@ -49,12 +50,6 @@ def _made(plain: dict[str, Any]) -> Flow:
         arrays = {name: np.frombuffer(b64decode(text), "<f8") for name, text in plain.pop("arrays").items()}
         shape = [len(arrays[name]) for name in AXES]
         return GriddedFlow(**arrays | {"velocity": arrays["velocity"].reshape(*shape, 3)}, **plain)
-    if kind not in KINDS:
-        raise ValueError(not_one_of("flow kind", kind, (*KINDS, "FlowField", "GriddedFlow")))
-    known = [item.name for item in fields(KINDS[kind])]
-    for name in plain:
-        if name not in known:
-            hint = did_you_mean(name, known)
-            raise ValueError(f"flow {kind} has no field {shown(name)}{hint}, it has: {', '.join(known)}")
-    flow: Flow = KINDS[kind](**plain)
+    checked_choice("flow kind", kind, KINDS, "FlowField", "GriddedFlow")
+    flow: Flow = made(KINDS[kind], plain, f"flow {kind}")
     return flow

@@ -158,7 +158,7 @@ class VortexStreet(_Vortices, Quantities):
     core: float = quantity(0.1, "m", "radius r_c of the cores", 0.0, exclusive=True)
     spacing: float = quantity(1.0, "m", "between neighbours of a row", 0.0, exclusive=True)
     width: float = quantity(0.28, "m", "between the rows", 0.0)
-    count: int = quantity(17, "", "vortices of each row", 1, 10_000)
+    count: int = quantity(17, "", "vortices of each row", 1, 10_000, whole=True)
     start: tuple[float, float, float] = quantity((0.0, 0.0, 0.0), "m", "point between the rows, where the left begins")
     downstream: tuple[float, float] = quantity((1.0, 0.0), "", "horizontal direction along the rows")
     drift: tuple[float, float, float] = quantity((0.0, 0.0, 0.0), "m/s", "velocity of all vortices")

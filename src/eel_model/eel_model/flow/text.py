@@ -10,7 +10,9 @@ from functools import reduce
 from operator import add
 from typing import Any
 
-from eel_base.wording import not_one_of, shown
+from eel_base.files.input_file import reading
+from eel_base.quantity import checked_choice
+from eel_base.texts import JOINED, named_fields, parts_of_text, value_of
 
 from eel_model.flow.flow import Flow, parts_of
 from eel_model.flow.gridded import GriddedFlow
@@ -18,12 +20,12 @@ from eel_model.flow.plain import KINDS, flow_of, plain_of_flow
 
 NAMES = {"".join(f"_{c.lower()}" if c.isupper() else c for c in kind).strip("_"): kind for kind in KINDS}
 GRIDS = ".nc"  # how the names of files end
-JOINED = " + "
 
 
 def flow_from_text(text: str) -> Flow | None:
     """The flow of a `text`; None of an empty one. `ValueError` names what does not fit."""
-    return reduce(add, (_part(part.strip()) for part in text.split(JOINED))) if text.strip() else None
+    with reading("flow"):
+        return reduce(add, map(_part, parts_of_text(text))) if text.strip() else None
 
 
 def text_of_flow(flow: Flow) -> str:
@@ -39,34 +41,14 @@ def text_of_flow(flow: Flow) -> str:
 
 
 def _part(text: str) -> Flow:
-    name, *given = text.split()
-    if name.endswith(GRIDS) and not given:
+    given = named_fields("flow", "kind", text)
+    name = given["kind"]
+    if name.endswith(GRIDS) and len(given) == 1:
         return GriddedFlow.of(name)
-    if name not in NAMES:
-        raise ValueError(not_one_of("flow", name, (*NAMES, f"a file that ends in {GRIDS}")))
-    fields: dict[str, Any] = {"kind": NAMES[name]}
-    for each in given:
-        field, _, value = each.partition("=")
-        if not field or not value or field in fields:
-            raise ValueError(f"flow {name} must have fields NAME=VALUE, each once, got {shown(each)}")
-        fields[field] = _read(value)
-    flow = flow_of([fields])
+    checked_choice("flow", name, NAMES, f"a file that ends in {GRIDS}")
+    flow = flow_of([{field: value_of(value) for field, value in given.items()} | {"kind": NAMES[name]}])
     assert flow is not None
     return flow
-
-
-def _read(text: str) -> Any:
-    """A number, a word, a row of numbers (commas), or rows of them (semicolons)."""
-    if ";" in text:
-        return tuple(_read(row) for row in text.split(";"))
-    if "," in text:
-        return tuple(_read(number) for number in text.split(","))
-    for number in (int, float):
-        try:
-            return number(text)
-        except ValueError:
-            continue
-    return text
 
 
 def _written(value: Any) -> str:

@@ -213,7 +213,7 @@ def _check(parts: list[Any], body: Body, planar: bool) -> None:
             said = f"got {start:g} to {end:g} m (position {part.position:g}, width {part.width:g})"
             if start <= 0.0 or end >= body.length:
                 raise ValueError(f"{called} position and width must lie inside (0, {body.length:g}) m, {said}")
-            if start < body.panel_ends[0] - 1e-12 * body.length:
+            if not body.blunt_nose and start < body.panel_ends[0] - 1e-12 * body.length:
                 raise ValueError(
                     f"{called} position and width must lie behind the nose's first panel, from {body.panel_ends[0]:g} "
                     f"m on (there is almost no inertia ahead), {said}"

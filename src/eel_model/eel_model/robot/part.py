@@ -3,8 +3,8 @@
 
 from typing import Any
 
-from eel_base.quantity import Quantities, number
-from eel_base.wording import not_one_of, shown
+from eel_base.quantity import Quantities, checked_choice, number
+from eel_base.wording import shown
 
 AXES = {"yaw": (2, -1), "-yaw": (2, 1), "pitch": (1, -1), "-pitch": (1, 1)}
 """Axis of a part: the curvature's component in section axes, and the sign of that component for a positive angle."""
@@ -20,8 +20,7 @@ class Part(Quantities):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not isinstance(self.axis, str) or self.axis not in AXES:
-            raise ValueError(not_one_of(f"{self.what} axis", self.axis, AXES))
+        checked_choice(f"{self.what} axis", self.axis, AXES)
 
     @property
     def component(self) -> int:

@@ -15,7 +15,8 @@ from pathlib import Path
 from typing import Any
 
 from eel_base.files.input_file import reading
-from eel_base.quantity import checked_instance
+from eel_base.quantity import checked_choice, checked_instance
+from eel_base.texts import named_fields
 from eel_base.wording import did_you_mean, not_one_of, shown
 
 from eel_model.body.body import Body
@@ -66,7 +67,7 @@ class Robot:
         object.__setattr__(self, "parts", _named(listed))
         object.__setattr__(self, "name", name)
         object.__setattr__(self, "body", None if body is None else checked_instance("robot body", body, Body))
-        object.__setattr__(self, "notes", tuple(notes))
+        object.__setattr__(self, "notes", tuple(checked_instance("robot notes", notes, Iterable)))
 
     @property
     def joints(self) -> tuple[Joint, ...]:
@@ -76,8 +77,7 @@ class Robot:
     def joint(self, name: str) -> Joint:
         """The joint called `name`. `ValueError` for another."""
         found = {joint.name: joint for joint in self.joints}
-        if not isinstance(name, str) or name not in found:
-            raise ValueError(not_one_of("joint", name, found))
+        checked_choice("joint", name, found)
         return found[name]
 
     @property
@@ -130,7 +130,7 @@ class Robot:
         stiffness is none.
         """
         robot = self
-        for name, value in numbers.items():
+        for name, value in checked_instance("robot numbers", numbers, Mapping).items():
             part, _, field_name = name.rpartition(".")
             none = value == math.inf and field_name in UNLIMITED
             robot = robot.changed(part or None, **{field_name: None if none else value})
@@ -144,8 +144,7 @@ class Robot:
     @staticmethod
     def named(name: str) -> "Robot":
         """The ready robot called `name`, one of `READY`. `ValueError` for another."""
-        if name not in READY:
-            raise ValueError(not_one_of("robot", name, (*READY, "a file")))
+        checked_choice("robot", name, READY, "a file")
         return Robot(READY[name](), name=name)
 
     @staticmethod
@@ -184,12 +183,12 @@ def robot_of(text: str) -> Robot | None:
     """
     if not text:
         return None
-    if Path(text).suffix and Path(text).is_file():
-        return Robot.from_file(text)
-    file, joints, value = text.rpartition(" joints=")
-    if not joints:
-        return Robot.from_file(text) if Path(text).suffix else Robot.named(text)
-    return Robot.from_file(file.strip(), joints=value)
+    with reading("robot"):
+        given = named_fields("robot", "name", text)
+        name, joints = given.pop("name"), given.pop("joints", None)
+        if given:
+            raise ValueError(f"{shown(text)} must be a name, or a file, of a URDF with joints=flush or a number")
+        return Robot.from_file(name, joints=joints) if Path(name).suffix or joints else Robot.named(name)
 
 
 def checked_robot(robot: Any) -> Robot | None:

@@ -28,6 +28,7 @@ import numpy as np
 from eel_base.files.input_file import Misplaced
 from eel_base.files.tables import is_table
 from eel_base.files.yaml_tree import check_keys, fail, read_yaml, tried
+from eel_base.texts import made
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
@@ -40,6 +41,7 @@ from eel_model.robot.joint import Joint
 from eel_model.robot.ready import SERVOS
 
 LISTS: dict[str, type[Any]] = {"joints": Joint, "tails": PassiveTail, "muscles": Muscle}
+ACTUATORS: dict[str, type[Any]] = {"servo": Servo, "torque": Torque}
 FILE = ("name", "body", *LISTS)
 POINTS = 201  # of a table that stands for a function
 
@@ -114,79 +116,57 @@ def robot_arguments(root: Any, folder: Path = Path()) -> dict[str, Any]:
 
 def _parts(kind: type[Any], entries: Any, root: Mapping[str, Any], key: str) -> list[Any]:
     """The parts of one entry: several joints, where it has several positions."""
-    if not isinstance(entries, Mapping):
-        fail(root, key, f"must hold mappings of fields, got {shown(entries)}")
-    given = _given(kind, entries, f"each of the {key}", ("servo", "torque") if kind is Joint else ())
+    given = dict(_fields(entries, root, key))
+    if kind is Joint:
+        own = {name: value for name, value in given.items() if name not in ACTUATORS}
+        given = own | {"actuator": _actuator(entries)}
     for name in ("bending_stiffness", "damping"):
         if kind is not Joint and isinstance(given.get(name), Mapping):
-            given[name] = _made(ProfileTable, entries, name)
-    if kind is Joint:
-        given["actuator"] = _actuator(entries)
+            given[name] = _built(ProfileTable, given[name])
     if kind is Muscle:
         given["moment"] = _moment(entries)
-    if kind is not Joint or not isinstance(given["position"], list):
+    places = given.get("position")
+    if kind is not Joint or not isinstance(places, list):
         return [_built(kind, entries, given)]
     if "name" in given:
         fail(entries, "name", "goes with one position")
-    return [_built(kind, entries, given | {"position": place}) for place in given["position"]]
+    return [_built(kind, entries, given | {"position": place}) for place in places]
 
 
-def _given(kind: type[Any], entries: Mapping[str, Any], whose: str, further: tuple[str, ...] = ()) -> dict[str, Any]:
-    """The fields of a `kind` in a mapping, which may have `further` keys."""
-    known = [item.name for item in fields(kind) if item.name != "actuator"]
-    check_keys(entries, (*known, *further))
-    for item in fields(kind):
-        if item.default is MISSING and item.name not in entries:
-            fail(entries, item.name, f"must be given for {whose}")
-    return {name: entries[name] for name in known if name in entries}
-
-
-def _built(kind: type[Any], entries: Mapping[str, Any], given: dict[str, Any]) -> Any:
-    """`kind` of the `given` fields; an error names the key that its text names."""
-    try:
-        return kind(**given)
-    except (ValueError, TypeError) as error:
-        guilty = next((word for word in str(error).split() if word in entries), "")
-        fail(entries, guilty, str(error))
-
-
-def _made(kind: type[Any], above: Mapping[str, Any], key: str) -> Any:
-    """`kind` of the fields in the mapping at `key`."""
-    given = above[key]
-    if not isinstance(given, Mapping):
-        fail(above, key, f"must be a mapping of fields, got {shown(given)}")
-    return _built(kind, given, _given(kind, given, key))
+def _built(kind: type[Any], entries: Mapping[str, Any], given: Mapping[str, Any] | None = None) -> Any:
+    """`kind` of the fields in a mapping, or of those `given` in their place."""
+    what = getattr(kind, "what", "") or kind.__name__.lower()
+    return tried(entries, "", made, kind, entries if given is None else given, what)
 
 
 def _actuator(entries: Mapping[str, Any]) -> Servo | Torque | None:
-    if "servo" in entries and "torque" in entries:
+    found = [name for name in ACTUATORS if name in entries]
+    if len(found) > 1:
         fail(entries, "torque", "does not go with servo")
-    if isinstance(entries.get("servo"), str):
-        name = entries["servo"]
-        if name not in SERVOS:
-            fail(entries, "servo", f"must be one of {', '.join(SERVOS)}, or a mapping, got {shown(name)}")
-        return SERVOS[name]
-    for key, kind in (("servo", Servo), ("torque", Torque)):
-        if key in entries:
-            made: Servo | Torque = _made(kind, entries, key)
-            return made
+    for name in found:
+        if name == "servo" and isinstance(entries[name], str):
+            if entries[name] not in SERVOS:
+                fail(entries, name, f"must be one of {', '.join(SERVOS)}, or a mapping, got {shown(entries[name])}")
+            return SERVOS[entries[name]]
+        actuator: Servo | Torque = _built(ACTUATORS[name], _fields(entries[name], entries, name))
+        return actuator
     return None
 
 
 def _moment(entries: Mapping[str, Any]) -> Law:
-    axis, terms = entries.get("axis", "yaw"), []
+    terms = []
     for each in _list(entries, "moment"):
-        if not isinstance(each, Mapping):
-            fail(entries, "moment", f"must hold terms, such as {{amplitude: [0.5], period: 1}}, got {shown(each)}")
-        check_keys(each, [item.name for item in fields(Term)])
-        given = {"axis": axis} | dict(each)
-        for name in ("amplitude", "knots"):
-            if isinstance(given.get(name), list):
-                given[name] = tuple(given[name])
-        ramps = _list(each, "envelope")
-        given["envelope"] = tried(each, "envelope", lambda ramps: tuple(Ramp(**ramp) for ramp in ramps), ramps)
+        given = {"axis": entries.get("axis", "yaw"), **_fields(each, entries, "moment")}
+        given["envelope"] = [_built(Ramp, _fields(ramp, each, "envelope")) for ramp in _list(each, "envelope")]
         terms.append(_built(Term, each, given))
-    return Law(*terms)
+    return tried(entries, "moment", Law, *terms)
+
+
+def _fields(given: Any, above: Mapping[str, Any], key: str) -> Mapping[str, Any]:
+    """What is `given` at the `key`, if it is a mapping."""
+    if not isinstance(given, Mapping):
+        fail(above, key, f"must hold mappings of fields, got {shown(given)}")
+    return given
 
 
 def _body(given: Any, folder: Path) -> Body:

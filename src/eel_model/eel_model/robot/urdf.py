@@ -2,7 +2,8 @@
 """A robot from a URDF: a straight chain of links joined by revolute joints, with the base link at the nose or the tail.
 
 Links become the body's sections, joints its joints. In the zero configuration the joints must lie on a line; the
-body's E1 runs along it from the nose to the tail, E3 is the base link's z. A link's half-axes are half of the height
+body's E1 runs along it from the nose to the tail, E3 is the base link's z. Of modules that are stacked along that z, as
+they are often drawn, E3 is the first joint's axis. A link's half-axes are half of the height
 and width of its collision shapes (or its visual ones), a mesh's follow from its moments of inertia. They change
 smoothly from the middle of one link to that of the next; both ends are blunt. The hull numbers are those of a body of
 links (`Body.of_links`), whose `joints` a URDF does not tell. The body is homogeneous: its density is such that the mass
@@ -30,7 +31,7 @@ from eel_model.robot.urdf_chain import ChainJoint, UrdfChain
 from eel_model.robot.urdf_elements import fail, float_of, name_of, number_of
 
 STRAIGHT = 0.02  # of the length: how far a joint may lie off the line
-ACROSS = 0.8  # of a direction along z: the base link's z is up
+UPRIGHT = 0.8  # part of the chain's direction along the base link's z from which that is not up
 ALIGNED = 0.02  # rad: how far an axis may point off E2 or E3
 MASS_OFF = 0.05  # of a link's mass: a greater difference is noted
 UNUSED = ("gazebo", "ros2_control", "safety_controller", "calibration")
@@ -60,12 +61,26 @@ class UrdfReader:
         """Whether the base link is the tail: the chain leads along its x."""
         turn = -1 if self._from_tail else 1
         self._links, self._joints = chain.links[::turn], chain.joints[::turn]
-        along, up = turn * along, np.array([0.0, 0.0, 1.0]) - along[2] * along
-        up /= np.linalg.norm(up)
+        along, up = turn * along, self._up(along)
         self._axes = np.array([along, np.cross(up, along), up])
         """Axes (3, 3) of the sections, rows in the base's."""
         self._nose = float(self._links[0].extent(self._axes)[0, 0])
         self._places = [float(along @ joint.origin - self._nose) for joint in self._joints]
+
+    def _up(self, along: np.ndarray) -> np.ndarray:
+        """E3 (3,) of the sections, in the base's axes."""
+        up, stacked = np.array([0.0, 0.0, 1.0]), abs(along[2]) > UPRIGHT
+        if stacked:
+            axis = self._joints[0].axis
+            up = axis * np.sign(axis[np.argmax(np.abs(axis))])
+        up = up - (up @ along) * along
+        if not (size := float(np.linalg.norm(up))) > ALIGNED:
+            fail(self._joints[0].element, "axis", "must point across the line of joints, got one along it")
+        if stacked:
+            axes = [round(float(each), 3) + 0.0 for each in up / size]
+            rule = "its other end is the tail, and what turns about the first joint's axis is yaw: up is"
+            self._notes.append(f"modules are stacked along the base link's z: {rule} {shown(axes)} in its axes")
+        return np.asarray(up / size)
 
     def arguments(self) -> dict[str, Any]:
         """parts, name, body and notes."""
@@ -132,7 +147,7 @@ class UrdfReader:
         parts = self._axes @ axis
         component = int(np.argmax(np.abs(parts)))
         if component == 0 or 1.0 - abs(parts[component]) > 0.5 * ALIGNED**2:
-            rule = "must point along the base link's z (yaw) or across the line of joints (pitch)"
+            rule = "must point up (yaw) or to the side (pitch), across the line of joints"
             fail(element, "axis", f"{rule}, got {shown([round(each, 4) for each in axis.tolist()])}")
         # a turn of the part behind about E2 or E3 bends along them
         to_left = (parts[component] < 0.0) != self._from_tail
@@ -190,7 +205,7 @@ class UrdfReader:
 def _direction(chain: UrdfChain) -> np.ndarray:
     """Unit vector (3,) from the base along the joints, which lie on a line."""
     origins = np.array([joint.origin for joint in chain.joints])
-    first, last = chain.joints[0].element, chain.joints[-1].element
+    last = chain.joints[-1].element
     if len(origins) > 1:
         along = origins[-1] - origins[0]
     else:
@@ -203,7 +218,6 @@ def _direction(chain: UrdfChain) -> np.ndarray:
     off = origins - origins[0] - np.outer((origins - origins[0]) @ along, along)
     worst = int(np.argmax(np.linalg.norm(off, axis=1)))
     if (far := float(np.linalg.norm(off[worst]))) > STRAIGHT * length:
-        fail(chain.joints[worst].element, "origin", f"must lie on the line of the joints, got {far:.4g} m off it")
-    if abs(along[2]) > ACROSS:
-        fail(first, "origin", "must lead away along the base link's x or y, got along its z")
+        rule = f"must lie on the line of the joints, got {far:.4g} m off it: at angles of 0 the robot must be straight"
+        fail(chain.joints[worst].element, "origin", rule)
     return np.asarray(along)

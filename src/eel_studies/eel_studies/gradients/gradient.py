@@ -22,8 +22,8 @@ from typing import NamedTuple
 import numpy as np
 from eel_base.attitude import world_from_body
 from eel_base.command.progress import progress_of
-from eel_base.quantity import checked_instance, number, positive
-from eel_base.wording import not_one_of, shown
+from eel_base.quantity import checked_choice, checked_instance, number, positive
+from eel_base.wording import shown
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.measures import checked_measures
@@ -239,8 +239,7 @@ def _steps_of(at: dict[str, float], steps: dict[str, float] | None, relative: fl
     """Differences (P,) of the parameters to either side."""
     steps = {} if steps is None else checked_instance("steps", steps, dict)
     for name in steps:
-        if name not in at:
-            raise ValueError(not_one_of("steps", name, at))
+        checked_choice("steps", name, at)
     own = {name: relative * (abs(value) or 1.0) for name, value in at.items()}
     return np.array([positive(f"steps {name}", steps.get(name, own[name])) for name in at])
 

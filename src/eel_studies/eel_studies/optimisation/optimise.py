@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 from eel_base.command.progress import progress_of
-from eel_base.quantity import checked_instance, checked_row, number
-from eel_base.wording import not_one_of, shown
+from eel_base.quantity import checked_choice, checked_instance, checked_row, number
+from eel_base.wording import shown
 from eel_dynamics.analysis.measures import checked_measures, measures_of
 
 from eel_dynamics import Body, Robot, Scene
@@ -72,8 +72,7 @@ def optimise(
     wanted = checked_row("speeds", speeds, None)
     if not len(wanted) or np.any(wanted <= 0.0) or len(set(wanted.tolist())) < len(wanted):
         raise ValueError(f"speeds must be one or more, > 0 m/s, none twice, got {shown(wanted.tolist())}")
-    if not isinstance(method, str) or method not in METHODS:
-        raise ValueError(not_one_of("method", method, METHODS))
+    checked_choice("method", method, METHODS)
     counts = {"periods": (periods, 4), "starts": (starts, 1), "seed": (seed, 0)}
     for name, (value, least) in counts.items():
         if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:

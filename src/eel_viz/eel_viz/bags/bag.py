@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads a rosbag2 folder, or one of its files, without ROS: MCAP or sqlite3, split or not, compressed or not.
 
-A bag that is damaged or unfinished is refused, with the tool that repairs it. Types are those that the bag defines; a
+A bag that is damaged, unfinished or packed is refused, with the tool that mends it. A folder without metadata.yaml is
+read where it has one file alone. Types are those that the bag defines; a
 bag without definitions (sqlite3 before Iron) needs the message packages installed. What metadata.yaml and chunks
 inflate to is bounded.
 """
@@ -13,6 +14,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, Self
 
+import zstandard
 from eel_base.files.input_file import InputFile, reading
 from eel_base.wording import one_line, shown
 from rosbags.interfaces import Connection, MessageDefinitionFormat
@@ -20,10 +22,11 @@ from rosbags.rosbag2 import Reader
 from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_types_from_msg, get_typestore
 
-from eel_viz.bags.bounds import METADATA, check_mcap, check_metadata
+from eel_viz.bags.bounds import METADATA, MOST_CHUNK_BYTES, check_mcap, check_metadata
 
 SUFFIXES = (".mcap", ".db3")
 JOURNALS = ".db3-wal", ".db3-journal"  # of sqlite: what a recorder that was killed has not brought into its file
+PACKED = {".zstd": "zstd -d", ".zst": "zstd -d", ".lz4": "lz4 -d", ".gz": "gzip -d", ".bz2": "bzip2 -d", ".xz": "xz -d"}
 PADDED = "sensor_msgs/msg/JointState", "eel_msgs/msg/MotorStates"  # their last fields are sequences of doubles
 PADDING = 8, 12  # bytes that ROS may leave behind one or several such sequences that are empty
 
@@ -87,6 +90,8 @@ class Bag:
             except Exception as error:
                 raise ValueError(f"bag {shown(str(self._path))} is damaged: {_line(error)}") from error
             try:
+                if bytes(raw[:4]) == zstandard.FRAME_HEADER:  # without metadata.yaml nothing else tells
+                    raw = zstandard.ZstdDecompressor().decompress(raw, MOST_CHUNK_BYTES)
                 message = self._deserialised(raw, connection.msgtype)
             except Exception as error:  # rosbags' own, struct.error, ValueError of numpy or of text
                 unreadable(connection.topic, _line(error))
@@ -104,9 +109,13 @@ class Bag:
             raise
 
     def _opened(self) -> Reader:
-        path, what = self._path, f"bag {shown(str(self._path))} cannot be read"
+        what = f"bag {shown(str(self._path))} cannot be read"
+        path = _with_metadata(self._path)
         if path.is_file() and path.suffix not in SUFFIXES:
-            raise ValueError(f"{shown(str(path))} is no bag: its name must end in {' or '.join(SUFFIXES)}")
+            tool = PACKED.get(path.suffix) if pathlib.Path(path.stem).suffix in SUFFIXES else None
+            hint = f", or it lies in a folder with its {METADATA}: `{tool} < {path.name} > {path.stem}` unpacks it"
+            rule = f"its name must end in {' or '.join(SUFFIXES)}{hint if tool else ''}"
+            raise ValueError(f"{shown(str(path))} is no bag: {rule}")
         if path.is_dir() and not (path / METADATA).exists():
             raise ValueError(f"{what}: no {METADATA} (`ros2 bag reindex` makes it)")
         try:
@@ -118,7 +127,8 @@ class Bag:
                     raise ValueError(f"{each.name} is not yet in its file (`sqlite3 FILE .tables` brings it in)")
             return self._stack.enter_context(_checked_reader(path))
         except Exception as error:  # on damaged files rosbags raises struct.error, KeyError, sqlite's and others
-            raise ValueError(f"{what}: {_line(error)}") from error
+            hint = " (`sqlite3 FILE .recover` saves what it still holds)" if "open database" in str(error) else ""
+            raise ValueError(f"{what}: {_line(error)}{hint}") from error
 
     def _topics(self) -> dict[str, Topic]:
         found: dict[str, Topic] = {}
@@ -158,6 +168,14 @@ class Bag:
             raise ValueError(
                 f"bag {shown(str(self._path))} defines {topic.type} in a way not understood: {_line(error)}"
             ) from error
+
+
+def _with_metadata(path: pathlib.Path) -> pathlib.Path:
+    """The bag at a `path`; of a folder without metadata.yaml its file, where it has one alone."""
+    if path.is_file() or (path / METADATA).exists():
+        return path
+    files = [each for each in path.iterdir() if each.is_file()]
+    return files[0] if len(files) == 1 else path
 
 
 @contextlib.contextmanager

@@ -12,14 +12,18 @@ from zlib import crc32
 
 import lz4.frame
 import zstandard
-from eel_base.files.input_file import InputFile, reading
+from eel_base.files.input_file import reading
 from eel_base.files.yaml_tree import MOST_BYTES, from_yaml, read_yaml
+from eel_base.quantity import checked_instance
+from eel_base.wording import shown
 from mcap.exceptions import McapError
 from mcap.records import Chunk, Footer
 from mcap.stream_reader import StreamReader, get_chunk_data_stream
 
+MAGIC = b"\x89MCAP0\r\n"  # that such a file begins with
 MOST_CHUNK_BYTES = 64_000_000  # of an inflated chunk; writers take 1 to 4 MB, or one message
-METADATA = "metadata.yaml"
+METADATA, ABOUT = "metadata.yaml", "rosbag2_bagfile_information"
+NEEDED = "topics_with_message_count", "relative_file_paths"
 MOST_VALUES = 10_000  # of it; a publisher takes 20, a file 10
 AFTER_CHECKSUM = 12  # bytes of a file behind the checksum of its index: the checksum itself, and the last magic bytes
 # What mcap's reader raises on damaged files; lz4 raises RuntimeError.
@@ -30,6 +34,9 @@ def check_mcap(path: pathlib.Path) -> None:
     """`ValueError` where the file is damaged or unfinished, or a chunk too large: it names the place."""
     place, size = 0, path.stat().st_size
     with path.open("rb") as file:
+        if file.read(len(MAGIC)) != MAGIC:
+            raise ValueError(f"{path.name} is {'no MCAP file' if size else 'empty'}")
+        file.seek(0)
         try:
             for record in StreamReader(file, emit_chunks=True, validate_crcs=True, record_size_limit=size).records:
                 if isinstance(record, Chunk):
@@ -38,7 +45,11 @@ def check_mcap(path: pathlib.Path) -> None:
                 elif isinstance(record, Footer):
                     back = file.tell()
                     file.seek(record.summary_start)
-                    if record.summary_crc and crc32(file.read()[:-AFTER_CHECKSUM]) != record.summary_crc:
+                    if (
+                        record.summary_start
+                        and record.summary_crc
+                        and crc32(file.read()[:-AFTER_CHECKSUM]) != record.summary_crc
+                    ):
                         raise ValueError("the index does not fit its checksum")
                     file.seek(back)
                 place = file.tell()
@@ -75,9 +86,11 @@ def check_chunk(chunk: Chunk) -> None:
 
 def check_metadata(folder: pathlib.Path) -> None:
     """`ValueError` where metadata.yaml has too much, or names what is no regular file in the folder."""
-    with reading(METADATA):
-        tree = read_yaml(folder / METADATA)
-        about = tree["rosbag2_bagfile_information"]
+    with reading(f"{METADATA} (`ros2 bag reindex` makes it anew)"):
+        tree = checked_instance("its content", read_yaml(folder / METADATA), dict)
+        about = checked_instance(ABOUT, tree.get(ABOUT), dict)
+        if missing := [key for key in NEEDED if key not in about]:
+            raise ValueError(f"it must have {missing[0]}")
         profiles = [topic["topic_metadata"].get("offered_qos_profiles") for topic in about["topics_with_message_count"]]
         texts = [each for each in profiles if isinstance(each, str)]  # of YAML, before ROS 2 Jazzy
         if (size := sum(map(len, texts))) > MOST_BYTES:
@@ -91,7 +104,8 @@ def check_metadata(folder: pathlib.Path) -> None:
         if len(set(names)) < len(names) or not isinstance(about.get("files", []), list):
             raise ValueError("it must list files, each with a name of its own")
         for name in names:
-            InputFile(folder / name).close()
+            if not (folder / name).is_file():
+                raise ValueError(f"it names {shown(name)}, which is no file beside it")
 
 
 def _count(tree: Any) -> int:

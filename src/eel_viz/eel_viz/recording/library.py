@@ -12,6 +12,7 @@ from typing import Any
 
 import rerun as rr
 from eel_base.files.output_file import appeared, written_as
+from eel_base.quantity import checked_path
 
 from eel_viz.batched_stream import Rates
 from eel_viz.recording.destination import Delivery, Destination, LogFunction
@@ -64,7 +65,7 @@ def to_rerun(
     if isinstance(target, rr.RecordingStream):
         destination: Destination = CallerStream(target, Settings.among(settings), log_warning)
     else:
-        chosen = Settings.among({**settings, "recording": os.fspath(target)})
+        chosen = Settings.among({**settings, "recording": str(checked_path("target", target))})
         destination = FileDestination(
             chosen, lambda text: None, lambda text: None
         )  # no warning that the file is replaced

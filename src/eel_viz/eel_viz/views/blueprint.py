@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import rerun as rr
 import rerun.blueprint as rrb
-from eel_base.wording import not_one_of
+from eel_base.quantity import checked_choice
 from rerun.blueprint.components import AbsoluteTimeRange
 
 from eel_viz import entities
@@ -171,8 +171,7 @@ def arrangement(
     live: the time cursor follows the newest data; otherwise it plays, and repeats the swim, or all of a run whose end
     is not known. comparison: with another run.
     """
-    if first not in ARRANGEMENTS:
-        raise ValueError(not_one_of("blueprint", first, ARRANGEMENTS))
+    checked_choice("blueprint", first, ARRANGEMENTS)
     asked_for = {"compare": comparison, "robot": look.joints}
     names = [name for name in ARRANGEMENTS if name == first or asked_for.get(name, True)]
     swim = (rr.encodings.TimeInt(seconds=seconds) for seconds in (REPEATED_FROM * look.end, look.end))
