@@ -140,6 +140,36 @@ def test_robot_starts_in_the_pose_that_is_given():
         Joint(0.3, limits=(-0.1, 0.1), initial_angle=0.2)
 
 
+LIMITED = """joints:
+- {position: 0.3, servo: {kp: 10}, limits: [0.1, 0.3]}
+- {position: 0.6, stiffness: 1, limits: [-3, -2]}
+"""
+URDF = """<robot name="a">
+<link name="a"><collision><origin xyz="-0.2 0 0"/><geometry><box size="0.4 0.1 0.1"/></geometry></collision></link>
+<link name="b"><collision><origin xyz="-0.2 0 0"/><geometry><box size="0.4 0.1 0.1"/></geometry></collision></link>
+<joint name="ab" type="revolute"><parent link="a"/><child link="b"/><origin xyz="-0.4 0 0"/><axis xyz="0 0 -1"/>
+<limit lower="0.1" upper="0.3" effort="3" velocity="3"/></joint></robot>"""
+
+
+def robots_with_limits_beside_straight(folder):
+    """Joints that cannot be straight: in Python, also behind a spring and of other signs, in YAML and in a URDF."""
+    (folder / "robot.yaml").write_text(LIMITED)
+    (folder / "robot.urdf").write_text(URDF)
+    spring = Servo(series_stiffness=20.0, rotor_inertia=1e-6, gear=100.0)
+    joints = Joint(0.3, "-yaw", limits=(0.1, 0.3), actuator=spring), Joint(0.6, "-yaw", stiffness=1.0, limits=(-3, -2))
+    yield Robot(joints), [0.1, -2.0]
+    yield Robot.from_file(folder / "robot.yaml"), [0.1, -2.0]
+    yield Robot.from_file(folder / "robot.urdf", joints="flush"), [0.1]
+
+
+def test_a_joint_starts_within_its_limits(tmp_path):
+    for robot, angles in robots_with_limits_beside_straight(tmp_path):
+        run = simulate(straight(), 0.1, body=robot.body, robot=robot, scene=Scene(planar=True), accuracy=1e-2)
+        assert run.joint_angle[0] == pytest.approx(angles, abs=1e-12) and not run.joint_rate[0].any()
+        assert run.motor_angle[0] == pytest.approx(angles, abs=1e-12)
+        assert run.energy.elastic[0] == pytest.approx(2.0 if len(angles) > 1 else 0.0, abs=1e-9)  # no stop is bent
+
+
 def test_planar_scene_gives_what_space_gives():
     plane, space = (
         simulate(straight(), 2.0, robot=Robot.named("series_elastic"), scene=Scene(planar=planar), estimate=False)

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The totals of a node's run: what they take, and what they stop it for."""
 
-import sys
-
 import numpy as np
 import pytest
+from eel_base.quantity import LARGEST
 from eel_dynamics.ros.loop.run_totals import RunTotals, check_finite
 
 from eel_dynamics import Simulation, SimulationStopped
@@ -15,7 +14,7 @@ from eel_gaits import straight
 def test_the_farthest_place_that_a_number_can_name_is_finite(whole):
     simulation = Simulation()
     simulation.adopt(straight())
-    simulation.set_state([sys.float_info.max, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0], np.zeros(6))
+    simulation.set_state([LARGEST, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0], np.zeros(6))
     totals, snapshot = RunTotals(), simulation.observe(wrench=whole, load=whole)
     check_finite(snapshot)  # the sum of its numbers is infinite
     totals.add(snapshot)

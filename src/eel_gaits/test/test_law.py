@@ -187,7 +187,7 @@ def term(**changes):
         (lambda: Ramp(math.nan, 0.0, 1.0), "start must be finite, got nan"),
         (lambda: Ramp(0.0, 1.0, math.inf), "delta must be finite, got inf"),
         (lambda: Ramp(0.0, 1e-200, 1.0), "end must lie so after start (0.0 s) that rates are finite, got 1e-200"),
-        (lambda: Ramp(-1e308, 1e308, 1.0), "start must be 0 to 1e.30 in size"),
+        (lambda: Ramp(-1e308, 1e308, 1.0), "start must be 0 to 1e+30 in size"),
         (lambda: Law(*[term()] * 1001), "terms must be at most 1000, got 1001"),
         (lambda: Law(Ramp(0.0, 1.0, 1.0)), "terms[0] must be a Term, got Ramp"),
         (lambda: Law(transition=-0.5), "transition must be >= 0 s, got -0.5"),

@@ -16,10 +16,13 @@ from eel_viz.recording.merged_messages import merged_by_time
 from eel_viz.recording.reading import read
 from made_up_bag import write_bag
 from made_up_recording import record
+from mcap.reader import make_reader
+from mcap.writer import IndexType, Writer
 from rosbags.rosbag2 import CompressionMode, StoragePlugin
 
 from eel_viz import entities
 
+ABOUT = "rosbag2_bagfile_information: {version: 9}"
 STAMPS = [k * 10**7 for k in range(101)]
 
 
@@ -119,7 +122,7 @@ def test_one_of_several_swimmers_is_chosen(tmp_path, capsys, monkeypatch):
     "`eel replay` of a bag without metadata, without its end, of half a file, torn in the middle, with a journal",
     "one line with the tool that repairs it, status 2",
 )
-@pytest.mark.parametrize("cut", ["no metadata", "half a file", "no end", "torn"])
+@pytest.mark.parametrize("cut", ["no metadata of two files", "half a file", "no end", "torn"])
 def test_a_bag_that_is_not_whole_is_refused_with_what_repairs_it(tmp_path, capsys, cut):
     folder = write_bag(tmp_path / "bag", 0.5, stations=51, compression=CompressionMode.STORAGE)
     file = folder / "bag.mcap"
@@ -130,12 +133,13 @@ def test_a_bag_that_is_not_whole_is_refused_with_what_repairs_it(tmp_path, capsy
         "no end": whole[:-20],
         "torn": whole[:middle] + bytes(4) + whole[middle + 4 :],
     }
-    if cut == "no metadata":
+    if cut == "no metadata of two files":
         (folder / "metadata.yaml").unlink()
+        (folder / "more.mcap").write_bytes(whole)
     else:
         file.write_bytes(parts[cut])
     said = said_in_one_line(capsys, folder, "-o", str(tmp_path / "run.rrd"))
-    assert ("`ros2 bag reindex` makes it" if cut == "no metadata" else "`mcap recover` repairs it") in said
+    assert ("`ros2 bag reindex` makes it" if cut.startswith("no metadata") else "`mcap recover` repairs it") in said
     assert not (tmp_path / "run.rrd").exists()
 
 
@@ -152,6 +156,66 @@ def test_a_file_of_a_bag_will_do_but_for_sqlites_journal(tmp_path, capsys):
     said = said_in_one_line(capsys, folder, "-o", str(tmp_path / "run.rrd"))
     assert "bag.db3-wal is not yet in its file" in said
     connection.close()
+
+
+@pytest.mark.parametrize("storage", [StoragePlugin.MCAP, StoragePlugin.SQLITE3])
+@pytest.mark.parametrize("compression", [CompressionMode.NONE, CompressionMode.MESSAGE])
+def test_a_whole_file_is_read_without_its_metadata(tmp_path, storage, compression):
+    folder = write_bag(tmp_path / "bag", 0.2, storage=storage, compression=compression)
+    (folder / "metadata.yaml").unlink()
+    (file,) = folder.iterdir()
+    for path in (folder, file):
+        assert main([str(path), "-o", str(tmp_path / "run.rrd")]) == 0
+        np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.SPEED).stamps, STAMPS[:21])
+
+
+def test_a_file_of_mcap_without_an_index_is_whole(tmp_path):
+    """As writers leave it that keep none: no summary, and nothing in the footer to compare with."""
+    path, whole = tmp_path / "plain.mcap", write_bag(tmp_path / "bag", 0.1) / "bag.mcap"
+    with path.open("wb") as file, whole.open("rb") as source:
+        plain = {"repeat_channels": False, "repeat_schemas": False, "use_statistics": False}
+        writer = Writer(file, index_types=IndexType.NONE, use_summary_offsets=False, **plain)
+        writer.start("ros2")
+        channels = {}
+        for schema, channel, message in make_reader(source).iter_messages():
+            if channel.id not in channels:
+                kind = writer.register_schema(schema.name, schema.encoding, schema.data)
+                channels[channel.id] = writer.register_channel(channel.topic, "cdr", kind, channel.metadata)
+            writer.add_message(channels[channel.id], message.log_time, message.data, message.publish_time)
+        writer.finish()
+    assert main([str(path), "-o", str(tmp_path / "run.rrd")]) == 0
+    np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.SPEED).stamps, STAMPS[:11])
+
+
+@pytest.mark.fault(
+    "names",
+    "`eel replay` of a file that is packed, empty or of another kind, of metadata without content or with lost files",
+    "one line that says what to do, status 2",
+)
+def test_what_is_packed_empty_or_lost_is_told_with_what_to_do(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    packed = write_bag(tmp_path / "packed", 0.1, compression=CompressionMode.FILE)
+    (packed / "packed.mcap.zstd").rename(tmp_path / "a.mcap.zstd")
+    (tmp_path / "b.db3.gz").write_bytes(b"x")
+    (tmp_path / "empty.mcap").touch()
+    (tmp_path / "other.mcap").write_bytes(b"\x28\xb5\x2f\xfd" * 9)
+    (tmp_path / "half.db3").write_bytes(b"SQLite format 3\0" * 9)
+    for name, text in {"blank": "", "list": "[1]", "none": "rosbag2_bagfile_information:", "few": ABOUT}.items():
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "metadata.yaml").write_text(text)
+    for path, words in {
+        "a.mcap.zstd": "or it lies in a folder with its metadata.yaml: `zstd -d < a.mcap.zstd > a.mcap` unpacks it",
+        "b.db3.gz": "`gzip -d < b.db3.gz > b.db3` unpacks it",
+        "packed": "metadata.yaml (`ros2 bag reindex` makes it anew): it names 'packed.mcap.zstd', which is no file",
+        "empty.mcap": "empty.mcap is empty",
+        "other.mcap": "other.mcap is no MCAP file",
+        "half.db3": "(`sqlite3 FILE .recover` saves what it still holds)",
+        "blank": "metadata.yaml (`ros2 bag reindex` makes it anew): its content must be a dict, got None",
+        "list": "metadata.yaml (`ros2 bag reindex` makes it anew): its content must be a dict, got [1]",
+        "none": "(`ros2 bag reindex` makes it anew): rosbag2_bagfile_information must be a dict, got None",
+        "few": "(`ros2 bag reindex` makes it anew): it must have topics_with_message_count",
+    }.items():
+        assert words in said_in_one_line(capsys, path, "-o", "run.rrd")
 
 
 def test_a_bag_without_definitions_is_read_with_the_types_installed_here(tmp_path):

@@ -88,7 +88,8 @@ def error_at_stops(run, reference) -> float:
 def with_error_estimate(swim: Any, request: Any) -> Any:
     """The `swim` of a `request` (`SwimRequest`) with the `error_estimate` of its run; or a finer one, for the target.
 
-    Nothing is estimated for a run that stopped before its end. Without a target nothing is made finer.
+    Nothing is estimated for a run that stopped before its end. Without a target nothing is made finer, nor where motors
+    are far too slow: that would take minutes.
     """
     others = []
     target = request.setup.accuracy.target
@@ -113,7 +114,8 @@ def with_error_estimate(swim: Any, request: Any) -> Any:
         cost = sum(each.evaluations * each.nodes for each in others)
         error = replace(error, evaluations=sum(each.evaluations for each in others), cost=cost)
         swim = swim._replace(run=replace(swim.run, error_estimate=error))
-        if target is None or error.worst <= target / ACCEPTED or refinement == MOST_REFINEMENTS:
+        lags = request.slow_motors is not None and request.slow_motors.far
+        if target is None or lags or error.worst <= target / ACCEPTED or refinement == MOST_REFINEMENTS:
             break
         if refinement and error.hopeless(target, float(swim.run.time[-1])):  # the first pair may be far apart
             break

@@ -18,6 +18,7 @@ from eel_dynamics.runs.run_data import RunData
 from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
 from eel_dynamics.runs.settled_duration import duration_of
 from eel_dynamics.runs.storage.variables import arrays_of
+from eel_dynamics.simulation.bending.slow_motors import SlowMotors, slow_motors
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
@@ -40,7 +41,7 @@ class SwimRequest(NamedTuple, Generic[Kind]):
     """A swimmer that swims by `law`, the times (T,) [s] of its samples, and whether to record wrench and load.
 
     kind: class of the run. estimate: whether to measure its error, and to make it finer where it misses its target;
-    every: so many instants are then observed for each sample.
+    every: so many instants are then observed for each sample. slow_motors: where there are any.
     """
 
     kind: type[Kind]
@@ -51,6 +52,7 @@ class SwimRequest(NamedTuple, Generic[Kind]):
     load: bool
     estimate: bool = False
     every: int = 1
+    slow_motors: SlowMotors | None = None
 
     @staticmethod
     def of(
@@ -69,7 +71,8 @@ class SwimRequest(NamedTuple, Generic[Kind]):
         times, wrench = checked_times(seconds, period), setup.scene.internal_wrench
         check_covers(setup.flow, float(times[-1]))
         check_memory(1, len(times), len(setup.x), wrench, bool(load), 2 if estimate else 1)
-        request = SwimRequest(kind, law, setup, times, wrench, bool(load))
+        slow = slow_motors(setup.modes, law, float(times[-1]))
+        request = SwimRequest(kind, law, setup, times, wrench, bool(load), slow_motors=slow)
         return request.to_refine() if estimate else request
 
     def changed(self, **changes: Any) -> "SwimRequest[Kind]":

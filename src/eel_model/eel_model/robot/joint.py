@@ -51,7 +51,7 @@ class Joint(Part):
     stop_stiffness: float = quantity(100.0, "N m/rad", "of the hard stops", 0.0, exclusive=True)
     stop_damping: float = quantity(0.1, "N m s/rad", "of the hard stops, 0.01 rad beyond the limit", 0.0)
     initial_angle: float | None = quantity(
-        None, "rad", "at the start, at rest; None: the servo's reference, or where the spring rests"
+        None, "rad", "at the start, at rest; None: the servo's reference, or where the spring rests, within the limits"
     )
 
     def __post_init__(self) -> None:

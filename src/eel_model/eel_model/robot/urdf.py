@@ -209,7 +209,7 @@ def _direction(chain: UrdfChain) -> np.ndarray:
     if len(origins) > 1:
         along = origins[-1] - origins[0]
     else:
-        ends = [link.centre if link.mass > 0.0 else origins[0] for link in chain.links]
+        ends = [link.extent(np.eye(3)).mean(axis=0) for link in chain.links]
         along = ends[1] - ends[0]
     length = float(np.linalg.norm(along))
     if not length > 0.0:

@@ -11,9 +11,11 @@ from eel_ros.loop.diagnostics import ERROR, WARN, Report
 from eel_dynamics.curvature.curvature_samples import LateSample
 from eel_dynamics.ros.loop.awaited import LAW, SAMPLES, Awaited
 from eel_dynamics.ros.messages import refused
+from eel_dynamics.simulation.bending.slow_motors import slow_motors
 from eel_dynamics.simulation.simulation import Simulation
 
 LONGEST_WAY = 5.0  # s from the last sample, or from the simulation, to the next one: it is not on the same way
+LOOKED_AT = 20.0  # s of a law, for what it asks of motors
 REFUSALS = ValueError, ArithmeticError, MemoryError  # errors with which the simulation refuses laws and samples
 
 
@@ -59,6 +61,8 @@ class LawAdopter:
         self._awaited.end(SAMPLES)
         self._report.end("resting")
         self._report.note("law adopted", f"law {shown(law.name)} adopted at t = {simulation.time:g} s")
+        if slow := slow_motors(simulation.setup.modes, law, LOOKED_AT):
+            self._report.event("slow motors", slow.text, differing=True)
         if until is not None and until > simulation.time:
             self._report.event(
                 "samples dropped",

@@ -40,13 +40,20 @@ class ModesOnGrid:
         return self
 
     def at_start(self, law: eel_core.LawOnGrid, reference: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Coordinates (C,) and rates under a `law`: as given, as the servos' `reference` is, or where springs rest."""
+        """Coordinates (C,) and rates under a `law`: as given, as the servos' `reference` is, or where springs rest.
+
+        Those of a joint lie within its limits.
+        """
         factors, given = np.array(law.factors(0.0)), self.table.initial
         first, rate = self.table.rest.copy(), np.zeros(len(self.table.rest))
         first[: len(given)] = np.where(np.isnan(given), first[: len(given)], given)
         for (_, mode, coordinate), row in zip(self.table.motors, reference, strict=True):
             there = factors[:2, : len(row)] @ row if np.isnan(given[mode]) else (given[mode], 0.0)
             first[[coordinate, mode]], rate[[coordinate, mode]] = there
+        inside = np.clip(first[: len(given)], *self.table.limits.T)
+        for stopped in np.flatnonzero(inside != first[: len(given)]):
+            own: list[Any] = [stopped, *(motor.coordinate for motor in self.table.motors if motor.mode == stopped)]
+            first[own], rate[own] = inside[stopped], 0.0
         return first, rate
 
     def law(self, follower: LawFollower, tabulation: Tabulation) -> tuple[eel_core.LawOnGrid, np.ndarray]:
