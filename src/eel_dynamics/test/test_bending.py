@@ -162,6 +162,16 @@ def robots_with_limits_beside_straight(folder):
     yield Robot.from_file(folder / "robot.urdf", joints="flush"), [0.1]
 
 
+def test_a_joint_may_lie_close_to_a_blunt_nose():
+    """There is as much inertia ahead of it as behind; on a pointed body it is refused, with the place."""
+    robot = Robot([Joint(0.03, actuator=Servo()), Joint(0.5, actuator=Servo())])
+    body = Body.of_links(1.0, 16, half_width=0.03, half_height=0.04, joints="flush")
+    coarse, fine = (simulate(straight(), 1.0, body=body, robot=robot, accuracy=each) for each in (1e-3, 1e-5))
+    assert greatest(coarse.position - fine.position) < 1e-3 and greatest(fine.energy.residual) < 1e-6
+    with pytest.raises(ValueError, match="joint 'joint_1' position and width must lie"):
+        simulate(straight(), 1.0, robot=robot)
+
+
 def test_a_joint_starts_within_its_limits(tmp_path):
     for robot, angles in robots_with_limits_beside_straight(tmp_path):
         run = simulate(straight(), 0.1, body=robot.body, robot=robot, scene=Scene(planar=True), accuracy=1e-2)
