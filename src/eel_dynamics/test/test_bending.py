@@ -15,6 +15,7 @@ from eel_model.robot.robot import Robot
 from eel_dynamics import (
     Accuracy,
     Batch,
+    Body,
     Run,
     Scene,
     Simulation,
@@ -164,11 +165,11 @@ def robots_with_limits_beside_straight(folder):
 
 def test_a_joint_may_lie_close_to_a_blunt_nose():
     """There is as much inertia ahead of it as behind; on a pointed body it is refused, with the place."""
-    robot = Robot([Joint(0.03, actuator=Servo()), Joint(0.5, actuator=Servo())])
+    robot = Robot([Joint(0.05, width=0.02, actuator=Servo()), Joint(0.5, actuator=Servo())])
     body = Body.of_links(1.0, 16, half_width=0.03, half_height=0.04, joints="flush")
     coarse, fine = (simulate(straight(), 1.0, body=body, robot=robot, accuracy=each) for each in (1e-3, 1e-5))
     assert greatest(coarse.position - fine.position) < 1e-3 and greatest(fine.energy.residual) < 1e-6
-    with pytest.raises(ValueError, match="joint 'joint_1' position and width must lie"):
+    with pytest.raises(ValueError, match=r"position and width must lie behind the nose's first panel, from 0\.05 m on"):
         simulate(straight(), 1.0, robot=robot)
 
 
