@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from eel_dynamics.commands.filmed import speeds_of
 from eel_dynamics.commands.simulate import main as simulate_command
-from eel_gaits.film.beat import beat_of
+from eel_gaits.film.beat import beat_of, jackknife
 from eel_gaits.film.film import Film, read_film
-from filmed import TIMES, WAVE, swimming, write_long
+from filmed import ARC, TIMES, WAVE, beat_without, hidden, swimming, write_long, write_sleap
 from life import main as life
 
 from eel_dynamics import Body, Scene, simulate
@@ -27,6 +27,40 @@ def test_a_noisy_film_swims_as_fast_as_the_motion_that_was_filmed():
     (found,) = speeds_of([beat], body, PLANAR)
     true = simulate(WAVE, "settled", body=body, scene=PLANAR, accuracy=1e-2).mean_speed
     assert found == pytest.approx(true, rel=0.05)  # the noise is 6 % of the points' distance
+
+
+def speed_told(path, capsys):
+    """Speed, and its band, that the command tells of a film in px."""
+    options = ["--units", "px", "--scale", "1e-3", "--rate", "50", "--scene", "planar=on", "--accuracy", "1e-2"]
+    assert simulate_command(["--midlines", str(path), *options]) == 0
+    told = capsys.readouterr().out
+    return told, [float(each) for each in re.search(r"speed +([0-9.]+) m/s, ([0-9.]+) to ([0-9.]+) m/s", told).groups()]
+
+
+def test_two_points_that_a_tracker_lost_in_a_third_of_the_frames_leave_the_speed(tmp_path, capsys):
+    points, draw = 1e3 * swimming(noise=1e-3, arc=ARC), np.random.default_rng(6)
+    scores = np.full(points.shape[:2], 0.9)
+    scores[np.ix_(draw.choice(80, 28, replace=False), [5, 6])] = 0.05
+    nonsense = points + draw.normal(scale=80.0, size=points.shape) * (scores < 0.5)[..., None]
+    _, (whole, _, _) = speed_told(write_sleap(tmp_path / "whole.csv", {"": points}), capsys)
+    told, (speed, low, high) = speed_told(write_sleap(tmp_path / "lost.csv", {"": nonsense}, scores=scores), capsys)
+    assert "56 of 640 points have a likelihood below 0.6 and count as missing: part5, part6" in told
+    assert low < whole < high and speed == pytest.approx(whole, rel=0.01)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("kind", ["scattered", "two in a row, often", "one for long", "bursts"])
+def test_bands_hold_the_speed_of_the_whole_film_over_forty_random_losses(tmp_path, kind):
+    points, draw, held = swimming(noise=1e-3, arc=ARC), np.random.default_rng(8), 0
+    body = Body.kern2006()
+    (true,) = speeds_of(
+        [beat_without(tmp_path / "whole.csv", points, np.zeros(points.shape[:2], dtype=bool))], body, PLANAR
+    )
+    for _ in range(40):
+        beat = beat_without(tmp_path / "gaps.csv", points, hidden(kind, draw))
+        speed, *others = speeds_of([beat, *beat.others], body, PLANAR)
+        held += abs(speed - true) <= jackknife(others)
+    assert held >= 37
 
 
 def test_the_lamprey_swims_from_its_file_as_it_was_published(capsys):

@@ -7,17 +7,21 @@ import pickle
 
 import h5py
 import numpy as np
+from eel_gaits.film.beat import beat_of
+from eel_gaits.film.film import read_film
 from measured import midline_of, moved, write
 
 from eel_gaits import Law, Term
 
 WAVE = Law(Term(amplitude=(2.0, 3.0, 5.0), knots=(0.0, 0.5, 1.0), wavelength=0.7, period=0.26))
 TWICE = WAVE + Law(Term(amplitude=(1.0, 2.0, 3.0), knots=(0.0, 0.5, 1.0), wavelength=0.4, period=0.13))
-TIMES = 0.02 * np.arange(80)
-ARC = np.linspace(0.0, 1.0, 20)
+COUNT = 80
+TIMES = 0.02 * np.arange(COUNT)
+WHOLE = np.linspace(0.0, 1.0, 20)
+ARC = np.linspace(0.0, 1.0, 8)  # of a film with gaps
 
 
-def swimming(law=WAVE, *, noise=0.0, correlation=0.8, times=TIMES, arc=ARC, seed=2):
+def swimming(law=WAVE, *, noise=0.0, correlation=0.8, times=TIMES, arc=WHOLE, seed=2):
     """Points (N, n, 2) [m] of a swimmer 1 m long that drifts ahead and turns; errors that last over several frames."""
     draw, error, frames = np.random.default_rng(seed), np.zeros((len(arc), 2)), []
     for time in times:
@@ -137,3 +141,26 @@ def write_sleap_h5(path, animals, parts, dims=None, scores=None):
         file["node_names"], file["track_names"] = np.array(parts, dtype="S"), np.array(list(animals), dtype="S")
         file["labels_path"] = "fish.slp"
     return path
+
+
+def hidden(kind, draw):
+    """(N, n), which points of a film of 8 are not seen."""
+    found, long = np.zeros((COUNT, len(ARC)), dtype=bool), int(0.4 * COUNT)
+    place, start = draw.integers(1, len(ARC) - 2), draw.integers(0, COUNT - long)
+    if kind == "scattered":
+        found[:, 1:-1] = draw.random((COUNT, len(ARC) - 2)) < 0.15
+    elif kind == "two in a row, often":
+        found[draw.choice(COUNT, long, replace=False), place : place + 2] = True
+    elif kind == "one for long":
+        found[start : start + long, place] = True
+    elif kind == "bursts":
+        for first in draw.integers(0, COUNT - 6, 5):
+            found[first : first + 6, place : place + 2] = True
+        found[start : start + 4] = True
+    return found
+
+
+def beat_without(path, points, lost):
+    """The beat of a film without the points that are `lost` (N, n)."""
+    gone = np.where(lost[..., None], np.nan, 1e3 * points)
+    return beat_of(read_film(write_sleap(path, {"": gone}), units="px", scale=1e-3, rate=50.0))

@@ -3,34 +3,7 @@
 
 import numpy as np
 import pytest
-from eel_gaits.film.beat import beat_of
-from eel_gaits.film.film import read_film
-from filmed import TIMES, swimming, write_sleap
-
-ARC = np.linspace(0.0, 1.0, 8)
-COUNT = len(TIMES)
-
-
-def hidden(kind, draw):
-    """(N, n), which points of a film of 8 are not seen."""
-    found, long = np.zeros((COUNT, len(ARC)), dtype=bool), int(0.4 * COUNT)
-    place, start = draw.integers(1, len(ARC) - 2), draw.integers(0, COUNT - long)
-    if kind == "scattered":
-        found[:, 1:-1] = draw.random((COUNT, len(ARC) - 2)) < 0.15
-    elif kind == "two in a row, often":
-        found[draw.choice(COUNT, long, replace=False), place : place + 2] = True
-    elif kind == "one for long":
-        found[start : start + long, place] = True
-    elif kind == "bursts":
-        for first in draw.integers(0, COUNT - 6, 5):
-            found[first : first + 6, place : place + 2] = True
-        found[start : start + 4] = True
-    return found
-
-
-def beat_without(path, points, lost):
-    gone = np.where(lost[..., None], np.nan, 1e3 * points)
-    return beat_of(read_film(write_sleap(path, {"": gone}), units="px", scale=1e-3, rate=50.0))
+from filmed import ARC, COUNT, beat_without, hidden, swimming
 
 
 @pytest.mark.parametrize("kind", ["scattered", "two in a row, often", "one for long", "bursts"])

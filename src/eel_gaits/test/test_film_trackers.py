@@ -71,6 +71,9 @@ def test_one_animal_under_successive_names_is_joined_and_told(tmp_path):
     found = read_film(write_sleap(tmp_path / "sleap.csv", names), **PIXELS)
     assert any("'fish_3', 'fish_7', ''" in note and "joined" in note for note in found.notes)
     assert len(found.time) == 78 and np.allclose(found.points, 1e-3 * points[np.delete(whole, [25, 26])])
+    nonsense = names | {"elsewhere": cut(points + 900.0, whole[25:27])}
+    found = read_film(write_sleap(tmp_path / "nonsense.csv", nonsense), **PIXELS)
+    assert "animal 'fish_3', 'fish_7', '' taken, left out: 'elsewhere'" in found.notes and len(found.time) == 78
     flicker = {"a": cut(points, whole[::2]), "b": cut(points, whole[1::2])}
     assert len(read_film(write_sleap(tmp_path / "flicker.csv", flicker), **PIXELS).time) == 80
 
@@ -97,6 +100,9 @@ def test_animals_that_share_frames_need_a_choice_of_tracks(tmp_path):
     with pytest.raises(ValueError, match="it has 4 animals, 'a', 'b', 'c', 'd': say which one"):
         read_film(path, **PIXELS)
     found = read_film(path, **PIXELS, animal="a, d")
+    both = {"a": cut(points, whole[:41]), "d": cut(points + 3.0, whole[40:])}
+    handed_over = read_film(write_sleap(tmp_path / "handed_over.csv", both), **PIXELS, animal="a,d")
+    assert len(handed_over.time) == 80 and np.allclose(handed_over.points[40], 1e-3 * points[40])
     assert len(found.time) == 80 and np.allclose(found.points, 1e-3 * points)
     with pytest.raises(ValueError, match="there is no animal 'e', there are: 'a', 'b', 'c', 'd'"):
         read_film(path, **PIXELS, animal="a,e")

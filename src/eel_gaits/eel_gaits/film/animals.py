@@ -19,7 +19,7 @@ LISTED = 8  # names in a message
 def of_one(tracks: Tracks, animal: str | None) -> tuple[np.ndarray, np.ndarray, list[str], list[str]]:
     """Points (N, n, 2) of one animal, their scores (N, n) or NaN, their names (n,), and notes.
 
-    animal: its name, or the names of its tracks with commas between them.
+    animal: its name, or the names of its tracks with commas between them; where they share a frame, the first counts.
     """
     seen = {name: _there(points) for name, points in tracks.animals.items()}
     seen = {name: seen[name] for name in sorted(seen, key=lambda name: np.argmax(seen[name])) if seen[name].any()}
@@ -31,18 +31,18 @@ def of_one(tracks: Tracks, animal: str | None) -> tuple[np.ndarray, np.ndarray, 
     names = [name for name in seen if name in wanted]
     if not names:
         raise ValueError("all its points are missing")
-    if np.any(np.sum([seen[name] for name in names], axis=0) > 1):
-        raise ValueError(f"it has {len(names)} animals, {_listed(names)}: say which one")
+    if animal is None and np.any(np.sum([seen[name] for name in names], axis=0) > 1):
+        raise ValueError(f"it has {len(names)} animals, {_listed(names)}: say which one, or which tracks are one")
     if any(tracks.names[name] != tracks.names[names[0]] for name in names):
         raise ValueError(f"it has {len(names)} animals with other points, {_listed(names)}: say which one")
     groups: list[list[str]] = []
     for name in names:
-        if groups and (animal is not None or _is_one(tracks, groups[-1], name)):
-            groups[-1].append(name)
-        else:
-            groups.append([name])
+        group = next((each for each in groups if animal is not None or _is_one(tracks, each, name)), [])
+        groups += [] if group else [group]
+        group.append(name)
     one = max(groups, key=lambda group: sum(int(seen[name].sum()) for name in group))
-    notes = [f"tracks {_listed(one)} share no frame and follow each other: joined"] if len(one) > 1 else []
+    why = "" if animal is not None else ", as they share no frame and follow each other"
+    notes = [f"tracks {_listed(one)} joined{why}"] if len(one) > 1 else []
     if out := [name for name in seen if name not in one]:
         notes.append(f"animal {_listed(one)} taken, left out: {_listed(out)}")
     points = _merged(tracks.animals, one)
@@ -79,10 +79,11 @@ def _there(points: np.ndarray) -> np.ndarray:
 
 
 def _merged(tracks: dict[str, np.ndarray], names: list[str]) -> np.ndarray:
-    """The values (N, ...) of tracks with these `names`, which share no frame."""
-    found = tracks[names[0]]
-    for name in names[1:]:
-        found = np.where(np.isnan(found), tracks[name], found)
+    """The values (N, n, ...) of tracks with these `names`, in each frame of the first that is there."""
+    found = np.full_like(tracks[names[0]], np.nan)
+    for name in reversed(names):
+        here = np.isfinite(tracks[name]).any(axis=tuple(range(1, found.ndim)))
+        found[here] = tracks[name][here]
     return found
 
 

@@ -160,6 +160,8 @@ def _repaired(name: str, time: np.ndarray, points: np.ndarray, names: list[str],
     def in_brackets() -> str:
         return f" ({'; '.join(notes)})" if notes else ""
 
+    if not np.any(np.isfinite(points)):
+        raise ValueError(f"all its points are missing{in_brackets()}")
     keep(np.any(np.isfinite(points), axis=(1, 2)), "empty")
     there = np.all(np.isfinite(points), axis=2)
     often = np.where(np.isin(np.arange(len(names)), (0, len(names) - 1)), ENDS, OFTEN)
