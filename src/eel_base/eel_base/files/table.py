@@ -152,8 +152,8 @@ class Table:
         return [self._words[mark] if mark else f"{value:.12g}" for mark, value in cells]
 
     def raw(self, place: int) -> np.ndarray:
-        """The numbers (rows,) of a column as they stand in the file; NaN for any other cell."""
-        return np.asarray(self._values[:, place])
+        """The finite numbers (rows,) of a column as they stand in the file; NaN for any other cell."""
+        return np.where(np.isfinite(self._values[:, place]), self._values[:, place], np.nan)
 
     def filled(self, place: int) -> np.ndarray:
         """Which cells (rows,) of a column have a value."""

@@ -16,7 +16,6 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -34,15 +33,6 @@ WITH_COMMA, WITH_POINT = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?"), re.compil
 THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 SWAPPED = str.maketrans(",.", ".,")
 Row = tuple[list[str], int, int]  # cells up to the last that is not empty; its line; how many cells there are
-
-
-class Head(NamedTuple):
-    """The header: names of the columns, all its rows, the line after it, and what was guessed."""
-
-    names: list[str]
-    rows: list[list[str]]
-    start: int
-    notes: list[str]
 
 
 def is_table(path: str | os.PathLike[str], *others: str) -> bool:
@@ -92,12 +82,12 @@ def _read(path: Path, file: InputFile, what: str, lenient: bool) -> Table:
         while len(first) < FIRST_LINES and sum(map(len, first)) < FIRST_CHARACTERS and (each := next(rest, "")):
             first.append(each)
         delimiter, comma = _form(first)
-        head = _head(list(_split(first, delimiter, strict=False)))
-        width = len(head.names)
+        names, heads, start, notes = _head(list(_split(first, delimiter, strict=False)))
+        width = len(names)
         plain = array.array("i", bytes(4 * width))
         for cells, line, size in _split(itertools.chain(first, rest), delimiter):
             fits = len(cells) <= width <= size
-            if line < head.start or (not fits and cells[0].startswith("#")):
+            if line < start or (not fits and cells[0].startswith("#")):
                 continue
             if len(values) + width > MOST_NUMBERS:
                 raise Misplaced(f"line {line}", f"a table must hold at most {MOST_NUMBERS} numbers")
@@ -118,20 +108,20 @@ def _read(path: Path, file: InputFile, what: str, lenient: bool) -> Table:
                     known = is_number(number)
                     values.append(float(number) if known else np.nan)
                     marks.append(0 if known else words.setdefault(cell, len(words) + 1))
-    if not lines and not lost:
-        raise ValueError("it has a header and no row")
+    if not lines:
+        raise ValueError(f"it has a header and no row of {width} cells")
     read = [DELIMITERS[delimiter]] if delimiter != "," else []
     read += ["decimal commas"] if comma else []
     read += [] if encoding.startswith("utf-8") else [encoding]
     return Table(
         path,
-        head.names,
+        names,
         np.frombuffer(values).reshape(-1, width),
         np.frombuffer(marks, dtype=np.int32).reshape(-1, width),
         list(words),
         np.frombuffer(lines, dtype=np.int64),
-        heads=head.rows,
-        notes=[*read, *head.notes],
+        heads=heads,
+        notes=[*read, *notes],
         lost=lost,
         what=what,
     )
@@ -212,8 +202,11 @@ def _usual(sizes: Iterable[int]) -> int:
     return max(Counter(sizes).items(), key=lambda each: each[1], default=(0, 0))[0]
 
 
-def _head(first: list[Row]) -> Head:
-    """The header in the first rows: names where the columns have numbers; of its first row, one will do."""
+def _head(first: list[Row]) -> tuple[list[str], list[list[str]], int, list[str]]:
+    """The names of the columns, all rows of the header, the line after it, and what was guessed.
+
+    A row of the header has names where the columns have numbers; of its first row, one will do.
+    """
     if not first:
         raise ValueError("it is empty")
     usual = _usual(size for _, _, size in first)
@@ -240,7 +233,7 @@ def _head(first: list[Row]) -> Head:
         raise Misplaced(f"line {skipped[-1][1]}", f"{len(last)} names stand above {usual} numbers{hint}")
     notes = [f"{len(skipped)} lines above left out"] if skipped else []
     if not rows:
-        return Head([str(place + 1) for place in range(len(columns))], rows, start, [*notes, "no header"])
+        return [str(place + 1) for place in range(len(columns))], rows, start, [*notes, "no header"]
     *above, names_row = rows
     width = max(len(names_row), len(columns))
     if width > MOST_COLUMNS:
@@ -249,4 +242,4 @@ def _head(first: list[Row]) -> Head:
     if above and all(unit.lower() in (*UNITS, "") for unit in units):
         both = itertools.zip_longest(above[-1], units, fillvalue="")
         names_row = [f"{name} [{unit}]" if unit else name for name, unit in both]
-    return Head(names_row + [""] * (width - len(names_row)), rows, start, notes)
+    return names_row + [""] * (width - len(names_row)), rows, start, notes

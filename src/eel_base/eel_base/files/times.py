@@ -70,7 +70,7 @@ def _is_dated(table: Table, place: int) -> bool:
     if not table.has_numbers(place):
         return math.isfinite(_seconds(table.texts(place)[len(table) // 2]))
     values = table.raw(place)
-    return _of_epoch(values) is not None and bool(np.mean(np.diff(values) >= 0.0) > RISING)
+    return _of_epoch(values) is not None and bool(np.sum(np.diff(values) >= 0.0) >= RISING * (len(values) - 1))
 
 
 def _of_epoch(values: np.ndarray) -> float | None:

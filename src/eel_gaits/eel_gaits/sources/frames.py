@@ -19,7 +19,7 @@ from eel_gaits.sources.sampled_law import SampledLaw, points_for
 from eel_gaits.sources.smoothing import FEWEST, interpolated, smoothed, smoothed_in_time
 
 FEWEST_FRAMES = 16
-STEPS = 1e-5, 0.4  # s, of films and logs of swimmers; beyond them time is not in s
+STEPS = 9e-5, 0.4  # s, of films and logs of swimmers; beyond them time is not in s
 TOLERANCE = 5e-5  # part of the greatest curvature by which the rows may miss the splines along the body
 MATERIAL = 0.02  # part of the length by which the arc length of a point may differ from frame to frame
 
