@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from eel_base.files.tables import read_table
 from eel_dynamics.commands.filmed import speeds_of
-from eel_gaits.film.beat import Beat, jackknife
+from eel_gaits.film.beat import Beat
 from eel_gaits.film.kinematics import Kinematics, kinematics
 
 from eel_dynamics import Body, Run, Scene, simulate
@@ -76,7 +76,7 @@ def swims(beat: Beat, widths: Path, scene: Scene = PLANAR, **numbers: float) -> 
         run = simulate(beat.law(body.length), "settled", body=body, scene=scene, accuracy=1e-2)
         last = run.time > run.time[-1] - BEATS * beat.period
         figures = kinematics(run.time[last], run.backbone[last, :, :2], beat.period)
-        band = float(jackknife(speeds_of(beat.others, body, scene)))
+        band = float(beat.half_band(speeds_of(beat.others, body, scene)))
         found.append(LampreySwim(height, run, run.mean_speed, band, figures))
     return found
 

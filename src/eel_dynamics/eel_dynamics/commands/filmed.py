@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from eel_base.wording import shown
-from eel_gaits.film.beat import Beat, beat_of, jackknife
+from eel_gaits.film.beat import Beat, beat_of
 from eel_gaits.film.film import LIKELY, Film, read_film
 from eel_model.body.body import Body
 from eel_model.body.text import body_of
@@ -78,7 +78,7 @@ def effect_of_fit(beat: Beat, body: Body, scene: Scene) -> list[tuple[str, str]]
     others = [beat_of(beat.film, harmonics=count, rigid=beat.rigid) for count in range(1, beat.most_harmonics + 1)]
     speeds = speeds_of([beat, *others, *beat.others], body, scene)
     mean, by_count, without = speeds[0], speeds[1 : len(others) + 1], speeds[len(others) + 1 :]
-    half = float(jackknife(without))
+    half = float(beat.half_band(without))
     listed = ", ".join(f"{count + 1}: {speed:.4g}" for count, speed in enumerate(by_count))
     seen = beat.measured.speed
     return [

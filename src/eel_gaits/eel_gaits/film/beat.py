@@ -14,7 +14,8 @@ fits whose error is within one standard error of the least, the one with fewest 
 Classification and Regression Trees, 1984). The fits without each beat give the bands (jackknife).
 
 A missing point stands where the beat has it, moved along with its neighbours; the beat is fitted anew until that no
-longer changes (expectation and maximisation), without each beat too. Only what was seen judges a fit.
+longer changes (expectation and maximisation), without each beat too. Only what was seen judges a fit; bands are wider
+by what was not.
 """
 
 import itertools
@@ -77,7 +78,19 @@ class Beat:
     def band(self) -> float:
         """Half of the 95 % band of the curvature, mean over the body, by the greatest amplitude."""
         size = np.max(np.hypot(self.curvature[1], self.curvature[2]))
-        return float(np.mean(jackknife([each.curvature[1:3] for each in self.others])) / size)
+        return float(np.mean(self.half_band([each.curvature[1:3] for each in self.others])) / size)
+
+    def half_band(self, values: Any) -> np.ndarray:
+        """Half of the 95 % band of a figure from its `values` (n, ...) by the `others` (jackknife).
+
+        It is wider where less was seen, like an error by the square root of the number of data.
+        """
+        from scipy.stats import t
+
+        rows, count = np.asarray(values), len(values)
+        error = np.sqrt((count - 1) / count * np.sum((rows - rows.mean(axis=0)) ** 2, axis=0))
+        unseen = 0.0 if self.film.missing is None else float(np.mean(_unseen(self.film.missing)))
+        return np.asarray(t.ppf(QUANTILE, count - 1) * error / math.sqrt(1.0 - unseen))
 
     @property
     def doubts(self) -> list[str]:
@@ -101,7 +114,7 @@ class Beat:
         film, seen = self.film, self.measured
         rigid = f", rigid up to {self.rigid:g} of the length" if self.rigid else ""
         kept = f"{len(self.others)} beats, {self.harmonics} harmonic{'s' if self.harmonics > 1 else ''} kept"
-        periods = jackknife([each.period for each in self.others])
+        periods = self.half_band([each.period for each in self.others])
         return [
             ("film", f"{film.name}: {film.points.shape[1]} points, {len(film.time)} frames, {film.length:.4g} m long"),
             *([("read", film.read)] if film.read else []),
@@ -151,15 +164,6 @@ def most_harmonics(film: Film, period: float) -> int:
     return max(1, min(HARMONICS, math.ceil(0.5 * frames) - 1))
 
 
-def jackknife(values: Any) -> np.ndarray:
-    """Half of the 95 % band of a mean from its `values` (n, ...) without each of n parts."""
-    from scipy.stats import t
-
-    rows, count = np.asarray(values), len(values)
-    error = np.sqrt((count - 1) / count * np.sum((rows - rows.mean(axis=0)) ** 2, axis=0))
-    return np.asarray(t.ppf(QUANTILE, count - 1) * error)
-
-
 def _phase(beat: Beat) -> float:
     """Phase [rad] of the curvature's first harmonic from head to tail: negative for a wave towards the last point."""
     wave = beat.curvature[1] - 1j * beat.curvature[2]
@@ -173,7 +177,7 @@ class _Fit:
         self.film, self.rigid, self.arc = film, rigid, film.arc
         self.weight = np.diff(self.arc) / np.mean(np.diff(self.arc))  # an error of a point turns a short segment more
         self.missing = np.zeros(film.points.shape[:2], dtype=bool) if film.missing is None else film.missing
-        self.seen = ~(self.missing[:, 1:] | self.missing[:, :-1])  # (N, n - 1)
+        self.seen = ~_unseen(self.missing)
         self.points = film.points
         self.angles, self.mean = self._angles_of(film.points)
         self.time, self.all = film.time - film.time[0], np.ones(len(film.time), dtype=bool)
@@ -189,6 +193,8 @@ class _Fit:
                 f"{film.name}: there must be {FEWEST_BEATS} beats or more, got {count} of {self.period:.3g} s"
             )
         told = int(np.sum(self.arc[1:] > rigid * self.arc[-1])) - (0 if rigid else 1)  # angles, less the whole turn
+        if told < LEAST_KNOTS:
+            raise ValueError(f"{film.name}: rigid up to {rigid:g} of the length leaves {told} points to bend, too few")
         self.bases = {knots: self._basis(knots) for knots in range(LEAST_KNOTS, min(KNOTS, told) + 1)}
 
     def best(self, harmonics: int | None) -> Beat:
@@ -316,6 +322,11 @@ class _Fit:
         apart = np.where(self.missing[..., None], np.nan, shape - self.film.points)
         apart = apart - np.nanmean(apart, axis=1, keepdims=True)
         return float(np.sqrt(np.nanmean(np.sum(apart**2, axis=2))))
+
+
+def _unseen(missing: np.ndarray) -> np.ndarray:
+    """The segments (N, n - 1) of which an end is `missing` (N, n)."""
+    return np.asarray(missing[:, 1:] | missing[:, :-1])
 
 
 def _solved(design: np.ndarray, values: np.ndarray, along: np.ndarray) -> np.ndarray:
