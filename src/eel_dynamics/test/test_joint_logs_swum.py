@@ -83,6 +83,8 @@ def test_friction_and_added_mass_by_factors_act_as_they_say():
         ({"--body": "boyer2010"}, "one of --body and --section"),
         ({"--units": "gon"}, "gon"),
         ({"--joint-drag": "loose"}, "joints must be flush, or the drag coefficient of a link by itself, 0"),
+        ({"--time": "9"}, "the time must name columns among the 8 of the file, each once, got '9'"),
+        ({"--clock": "1000"}, "rad/s (RMS) in steps of 20 s: time in s?"),
         ({"--clock": "0"}, "--clock must be > 0, got 0"),
         ({"--rate": "5"}, "belong to --midlines, which is not given"),
         ({"--sequence": "patrol.yaml"}, "--joints takes the place of a gait, got '--sequence' too"),
@@ -97,3 +99,5 @@ def test_what_does_not_fit_is_told(log, change, words, capsys):
 def test_options_of_a_log_need_one(capsys):
     assert main(["straight", "--links", "0.1x8"]) == 2
     assert "belong to --joints, which is not given" in capsys.readouterr().err
+    assert main(["straight", "--time", "t"]) == 2
+    assert "--time belongs to --midlines, --joints or --file" in capsys.readouterr().err

@@ -66,7 +66,7 @@ class Table:
         self._values, self._words = values, ["", *words]
         self._marks = np.broadcast_to(np.int32(0), values.shape) if marks is None else marks
         self._empty = np.array([False, *(word.lower() in MISSING for word in words)])
-        self._word = "row" if lines is None else "line"
+        self.word = "row" if lines is None else "line"
         self.lines = np.arange(1, len(values) + 1) if lines is None else lines
 
     def __len__(self) -> int:
@@ -77,9 +77,9 @@ class Table:
 
     def error(self, text: str, first: int | None = None, last: int | None = None) -> ValueError:
         """An error about rows `first` to `last` (indices): with the file, their lines and a `text`."""
-        place = "" if first is None else f", {self._word} {self.lines[first]}"
+        place = "" if first is None else f", {self.word} {self.lines[first]}"
         if first is not None and last is not None and last != first:
-            place = f", {self._word}s {self.lines[first]} to {self.lines[last]}"
+            place = f", {self.word}s {self.lines[first]} to {self.lines[last]}"
         return ValueError(f"{self._what}{shown(str(self.path))}{place}: {text}")
 
     def tell(self) -> None:

@@ -12,7 +12,6 @@ So each angle is kept exactly, and at equal distances the angles add up smoothly
 
 import itertools
 import re
-from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -97,7 +96,7 @@ def read_joint_log(
         rare = [each for each in filled if np.mean(each[mine]) < RARE]  # of other topics, if any
         if others := int(np.sum(~(mine := mine | ~np.any(rare, axis=0)))):
             read.append(f"{others} rows of other topics")
-        seconds, angles, notes = _mended(times[mine], angles[mine], table.lines[mine], table.lost)
+        seconds, angles, notes = _mended(times[mine], angles[mine], table.lines[mine], table)
         if len(seconds) < FEWEST_ROWS or len(joints) < FEWEST_JOINTS:
             rule = f"{FEWEST_JOINTS} joints in {FEWEST_ROWS} rows or more"
             raise ValueError(f"there must be {rule}, got {len(joints)} in {len(seconds)}")
@@ -183,22 +182,24 @@ def _in_one_row(time: np.ndarray, angles: np.ndarray) -> np.ndarray:
 
 
 def _mended(
-    time: np.ndarray, angles: np.ndarray, lines: np.ndarray, lost: Sequence[int]
+    time: np.ndarray, angles: np.ndarray, lines: np.ndarray, table: Table
 ) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """Times (N,) that rise, their angles, and what was done. `ValueError` where that would leave out much.
 
     A row whose stamp alone is bad is left out; where a clock is set back and the angles go on, so does the time.
     """
-    notes, count = list[str](), len(time) + len(lost)
+    notes, count = list[str](), len(time) + len(table.lost)
 
     def keep(good: np.ndarray, why: str) -> None:
         nonlocal time, angles, lines
         if not good.all():
-            notes.append(f"{np.sum(~good)} rows left out, the first in line {lines[~good][0]}: {why}")
+            notes.append(f"{np.sum(~good)} rows left out, the first in {table.word} {lines[~good][0]}: {why}")
             time, angles, lines = time[good], angles[good], lines[good]
 
-    if lost:
-        notes.append(f"{len(lost)} rows left out, the first in line {lost[0]}: they have another number of cells")
+    if table.lost:
+        notes.append(
+            f"{len(table.lost)} rows left out, the first in line {table.lost[0]}: they have another number of cells"
+        )
     keep(np.isfinite(time) & np.isfinite(angles).all(axis=1), "a time or an angle is missing or no number")
     twice = (np.diff(time) == 0.0) & np.all(np.diff(angles, axis=0) == 0.0, axis=1)
     keep(np.append(True, ~twice)[: len(time)], "they stand there twice")
@@ -212,7 +213,7 @@ def _mended(
     moves = np.max(np.abs(np.diff(angles, axis=0)), axis=1, initial=0.0)
     back = np.flatnonzero(np.diff(time) <= 0.0)
     for place in back:
-        told = f"the clock is set back by {time[place] - time[place + 1]:.4g} s in line {lines[place + 1]}"
+        told = f"the clock is set back by {time[place] - time[place + 1]:.4g} s in {table.word} {lines[place + 1]}"
         if moves[place] > SEAM * np.percentile(moves, 99.0) + FINEST or len(back) > MOST_SETS:
             raise ValueError(f"{told}: two logs in one file?")
         notes.append(f"{told}: time goes on by a step there")
