@@ -53,14 +53,18 @@ def joint_command_from_message(
     names = list(message.name)
     if not 1 <= len(names) <= MOST_JOINTS:
         raise ValueError(f"name must hold 1 to {MOST_JOINTS} joints, got {len(names)}")
-    for index, name in enumerate(names):
-        checked_choice("joint", name, interfaces)
-        if names.index(name) < index:
-            raise ValueError(f"name must hold each joint once, got {shown(name)} twice")
     joints: Values = {name: {} for name in names}
+    for name in joints:
+        checked_choice("joint", name, interfaces)
+    if len(joints) < len(names):
+        twice = next(name for index, name in enumerate(names) if name in names[:index])
+        raise ValueError(f"name must hold each joint once, got {shown(twice)} twice")
     for field in INTERFACES:
         values = getattr(message, field)
-        for name, value in zip(_whose(field, len(values), names, interfaces), values, strict=True):
+        if not values:
+            continue
+        whose = names if len(values) == len(names) else _whose(field, len(values), names, interfaces)
+        for name, value in zip(whose, values, strict=True):
             if math.isnan(value):
                 continue
             if math.isinf(value):
@@ -68,16 +72,15 @@ def joint_command_from_message(
             if field not in interfaces[name]:
                 own = " and ".join(interfaces[name]) or "none"
                 raise ValueError(f"joint {shown(name)} has the command interface {own}, got {field} too")
-            joints[name][field] = float(value)
+            joints[name][field] = value
     return stamped(message.header.stamp, now), joints
 
 
 def _whose(field: str, count: int, names: list[str], interfaces: Mapping[str, tuple[str, ...]]) -> list[str]:
-    """The joints of the `count` values of a `field`: all `names`, or those that have that interface."""
+    """The joints of `names` that the `count` values of a `field` are for: those that have that interface."""
     having = [name for name in names if field in interfaces[name]]
-    for whose in ([], names, having):
-        if count == len(whose):
-            return whose
+    if count == len(having):
+        return having
     rule = f"as many values as name, {len(names)}"
     if len(having) < len(names):
         rule += f", or one for each of the {len(having)} joints with that interface"

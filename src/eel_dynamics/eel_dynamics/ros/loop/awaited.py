@@ -14,7 +14,7 @@ awaited until it is back.
 import math
 import time as wall
 from collections import deque
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 
 from eel_base.quantity import is_finite
@@ -96,7 +96,7 @@ class Awaited:
         for topic in INPUTS:
             self._report.end(_kind(topic))
 
-    def come(self, topic: str, stamp: float, now: float, names: Iterable[str] = (ALL,)) -> None:
+    def come(self, topic: str, stamp: float, now: float, names: Collection[str] = (ALL,)) -> None:
         """A message for these `names` of joints or fins with this `stamp` [s] has come at the time `now` [s]."""
         self._farthest[topic] = max(self._farthest.get(topic, 0.0), stamp - now)
         self._report.end(_kind(topic), f"{MESSAGES[topic]}s are back at t = {now:g} s")
@@ -105,7 +105,7 @@ class Awaited:
         elif self._awaits(topic):
             for name in names:
                 (self._sources.get((topic, name)) or self._new(topic, name)).come(stamp, now, self.period)
-            if ALL not in names:
+            if names and ALL not in names:
                 self._sources.pop((topic, ALL), None)
 
     def names(self, topic: str) -> bool:

@@ -15,7 +15,7 @@ from typing import Any
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_model.fins.fins import checked_commands, commanded_names
-from eel_model.robot.actuators import Servo
+from eel_model.robot.robot import Robot
 from eel_ros.loop.diagnostics import ERROR, Report
 
 from eel_dynamics.ros.command_messages import Values, fin_command_from_message, joint_command_from_message
@@ -26,6 +26,7 @@ LONGEST_WAY = 5.0  # s that a command may lie ahead of the simulation
 MOST_WAITING = 10_000  # instants ahead: 2 kHz for so long
 STAND_IN = Law(name="joint_commands")  # of a swimmer that is straight but for its commands
 INSTANT = itemgetter(0)
+UNITS = {"position": "rad", "velocity": "rad/s", "effort": "N m"}
 
 
 class CommandQueue:
@@ -79,7 +80,7 @@ class CommandQueue:
         )
         self._last, self._pause = now, now - self._last
         if is_stamped:
-            self._awaited.come(self.topic, stamp, now, values)
+            self._awaited.come(self.topic, stamp, now, values if self._lockstep else ())
 
     def _queue(self, stamp: float, instant: float, values: Values) -> None:
         """Have the `values` act at an `instant` [s], but for those of parts that a newer `stamp` [s] has acted on."""
@@ -162,15 +163,17 @@ class JointCommands(CommandQueue):
     def __init__(self, awaited: Awaited, lockstep: bool, report: Report) -> None:
         super().__init__(awaited, lockstep, report)
         self._interfaces: Mapping[str, tuple[str, ...]] = {}
-        self._clipped: set[str] = set()  # what has been told of
+        self._limited: Robot | None = None  # whose `_limits` are, by joint and interface
+        self._limits: dict[tuple[str, str], tuple[float, float]] = {}
+        self._beyond: set[str] = set()  # what has been told of
 
     def begin(self, simulation: Simulation, interfaces: Mapping[str, tuple[str, ...]]) -> None:
         """Begin at time 0 of a `simulation`, whose joints are driven by these `interfaces`."""
         self._interfaces, robot = interfaces, simulation.robot
         self._begin(simulation, () if robot is None else robot.driven_names)
-        for kind in ("no values", *self._clipped):
+        for kind in ("no values", *self._beyond):
             self._report.end(kind)
-        self._clipped.clear()
+        self._beyond.clear()
 
     def read(self, message: Any) -> tuple[float, Values]:
         """Values beyond a joint's limits are clipped, and a joint without a value is left out, with a warning."""
@@ -181,35 +184,29 @@ class JointCommands(CommandQueue):
             self._report.end("no values")
         else:
             self._report.begin("no values", "joint commands without a number: what is NaN leaves a joint as it is")
-        for name, given in values.items():
-            if given:
+        for name in values.keys() - set(self.names):
+            if values.pop(name):
                 self.simulation.check_driven(name)
-        return stamp, {name: self._within_limits(name, given) for name, given in values.items() if name in self.names}
-
-    def _within_limits(self, name: str, given: dict[str, float]) -> dict[str, float]:
-        """The `given` values by interface, within the limits of the joint called `name`."""
         robot = self.simulation.robot
-        assert robot is not None
-        joint, kept = robot.joint(name), dict(given)
-        servo = joint.actuator
-        assert isinstance(servo, Servo)
-        speed, torque = servo.speed_limit or math.inf, servo.torque_limit or math.inf
-        limits = {
-            "position": (*(joint.limits or (-math.inf, math.inf)), "rad"),
-            "velocity": (-speed, speed, "rad/s"),
-            "effort": (-torque, torque, "N m"),
-        }
-        for interface, value in given.items():
-            low, high, unit = limits[interface]
-            kept[interface] = min(max(value, low), high)
-            kind = f"limit of {name} {interface}"
-            if kept[interface] == value:
-                self._report.end(kind)
-            elif kind not in self._clipped:  # once in a run: a wave goes beyond it again and again
-                self._clipped.add(kind)
-                beyond = f"{interface} {value:g} {unit} of joint {shown(name)} is beyond its limit"
-                self._report.begin(kind, f"{beyond} {kept[interface]:g} {unit}: clipped")
-        return kept
+        if robot is not None and robot is not self._limited:  # another limit of torque makes another robot
+            self._limited, self._limits = robot, limits_of(robot)
+        for name, given in values.items():
+            for interface, value in given.items():
+                low, high = self._limits[name, interface]
+                if not low <= value <= high:
+                    given[interface] = low if value < low else high
+                    self._warn_of_limit(name, interface, value, given[interface])
+                elif self._beyond:
+                    self._report.end(limit_of(name, interface))
+        return stamp, values
+
+    def _warn_of_limit(self, name: str, interface: str, value: float, limit: float) -> None:
+        """Once in a run, as a wave goes beyond a limit again and again; it lasts until the joint is within again."""
+        kind, unit = limit_of(name, interface), UNITS[interface]
+        if kind not in self._beyond:
+            said = f"{interface} {value:g} {unit} of joint {shown(name)} is beyond its limit {limit:g} {unit}: clipped"
+            self._report.begin(kind, said)
+            self._beyond.add(kind)
 
     def add(self, stamp: float, values: Values) -> None:
         super().add(stamp, values)
@@ -238,6 +235,21 @@ class FinCommands(CommandQueue):
 
     def give(self, values: Values) -> None:
         self.simulation.command_fins(values)
+
+
+def limits_of(robot: Robot) -> dict[tuple[str, str], tuple[float, float]]:
+    """The least and the greatest value of each interface of the joints of a `robot` that have a servo."""
+    limits = {}
+    for joint, servo in zip(robot.joints, robot.servos, strict=True):
+        if servo is not None:
+            speed, torque = servo.speed_limit or math.inf, servo.torque_limit or math.inf
+            limits[joint.name, "position"] = joint.limits or (-math.inf, math.inf)
+            limits[joint.name, "velocity"], limits[joint.name, "effort"] = (-speed, speed), (-torque, torque)
+    return limits
+
+
+def limit_of(name: str, interface: str) -> str:
+    return f"limit of {name} {interface}"
 
 
 def _for(name: str) -> str:
