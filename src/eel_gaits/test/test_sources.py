@@ -234,6 +234,11 @@ def test_bad_rows_of_midlines_are_named(tmp_path, change, words):
         ("when,x,y\n0,1,2\n", ["its time is not plain from ['when', 'x', 'y']"]),
         ("time,x,y\n" + "0,0,0\n" * 7 + "1,0,0\n" * 6, ["lines 9 to 14", "a frame of 6 points, the first frame has 7"]),
         ("time,yaw_1,yaw_3\n0,0,0\n", ["joints of yaw", "without gaps"]),
+        (
+            "time,yaw_1,yaw_2,yaw_3\n" + "".join(f"{n / 50},0,28.6,0\n" for n in range(20)),
+            ["yaw_2 must be at most 3.2"],
+        ),
+        ("time,yaw_1,yaw_2,yaw_3\n" + "".join(f"{20 * n},0,0.1,0\n" for n in range(20)), ["20 s apart", "time in s?"]),
         ("time,yaw_1,yaw_2,yaw_3\n0,0,0,0\n0,0,0,0\n", ["line 3", "time must rise"]),
     ],
 )

@@ -40,6 +40,7 @@ LAW = {"time", "x", "values"}  # arrays of a law's rows
 ARCHIVE = ".npz"
 COLUMN = re.compile(r"(pitch|yaw)_([1-9][0-9]*)")  # of a joint
 FEWEST_JOINTS = 3  # in an axis
+LARGEST = 3.2  # rad, of a joint: beyond it the file is in degrees
 FITTING = 1e-6  # part of the body's length by which a law's rows may be shorter or longer
 
 
@@ -154,7 +155,7 @@ def _law_of_joints(table: Table, length: float, name: str, column: str, smooth: 
     time = time_of(table, column)
     check_rising(table, time, np.arange(len(time)))
     check_steps(table, time)
-    angles = {axis: np.stack([table.column(each, "rad") for each in names]) for axis, names in axes.items()}
+    angles = {axis: np.stack([table.column(each, "rad", LARGEST) for each in names]) for axis, names in axes.items()}
     splines = {}
     for axis, each in angles.items():
         sums = np.concatenate((np.zeros((1, len(time))), np.cumsum(each, axis=0)))  # at the ends of the segments
