@@ -20,7 +20,7 @@ class Unshowable:
 
 HUGE = 10**400  # an int beyond all floats
 TOO_LONG = 10**5000  # one that Python does not even write
-TEXT = "one line\nand another " * 50_000  # 1 MB
+TEXT = "one line\nand another " * 2_000  # 42 kB
 BAD = {
     "huge": HUGE,
     "negative huge": -HUGE,
