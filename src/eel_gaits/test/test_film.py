@@ -62,6 +62,12 @@ def test_a_beat_on_a_body_of_another_length_bends_by_the_same_angles():
     assert np.allclose(0.154 * small, large, atol=1e-9) and np.max(np.abs(large)) > 1.0
 
 
+def test_of_many_beats_some_are_left_out_together():
+    times = 0.02 * np.arange(900)
+    beat = beat_of(film(swimming(noise=2e-3, times=times, arc=np.linspace(0.0, 1.0, 6)), times))
+    assert len(beat.others) == 40 and any("s (95 %), 69 beats," in text for _, text in beat.about())
+
+
 def test_a_rigid_head_does_not_bend():
     law = beat_of(film(swimming(noise=1e-3)), rigid=0.5).law(1.0)
     bend = np.abs([law.curvature(t, np.linspace(0.0, 1.0, 101))[0][:, 2] for t in np.linspace(0.0, 0.26, 9)])

@@ -7,7 +7,8 @@ by the segment's length, by
     theta(t, s) = sum over h = 0 ... H of (a_h(s) cos 2 pi h t / T + b_h(s) sin 2 pi h t / T),   K = d theta / ds
 
 where the curvatures of a_h and b_h are natural cubic splines through `knots` equally spaced knots. H and
-the number of knots are those that predict a beat best from the other beats: each whole beat is left out in turn
+the number of knots are those that predict a beat best from the other beats: each whole beat is left out in turn, or
+one of 40 parts of many beats
 (cross-validation by blocks, Burman, Chow and Nolan, Biometrika 81 (1994), doi:10.1093/biomet/81.2.351). So errors that
 last for several frames, which a smoothing spline takes for motion, do not count unless they come with each beat. Of the
 fits whose error is within one standard error of the least, the one with fewest numbers counts (Breiman et al.,
@@ -32,7 +33,7 @@ from eel_gaits.laws.law import Law
 from eel_gaits.laws.spline import natural_spline
 from eel_gaits.laws.term import Term
 
-FEWEST_BEATS = 3
+FEWEST_BEATS, MOST_PARTS = 3, 40  # beats in a film, and parts of it that are left out in turn
 LEAST_FRAMES = 4.0  # in a beat
 HARMONICS = 5  # at most
 LEAST_KNOTS, KNOTS = 2, 12  # along the body
@@ -113,7 +114,8 @@ class Beat:
         """What was read and how it was smoothed: names and sentences."""
         film, seen = self.film, self.measured
         rigid = f", rigid up to {self.rigid:g} of the length" if self.rigid else ""
-        kept = f"{len(self.others)} beats, {self.harmonics} harmonic{'s' if self.harmonics > 1 else ''} kept"
+        beats = (film.time[-1] - film.time[0]) / self.period
+        kept = f"{beats:.0f} beats, {self.harmonics} harmonic{'s' if self.harmonics > 1 else ''} kept"
         periods = self.half_band([each.period for each in self.others])
         return [
             ("film", f"{film.name}: {film.points.shape[1]} points, {len(film.time)} frames, {film.length:.4g} m long"),
@@ -188,7 +190,9 @@ class _Fit:
         self.beats = np.floor(self.time / self.period + 1e-6).astype(int)
         self.beats = np.minimum(self.beats, max(0, round(self.time[-1] / self.period + 1e-6) - 1))
         self.beats = np.unique(self.beats, return_inverse=True)[1]  # of those that are seen
-        if (count := self.beats[-1] + 1) < FEWEST_BEATS:
+        count = int(self.beats[-1]) + 1
+        self.beats = self.beats * min(count, MOST_PARTS) // count  # of many, some go together
+        if count < FEWEST_BEATS:
             raise ValueError(
                 f"{film.name}: there must be {FEWEST_BEATS} beats or more, got {count} of {self.period:.3g} s"
             )
