@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from eel_gaits.film.beat import beat_of
 from eel_gaits.film.film import Film, read_film
+from eel_gaits.film.forms import read_tracks
 from eel_gaits.film.kinematics import kinematics
 from filmed import TIMES, TWICE, WAVE, swimming, write_deeplabcut, write_long, write_sleap, write_wide
 
@@ -165,10 +166,12 @@ def test_two_animals_are_refused_with_what_to_do(tmp_path):
     rows = write_long(tmp_path / "one.csv", points).read_text().splitlines()
     twice = tmp_path / "twice.csv"
     twice.write_text("\n".join([rows[0], *(row for row in rows[1:] for _ in range(2))]))
-    with pytest.raises(ValueError, match="line 2: a point stands twice in one frame: two animals"):
+    with pytest.raises(ValueError, match="lines 2 to 3: a point stands twice in one frame: two animals"):
         read_film(twice)
     (tmp_path / "after.csv").write_text("\n".join(rows + rows[1:]))
-    with pytest.raises(ValueError, match=r"line 1602: time must rise, got 0 s after 1.58 s: two swimmers in one file"):
+    with pytest.raises(
+        ValueError, match=r"lines 1582 to 1602: the time of a point must rise, got 0 s after 1.58 s: two animals"
+    ):
         read_film(tmp_path / "after.csv")
 
 
@@ -232,3 +235,18 @@ def test_names_of_columns_may_end_with_their_unit_without_a_line(tmp_path):
     assert "x_mm" in head
     path.write_text("\n".join([head.replace("x_mm", "mxmm").replace("y_mm", "mymm").replace("time_s", "t"), *rows]))
     assert np.allclose(read_film(path).points, points, atol=1e-9)
+
+
+def test_rows_of_points_may_be_left_out_or_stand_point_by_point(tmp_path):
+    points = swimming()
+    head, *rows = write_long(tmp_path / "whole.csv", points).read_text().splitlines()
+    whole, path = read_film(tmp_path / "whole.csv"), tmp_path / "some.csv"
+    path.write_text("\n".join([head, *sorted(rows, key=lambda row: int(row.split(",")[1]))]))
+    found = read_film(path)
+    assert np.array_equal(found.points, whole.points) and found.names == whole.names
+    path.write_text("\n".join([head, *(row for place, row in enumerate(rows) if place not in (407, 408, 1225))]))
+    found, out = read_tracks(path), [(20, 7), (20, 8), (61, 5)]
+    missing = np.isnan(found.animals[""]).any(axis=2)
+    assert [tuple(each) for each in np.argwhere(missing)] == out and np.array_equal(found.time, whole.time)
+    assert np.array_equal(found.animals[""][~missing], read_tracks(tmp_path / "whole.csv").animals[""][~missing])
+    assert any("3 of 1600 points filled" in note for note in read_film(path).notes)

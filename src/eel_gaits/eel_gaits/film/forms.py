@@ -82,33 +82,44 @@ def _of_columns(table: Table, column: str) -> Tracks:
     timed = column or not frames or any(map(is_time, table.head))
     times = time_of(table, column, besides=[*used, *frames]) if timed else None
     time = table.numbers(frames[:1], missing=False)[:, 0] if times is None else times
-    starts = np.arange(len(time))
-    if marks == [""]:
+    if marks == [""] and "point" in table:
+        time, points, marks = _by_point(table, time, points)
+    elif marks == [""]:
         starts = frame_starts(table, time)
-        marks = _names_in_frames(table, len(starts))
+        time, points = time[starts], points.reshape(len(starts), -1, 2)
+        marks = [str(place + 1) for place in range(points.shape[1])]
     else:
-        check_rising(table, time, starts)
+        check_rising(table, time, np.arange(len(time)))
+        points = points.reshape(len(time), -1, 2)
     if times is not None:
-        check_steps(table, time[starts], 2)
-    points = points.reshape(len(starts), -1, 2)
-    return Tracks(time[starts], {"": points}, {"": marks}, units.pop(), times is None, {}, ", ".join(table.notes))
+        check_steps(table, time, 2)
+    return Tracks(time, {"": points}, {"": marks}, units.pop(), times is None, {}, ", ".join(table.notes))
 
 
-def _names_in_frames(table: Table, frames: int) -> list[str]:
-    """The names of the points, as the column `point` has them, or their numbers.
+def _by_point(table: Table, time: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[str]]:
+    """Instants (N,), points (N, n, 2), NaN where a row is left out, and their names in the order of the fullest frame.
 
-    `ValueError` where the `frames` do not have the same points in the same order.
+    `ValueError` where the time of a point does not rise.
     """
-    count = len(table) // frames
-    if "point" not in table:
-        return [str(place + 1) for place in range(count)]
-    names = np.array(table.texts(table.places("point")[0])).reshape(frames, count)
-    if len(np.unique(names[0])) < count:
-        raise table.error("a point stands twice in one frame: two animals? Give the rows of one", 0)
-    if np.any(names != names[0]):
-        frame = int(np.argmax(np.any(names != names[0], axis=1)))
-        raise table.error("its points are in another order than in the first frame", frame * count)
-    return [str(name) for name in names[0]]
+    names, last = table.texts(table.places("point")[0]), dict[str, int]()
+    for row, name in enumerate(names):
+        before = last.get(name, row)
+        if time[row] < time[before]:
+            got = f"got {time[row]:g} s after {time[before]:g} s"
+            raise table.error(f"the time of a point must rise, {got}: two animals in one file?", before, row)
+        if before < row and time[row] == time[before]:
+            raise table.error("a point stands twice in one frame: two animals? Give the rows of one", before, row)
+        last[name] = row
+    instants, frame = np.unique(time, return_inverse=True)
+    order = [names[row] for row in np.flatnonzero(frame == np.argmax(np.bincount(frame)))]
+    if len(order) < len(last):
+        raise table.error(f"no frame has all its points: {shown(list(last))}")
+    if 2 * len(instants) * len(order) > MOST_NUMBERS:
+        raise ValueError(f"its {len(order)} points and {len(instants)} frames make more than {MOST_NUMBERS} numbers")
+    place = {name: index for index, name in enumerate(order)}
+    found = np.full((len(instants), len(order), 2), np.nan)
+    found[frame, [place[name] for name in names]] = points
+    return instants, found, order
 
 
 def _of_deeplabcut(table: Table, rows: dict[str, list[str]]) -> Tracks:
