@@ -237,6 +237,17 @@ def test_names_of_columns_may_end_with_their_unit_without_a_line(tmp_path):
     assert np.allclose(read_film(path).points, points, atol=1e-9)
 
 
+def test_points_of_a_row_may_have_names(tmp_path):
+    points = swimming()
+    whole = read_film(write_wide(tmp_path / "wide.csv", points))
+    head, *rows = (tmp_path / "wide.csv").read_text().splitlines()
+    for name in ("{0}_{1}_m", "{1}_{0} [m]", "{0}.{1}_m"):
+        named = [name.format(f"spine{place}", axis) for place in range(20) for axis in "xy"]
+        (tmp_path / "named.csv").write_text("\n".join([",".join(["time_s", *named]), *rows]))
+        found = read_film(tmp_path / "named.csv")
+        assert np.array_equal(found.points, whole.points) and found.names[:2] == ("spine0", "spine1")
+
+
 def test_rows_of_points_may_be_left_out_or_stand_point_by_point(tmp_path):
     points = swimming()
     head, *rows = write_long(tmp_path / "whole.csv", points).read_text().splitlines()

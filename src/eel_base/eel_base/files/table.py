@@ -21,7 +21,7 @@ LISTED = {
     "s": {1.0: "s sec secs second seconds", 1e-3: "ms msec msecs millis millisec milliseconds",
           1e-6: "us usec usecs micros microsec microseconds", 1e-9: "ns nsec nsecs nanos nanosec nanoseconds",
           60.0: "min minutes"},
-    "m": {1.0: "m", 1e-2: "cm", 1e-3: "mm", math.nan: "px pixel pixels"},
+    "m": {1.0: "m", 1e-2: "cm", 1e-3: "mm", 1e-6: "um", 1e3: "km", 0.0254: "inch", math.nan: "px pixel pixels"},
     "rad": {1.0: "rad rads radians", 1e-3: "mrad", math.pi / 180.0: "deg degs degrees °"},
     "m/s": {1.0: "m/s", 1e-2: "cm/s", 1e-3: "mm/s"},
     "rad/m": {1.0: "rad/m 1/m", 1e3: "rad/mm 1/mm"},

@@ -27,7 +27,7 @@ from eel_gaits.sources.frames import check_rising, check_steps, frame_starts
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}  # metres in each; pixels have no length
 COORDINATE = re.compile(  # x, x0, head_x, x_head, each before a unit; mxmm of fishmechr
-    r"m?(?P<axis>[xy])_?(?P<number>[0-9]*)(?P<unit>mm|cm|px)?|(?P<name>.+)[._](?P<last>[xy])"
+    r"m?(?P<axis>[xy])_?(?P<number>[0-9]*)(?P<unit>mm|cm|px)?|(?P<name>.+)[._](?P<last>[xy])|(?P<first>[xy])[._](?P<part>.+)"
 )
 FRAMES = "frame", "frames", "image"  # names of a column that counts them
 TRACK = "track"  # SLEAP's column of names
@@ -64,8 +64,12 @@ def read_tracks(path: Path, time: str = "") -> Tracks:
 def _of_columns(table: Table, column: str) -> Tracks:
     names = [split_name(name) for name in table.head]
     found = {place: m for place, (name, _) in enumerate(names) if (m := COORDINATE.fullmatch(name))}
-    places = {(m["axis"] or m["last"], m["number"] or m["name"] or ""): place for place, m in found.items()}
+    places = {
+        (m["axis"] or m["last"] or m["first"], m["number"] or m["name"] or m["part"] or ""): place
+        for place, m in found.items()
+    }
     marks = [mark for axis, mark in places if axis == "x" and ("y", mark) in places]
+    marks = [mark for mark in marks if not mark or mark.isdigit()] or marks  # names may be of a mean or an error
     if not marks or ("" in marks and len(marks) > 1):
         raise ValueError(
             "its columns must be time, x, y (perhaps with a unit: time_s, x_mm), or time, x0, y0, x1, y1 ..., "
