@@ -13,6 +13,7 @@ import copy
 import importlib
 import io
 import json
+import math
 import os
 import random
 import re
@@ -26,6 +27,15 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import yaml
+from eel_base.command.command_line import print_to_stderr
+from eel_base.files.yaml_tree import read_yaml
+from eel_base.quantity import checked_instance
+from eel_dynamics.ros.parameters import DynamicsParameters
+from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
+from eel_gaits.gaits.settings import Settings
+from eel_gaits.pilot.settings import PilotSettings
+
+from eel_dynamics import Scene
 
 MEGABYTE = 2**20
 COMMANDS = {
@@ -90,6 +100,22 @@ stations: 11
 robot: eight_servos
 flow: gust velocity=0.1,0,0 start=0.5 + shear velocity=0.2,0,0 width=2
 """
+PARAMETERS = """
+accuracy: 1e-2
+rate: 100.0
+stations: 11
+body: links length=1 number=8 half_width=0.03 half_height=0.04 joints=flush
+flow: vortex core=0.2
+fins: pair station=0.5 area=1e-3 aspect_ratio=2 angle=commanded time_constant=0.1
+robot: eight_servos
+command_interfaces: [position]
+initial_position: [0.0, 0.0, 0.0]
+initial_orientation: [0.0, 0.0, 0.0, 1.0]
+gait: straight
+period: 0.8
+reach: 0.3
+scene: {weight: false, current: [0.1, 0.0, 0.0], friction: laminar}
+"""
 SEQUENCE = """
 name: patrol
 blend: 0.5
@@ -143,6 +169,19 @@ BODY_TABLE = "x,half_width,half_height\n" + "".join(
     f"{0.1 * n:.1f},{0.03 * (n / 10 * (1.3 - n / 10)) ** 0.5:.5f},{0.04 * (n / 10 * (1.3 - n / 10)) ** 0.5:.5f}\n"
     for n in range(11)
 )
+WAVES = [[math.sin(20.0 * 0.02 * n - 1.2 * k) for k in range(6)] for n in range(60)]
+ANGLES = "time,yaw_1,yaw_2,yaw_3\n" + "".join(
+    f"{0.02 * n:.2f},{a:.4f},{b:.4f},{c:.4f}\n" for n, (a, b, c, *_) in enumerate(WAVES)
+)
+FILM = (
+    "time_s,"
+    + ",".join(f"x{k},y{k}" for k in range(6))
+    + "\n"
+    + "".join(
+        ",".join([f"{0.02 * n:.2f}", *(f"{100 * k},{6.0 * k * y:.2f}" for k, y in enumerate(row))]) + "\n"
+        for n, row in enumerate(WAVES)
+    )
+)
 SEEN = "time,x,y\n" + "".join(f"{0.1 * n},{0.01 * n},0\n" for n in range(5))
 ARMS = "x,y,z,drag1,drag2,drag3,law\n0.2,0.05,0,1e-4,2e-4,3e-4,axis\n0.6,,,0.001,,,speed\n"
 
@@ -180,6 +219,20 @@ class Case(NamedTuple):
     files: dict[str, bytes]
 
 
+def node_of(words: list[str]) -> int:
+    """What the nodes dynamics, gait_generator and pilot make of the parameters in a file, without ROS."""
+    try:
+        given = checked_instance("parameters", read_yaml(words[0] if words else ""), dict)
+        scene = Scene().changed(checked_instance("scene", given.pop("scene", {}), dict))
+        simulation_from_parameters(DynamicsParameters.among(given), scene)
+        Settings.start(given).law()
+        PilotSettings.among(given)
+    except (ValueError, OSError) as error:  # as they do
+        print_to_stderr("node", error)
+        return 2
+    return 0
+
+
 def good_cases() -> list[Case]:
     """Command lines that are good."""
     found = [Case(["simulate", "straight", *SHORT, "--flow", flow], {}) for flow in FLOWS]
@@ -197,6 +250,12 @@ def good_cases() -> list[Case]:
     ] * 3
     found += [Case(["simulate", "straight", *SHORT, "--body", "fish.csv"], {"fish.csv": BODY_TABLE.encode()})]
     found += [Case(["simulate", "straight", *SHORT, "--body", BODIES[3]], {"arms.csv": ARMS.encode()})]
+    found += [Case(["node", "parameters.yaml"], {"parameters.yaml": PARAMETERS.encode()})] * 5
+    found += [Case(["simulate", "--file", "angles.csv", *SHORT], {"angles.csv": ANGLES.encode()})]
+    of_log = ["--links", "0.1x3,0.1", "--section", "0.03,0.02", "--joint-drag", "0.5", "--mass", "1", "--clock", "1"]
+    found += [Case(["simulate", "--joints", "angles.csv", *of_log, *SHORT], {"angles.csv": ANGLES.encode()})] * 2
+    of_film = ["--units", "px", "--scale", "0.001"]
+    found += [Case(["simulate", "--midlines", "film.csv", *of_film, *SHORT], {"film.csv": FILM.encode()})] * 2
     simulate = ["simulate", "straight", "--duration", "0.02", "--accuracy", "0.05"]
     for more in (
         ["--sample-period", "0.01"], ["--stations", "7"], ["--most-evaluations", "1e5"],
@@ -214,6 +273,8 @@ def good_cases() -> list[Case]:
         Case(["terms", *swim, "--tolerance", "0.1", "--out", "t.yaml"], {}),
         Case(["stability", *swim, "--over", "period=0.5:1", "--points", "0"], {}),
         Case(["motors", "eight_servos", *swim, "--vary", "kp=1,0"], {}),
+        Case(["motors", "chain.urdf joints=flush", *swim, "--servo", "kp=20", "--servo", "kd=0.5"],
+             {"chain.urdf": URDF.encode()}),
         Case(["roll-hold", *swim, "--over", "k_p=0:1", "--points", "1"], {}),
         Case(["tradeoff", *swim, "--within", "0 ms"], {}),
         Case(["compare", "straight", "turning", "--duration", "0.02", "--set", "period=1"], {}),
@@ -328,7 +389,7 @@ def run(case: Case) -> tuple[int | None, str, str, float]:
     command, *words = case.words
     with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
         try:
-            status = importlib.import_module(COMMANDS[command]).main(words)
+            status = node_of(words) if command == "node" else importlib.import_module(COMMANDS[command]).main(words)
         except SystemExit as end:  # of argparse
             status = int(end.code or 0)
         except BaseException as error:

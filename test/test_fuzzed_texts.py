@@ -19,7 +19,7 @@ SEED, FEW, MANY = 56, 300, 5000
 # what Python or numpy says of an error that nobody foresaw
 FOREIGN = re.compile(
     r"Traceback|__init__|NoneType|unhashable|object is not|has no attribute|positional argument|unexpected keyword|"
-    r"it does not fit|it is damaged or foreign|Errno|out of bounds|could not convert|ambiguous|encountered in|/dev/fd"
+    r"it does not fit|it is damaged or foreign|Errno|out of bounds|could not convert|truth value|encountered in|/dev/fd"
 )
 
 

@@ -7,9 +7,6 @@ Within them the core chooses each step by its error: `time_step_size` in eel_cor
 import math
 from typing import Any
 
-from eel_base.wording import shown
-from eel_gaits.laws.law import Law
-
 import eel_core
 from eel_dynamics.accuracy.accuracy import LONGEST_STEP
 from eel_dynamics.accuracy.error_estimate import floors
@@ -37,16 +34,13 @@ PART_OF_RAMP = 0.125
 EVALUATIONS = {"adams": 1, "dormand_prince": 6, "classical": 4, "rosenbrock": 4}
 
 
-def check_cost(law: Law, most_evaluations: float):
-    """`ValueError` where the period of `law` is too short for `most_evaluations` per simulated second to resolve it."""
-    shortest = min((term.period for term in law.waves), default=None)
-    if shortest is None:
-        return
-    needed = 1.0 / (LONGEST_STEP * shortest)
+def check_cost(what: str, scale: float, most_evaluations: float) -> None:
+    """`ValueError` where the time `scale` [s] of `what` is too short for `most_evaluations` per simulated second."""
+    needed = 1.0 / (LONGEST_STEP * scale)
     if needed > most_evaluations:
         raise ValueError(
-            f"law {shown(law.name)} has a period of {shortest:g} s, which takes {needed:.3g} evaluations per simulated "
-            f"second or more: most_evaluations is {most_evaluations:.3g}"
+            f"{what} {scale:g} s, which takes {needed:.3g} evaluations per simulated second or more: most_evaluations "
+            f"is {most_evaluations:.3g}"
         )
 
 

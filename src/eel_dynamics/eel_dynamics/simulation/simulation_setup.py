@@ -160,13 +160,15 @@ class SimulationSetup(EqualByFields):
 
         `ValueError` for a law that the scene or the limit of evaluations does not allow.
         """
+        check_cost("flow or fins change within", self.time_scale_of_surroundings, self.most_evaluations)
         if law is None:
             return ShapeNeeds()
         checked_instance("law", law, (Law, SampledLaw))
         check_planar_law(law, self.scene)
         length = self.body.length
         if isinstance(law, Law):
-            check_cost(law, self.most_evaluations)
+            period = min((term.period for term in law.waves), default=np.inf)
+            check_cost(f"law {shown(law.name)} has a period of", period, self.most_evaluations)
             return ShapeNeeds(check_law(law, length), knots_of_law(law))
         if abs(law.length - length) > FITTING * length:
             raise ValueError(f"law {shown(law.name)} is for a body of {law.length:g} m, the body has {length:g} m")

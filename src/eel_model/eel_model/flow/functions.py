@@ -55,7 +55,7 @@ class FlowField(Flow):
     def __post_init__(self) -> None:
         checked_instance("flow name", self.name, str)
         for name, unit in (("step", "m"), ("time_step", "s"), ("period", "s"), ("wave", "m")):
-            if (value := getattr(self, name)) is not None:
+            if (value := getattr(self, name)) is not None or "step" in name:
                 checked = number(f"flow {name}", value, unit, minimum=0.0, exclusive=True)
                 object.__setattr__(self, name, checked)
         for name in ("function", "jacobian", "rate"):

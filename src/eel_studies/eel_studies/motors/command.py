@@ -20,9 +20,10 @@ import numpy as np
 from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_base.wording import shown
-from eel_dynamics.commands.options import add_options, add_repeated, named_texts, scene_of
+from eel_dynamics.commands.options import add_options, add_repeated, named_texts, scene_of, set_numbers
+from eel_model.robot.robot import robot_of
 
-from eel_dynamics import Robot, Run, Servo, Swim
+from eel_dynamics import Robot, Run, Swim
 from eel_gaits import Law
 from eel_studies.motors.motor_figures import Comparison, MotorFigures, comparison, motor_swim, with_number, word_of
 from eel_studies.options import add_scene_options, chosen
@@ -122,10 +123,8 @@ def _swim(options: argparse.Namespace) -> Swim:
 
 
 def _robot(options: argparse.Namespace) -> Robot:
-    gains: dict[str, Any] = {name: float(text) for name, text in named_texts("--servo", options.servo)}
-    if Path(options.swimmer).suffix:
-        return Robot.from_file(options.swimmer, Servo(**gains) if gains else None)
-    robot = Robot.named(options.swimmer)
+    robot = robot_of(options.swimmer) or Robot.named(options.swimmer)
+    gains: dict[str, Any] = dict(set_numbers(options.servo, "--servo"))
     return robot.changed(**gains)
 
 

@@ -15,6 +15,7 @@ from pathlib import Path
 from eel_base.command.command import command
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
+from eel_base.files.input_file import is_number
 from eel_base.files.output_file import written_as
 from eel_base.wording import shown
 
@@ -50,7 +51,7 @@ def _add_options(parser: Parser) -> None:
 def _seconds(text: str) -> float:
     """The time [s] in a text such as "5 ms"."""
     found = re.fullmatch(r"([0-9.]+(?:e[+-]?[0-9]+)?) *(us|ms|s)", text.strip())
-    seconds = float(found[1]) * UNITS[found[2]] if found else 0.0
+    seconds = float(found[1]) * UNITS[found[2]] if found and is_number(found[1]) else 0.0
     if not 0.0 < seconds < math.inf:
         raise ValueError(f"--within must be a time above 0 such as '5 ms' (us, ms or s), got {shown(text)}")
     return seconds
