@@ -240,7 +240,7 @@ def test_names_of_columns_may_end_with_their_unit_without_a_line(tmp_path):
 def test_points_of_a_row_may_have_names(tmp_path):
     points = swimming()
     whole = read_film(write_wide(tmp_path / "wide.csv", points))
-    head, *rows = (tmp_path / "wide.csv").read_text().splitlines()
+    rows = (tmp_path / "wide.csv").read_text().splitlines()[1:]
     for name in ("{0}_{1}_m", "{1}_{0} [m]", "{0}.{1}_m"):
         named = [name.format(f"spine{place}", axis) for place in range(20) for axis in "xy"]
         (tmp_path / "named.csv").write_text("\n".join([",".join(["time_s", *named]), *rows]))
