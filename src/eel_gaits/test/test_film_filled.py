@@ -3,7 +3,9 @@
 
 import numpy as np
 import pytest
-from filmed import ARC, COUNT, beat_without, hidden, swimming
+from eel_gaits.film.beat import beat_of
+from eel_gaits.film.film import read_film
+from filmed import ARC, COUNT, beat_without, hidden, swimming, write_sleap
 
 
 @pytest.mark.parametrize("kind", ["scattered", "two in a row, often", "one for long", "bursts"])
@@ -38,3 +40,24 @@ def test_an_end_that_is_mostly_lost_does_not_make_the_animal_shorter(tmp_path, e
     lost[np.arange(COUNT) % 5 > 1, end] = True
     found = beat_without(tmp_path / "gaps.csv", swimming(arc=ARC), lost).film
     assert found.points.shape[:2] == (COUNT * 2 // 5, 8) and found.length > 0.97
+
+
+@pytest.mark.soak
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("seed", range(150))
+def test_any_film_gives_a_beat_or_a_sentence(tmp_path, seed):
+    draw = np.random.default_rng(seed)
+    count, frames = int(draw.choice([5, 8, 20])), int(draw.choice([12, 40, COUNT, COUNT]))
+    points = swimming(noise=1e-3, arc=np.linspace(0.0, 1.0, count))
+    points[frames:] = np.nan
+    points += draw.normal(scale=10.0 ** draw.uniform(-5.0, 0.0), size=points.shape)
+    points[draw.random(points.shape[:2]) < draw.choice([0.0, 0.1, 0.3, 0.9])] = np.nan
+    points[:, draw.integers(count)] = draw.choice([np.nan, 0.0, 1.0]) * points[:, draw.integers(count)]
+    owner = draw.integers(0, 3, COUNT) if draw.random() < 0.5 else np.arange(COUNT) * 3 // COUNT
+    tracks = {name: np.where((owner == place)[:, None, None], 1e3 * points, np.nan) for place, name in enumerate("abc")}
+    path = write_sleap(tmp_path / "fish.csv", tracks, scores=draw.random((COUNT, count)) ** 0.2)
+    try:
+        beat = beat_of(read_film(path, units="px", scale=1e-3, rate=50.0), rigid=float(draw.choice([0.0, 0.5])))
+        assert np.all(np.isfinite(beat.film.points)) and beat.about()
+    except ValueError as error:
+        assert "\n" not in str(error) and "fish.csv" in str(error)

@@ -56,7 +56,7 @@ def _is_one(tracks: Tracks, group: list[str], name: str) -> bool:
     mine, both = _there(one), np.flatnonzero(_there(one) | _there(other))
     length = np.nanmedian(np.nansum(np.linalg.norm(np.diff(one[mine], axis=1), axis=2), axis=1))
     first, last = np.flatnonzero(mine)[[0, -1]]
-    pace = _way(one[first], one[last]) / max(tracks.time[last] - tracks.time[first], 1.0)
+    pace = np.nan_to_num(_way(one[first], one[last])) / max(tracks.time[last] - tracks.time[first], 1.0)
     points = np.where(mine[:, None, None], one, other)
     for place in np.flatnonzero(np.diff(mine[both])):
         before, after = both[place : place + 2]
@@ -68,9 +68,9 @@ def _is_one(tracks: Tracks, group: list[str], name: str) -> bool:
 
 
 def _way(before: np.ndarray, after: np.ndarray) -> np.ndarray:
-    """The mean way (2,) of the points (n, 2) that are there before and after; infinite where there is none."""
+    """The mean way (2,) of the points (n, 2) that are there before and after; NaN where there is none."""
     ways = (after - before)[np.isfinite(after - before).all(axis=1)]
-    return np.asarray(ways.mean(axis=0)) if len(ways) else np.full(2, np.inf)
+    return np.asarray(ways.mean(axis=0)) if len(ways) else np.full(2, np.nan)
 
 
 def _there(points: np.ndarray) -> np.ndarray:

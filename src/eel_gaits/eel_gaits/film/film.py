@@ -142,10 +142,12 @@ def _likely(points: np.ndarray, scores: np.ndarray, names: list[str], likely: fl
     if not np.any(low):
         return points, []
     what = f"have a likelihood below {likely:g} and count as missing"
-    return np.where(low[..., None], np.nan, points), [f"{np.sum(low)} of {low.size} points {what}: {_of(names, low)}"]
+    return np.where(low[..., None], np.nan, points), [
+        f"{np.sum(low)} of {low.size} points {what}: {_names_of(names, low)}"
+    ]
 
 
-def _of(names: list[str], which: np.ndarray) -> str:
+def _names_of(names: list[str], which: np.ndarray) -> str:
     """The `names` (n,) of points that occur in `which` (N, n)."""
     return ", ".join(names[place] for place in np.flatnonzero(which.any(axis=0)))
 
@@ -169,7 +171,7 @@ def _repaired(name: str, time: np.ndarray, points: np.ndarray, names: list[str],
     if len(rare):
         notes.append(f"points left out, missing in most frames: {', '.join(names[each] for each in rare)}")
         points, names = np.delete(points, rare, axis=1), np.delete(names, rare).tolist()
-    apart = _apart(points)
+    apart = _apart(points) if len(names) else []
     if out := [name for place, name in enumerate(names) if place not in apart]:
         notes.append(f"points left out, as they lie on the one ahead: {', '.join(out)}")
     if len(apart) < FEWEST_POINTS or len(time) < FEWEST_FRAMES:
@@ -183,7 +185,9 @@ def _repaired(name: str, time: np.ndarray, points: np.ndarray, names: list[str],
     points = np.where(jumped[..., None], np.nan, points)
     missing = ~np.all(np.isfinite(points), axis=2)
     if np.any(jumped):
-        notes.append(f"{np.sum(jumped)} points have jumped along the body and count as missing: {_of(names, jumped)}")
+        notes.append(
+            f"{np.sum(jumped)} points have jumped along the body and count as missing: {_names_of(names, jumped)}"
+        )
     keep(~(missing[:, 0] | missing[:, -1]), "an end of the body is missing")
     keep(np.mean(~np.all(np.isfinite(points), axis=2), axis=1) <= MISSING, "more than a quarter of the points missing")
     if len(time) < FEWEST_FRAMES:
@@ -199,7 +203,7 @@ def _repaired(name: str, time: np.ndarray, points: np.ndarray, names: list[str],
 
 def _apart(points: np.ndarray) -> list[int]:
     """The places without those that lie on the one ahead: two marks that were mixed up have no direction."""
-    usual = float(np.nanmedian(_usual(np.linalg.norm(np.diff(points, axis=1), axis=2))[0]))
+    usual = _usual(_usual(np.linalg.norm(np.diff(points, axis=1), axis=2))[0][:, None])[0]
     kept = [0]
     for place in range(1, points.shape[1]):
         if not _usual(np.linalg.norm(points[:, [place]] - points[:, [kept[-1]]], axis=2))[0] <= CLOSE * usual:
