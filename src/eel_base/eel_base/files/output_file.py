@@ -83,8 +83,8 @@ class Draft:
 
 
 def part_of(name: Path, mark: str = "part") -> Path:
-    """The path of the output `name` until it is complete. Of a long name the end of the stem is left out."""
-    return _beside(name, f".{mark}")
+    """The path of the output `name` until it is complete."""
+    return beside(name, f".{mark}")
 
 
 @contextlib.contextmanager
@@ -99,12 +99,13 @@ def command_begins() -> Iterator[None]:
 
 def numbered(name: Path, number: int) -> Path:
     """The path of the output `name` with a `number`."""
-    return _beside(name, f"-{number}")
+    return beside(name, f"-{number}")
 
 
-def _beside(name: Path, mark: str) -> Path:
-    left = LONGEST_NAME - len(os.fsencode(mark + name.suffix))
-    return name.with_name(os.fsdecode(os.fsencode(name.stem)[:left]) + mark + name.suffix)
+def beside(name: Path, mark: str, end: str = "") -> Path:
+    """The path beside the output `name` of its stem, cut where it must be, the `mark`, its suffix and the `end`."""
+    left = LONGEST_NAME - len(os.fsencode(mark + name.suffix + end))
+    return name.with_name(os.fsdecode(os.fsencode(name.stem)[:left]) + mark + name.suffix + end)
 
 
 def written_as(name: str | os.PathLike[str]) -> Path:

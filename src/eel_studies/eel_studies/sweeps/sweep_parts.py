@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 from eel_base.files.input_file import InputFile, from_json, reading
-from eel_base.files.output_file import check_output, replacing
+from eel_base.files.output_file import beside, check_output, replacing
 from eel_base.quantity import checked_instance
 from eel_base.wording import one_line, shown
 from eel_dynamics.runs.storage.digest import ATTRIBUTE, add_digest, check_digest
@@ -48,7 +48,7 @@ class Parts:
         self._key, self._count = key, count
         path = self.out = None if out is None else Path(checked_instance("out", out, (str, os.PathLike)))
         self._overwrite, self._began = overwrite, time.time_ns()
-        self.folder: Any = None if path is None else path.with_name(path.name + ".parts")
+        self.folder: Any = None if path is None else beside(path, "", ".parts")
         self._number = itertools.count()
         if path is None or self.folder is None:
             return
