@@ -6,14 +6,15 @@ from types import SimpleNamespace
 import pytest
 from builtin_interfaces.msg import Time
 from eel_dynamics.ros.law_subscription import LawSubscription
+from eel_dynamics.ros.loop.awaited import Awaited
 from eel_dynamics.ros.loop.law_adopter import LawAdopter
 from eel_gaits.ros.messages import law_to_message
 from eel_ros.loop.diagnostics import Report
 from eel_ros.testing.log import Log
 from rclpy.serialization import serialize_message
 
-from eel_dynamics import Scene, Simulation
-from eel_gaits import Law, Term, falling
+from eel_dynamics import Robot, Scene, Simulation
+from eel_gaits import Law, Term, falling, straight
 
 
 class FakeRun:
@@ -27,6 +28,11 @@ class FakeRun:
 
     def take_law(self, law, origin):
         self.laws.append((law, origin))
+
+
+def adopter_of(simulation, log):
+    report = Report(log)
+    return LawAdopter(simulation, Awaited(report), report)
 
 
 def message(name="wave", sec=0, nanosec=0, period=1.0):
@@ -97,7 +103,7 @@ def test_bad_law_is_one_error_that_names_the_field():
 @pytest.mark.parametrize("last", [0.0, 0.5])
 def test_a_law_that_replaces_samples_says_which_it_drops(last):
     simulation, log = Simulation(scene=Scene(planar=True)), Log()
-    adopter = LawAdopter(simulation, Report(log))
+    adopter = adopter_of(simulation, log)
     rows = {name: [0.0, 0.0] for name in ("pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel")}
     adopter.try_law(falling(pitch_bend=0.0), 0.0)
     for time in (0.1, 0.2, last) if last else ():
@@ -106,3 +112,11 @@ def test_a_law_that_replaces_samples_says_which_it_drops(last):
     warnings = [text for level, text in log.lines if level == "warning"]
     assert warnings == ["curvature samples up to t = 0.5 s are dropped: law 'next' is newer"][: bool(last)]
     assert log.lines[-1 - bool(last)] == ("info", "law 'next' adopted at t = 0 s")
+
+
+def test_motors_that_are_too_slow_for_a_law_are_a_warning():
+    robot, log = Robot.named("eight_servos"), Log()
+    adopter = adopter_of(Simulation(scene=Scene(planar=True), robot=robot.changed(speed_limit=0.5)), log)
+    adopter.try_law(straight(), 0.0)
+    (warning,) = (text for level, text in log.lines if level == "warning")
+    assert warning.startswith("8 of 8 motors are too slow for the law: the one of joint_8 is asked for 2.39 rad/s")

@@ -130,11 +130,11 @@ def test_the_chain_may_lead_along_any_axis_of_the_base(tmp_path, along, up):
 
 
 def test_a_chain_that_is_bent_at_rest_is_refused_with_what_to_do(tmp_path):
-    bent = chain().replace('<origin xyz="-0.1 0 0" rpy="0 0 0"', '<origin xyz="-0.1 0 0" rpy="0 0 0.4"', 2)
-    with pytest.raises(
-        ValueError, match=r"must lie on the line of the joints.*at angles of 0 the robot must be straig"
-    ):
-        robot_of(tmp_path, bent)
+    within = chain().replace('<origin xyz="-0.1 0 0" rpy="0 0 0"', '<origin xyz="-0.1 0 0" rpy="0 0 0.4"', 2)
+    at_the_end = 'rpy="0 0 0.9"'.join(chain(3).rsplit('rpy="0 0 0"', 1))
+    for bent in (within, at_the_end):
+        with pytest.raises(ValueError, match=r"must lie on the line of the joints.*at angles of 0 the robot must be"):
+            robot_of(tmp_path, bent)
 
 
 def test_frames_that_turn_along_the_chain_are_followed(tmp_path):

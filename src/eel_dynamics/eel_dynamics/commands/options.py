@@ -93,10 +93,9 @@ def set_numbers(texts: list[str], option: str = "--set") -> dict[str, float]:
     """The numbers that an `option` gives, by name: those of a gait, of --set."""
     found = {}
     for name, text in named_texts(option, texts):
-        try:
-            found[name] = float(text)
-        except ValueError:
-            raise ValueError(f"{option} must be NAME=NUMBER, got {shown(f'{name}={text}')}") from None
+        found[name] = value_of(text)
+        if not isinstance(found[name], float):
+            raise ValueError(f"{option} must be NAME=NUMBER, got {shown(f'{name}={text}')}")
     return found
 
 

@@ -27,11 +27,13 @@ from eel_model.body.body import Body
 from eel_model.body.links import BASE, OF_LINKS, joint_drag_of
 from eel_model.robot.actuators import Servo
 from eel_model.robot.joint import LONGEST_NAME, Joint
-from eel_model.robot.urdf_chain import ChainJoint, UrdfChain
+from eel_model.robot.urdf_chain import ChainJoint, Link, UrdfChain
 from eel_model.robot.urdf_elements import fail, float_of, name_of, number_of
 
 STRAIGHT = 0.02  # of the length: how far a joint may lie off the line
 UPRIGHT = 0.8  # part of the chain's direction along the base link's z from which that is not up
+BENT = 0.4  # tangent of the angle by which a link at an end may lead away from the line
+RULE = "at angles of 0 the robot must be straight"
 ALIGNED = 0.02  # rad: how far an axis may point off E2 or E3
 MASS_OFF = 0.05  # of a link's mass: a greater difference is noted
 UNUSED = ("gazebo", "ros2_control", "safety_controller", "calibration")
@@ -64,8 +66,19 @@ class UrdfReader:
         along, up = turn * along, self._up(along)
         self._axes = np.array([along, np.cross(up, along), up])
         """Axes (3, 3) of the sections, rows in the base's."""
+        for link, joint in ((self._links[0], self._joints[0]), (self._links[-1], self._joints[-1])):
+            self._check_straight(link, joint)
         self._nose = float(self._links[0].extent(self._axes)[0, 0])
         self._places = [float(along @ joint.origin - self._nose) for joint in self._joints]
+
+    def _check_straight(self, link: Link, joint: ChainJoint) -> None:
+        """Refuse a link at an end that leads away from the line, as its mass and its shapes do."""
+        middles = [self._axes.T @ link.extent(self._axes).mean(axis=0), *([link.centre] if link.mass > 0.0 else [])]
+        places = np.abs((np.array(middles) - joint.origin) @ self._axes.T)
+        off = np.hypot(places[:, 1], places[:, 2])
+        if (off > BENT * places[:, 0]).all():
+            rule = f"must lie on the line of the joints, got its middle {off.min():.4g} m off it: {RULE}"
+            fail(link.element, "link", rule)
 
     def _up(self, along: np.ndarray) -> np.ndarray:
         """E3 (3,) of the sections, in the base's axes."""
@@ -218,6 +231,6 @@ def _direction(chain: UrdfChain) -> np.ndarray:
     off = origins - origins[0] - np.outer((origins - origins[0]) @ along, along)
     worst = int(np.argmax(np.linalg.norm(off, axis=1)))
     if (far := float(np.linalg.norm(off[worst]))) > STRAIGHT * length:
-        rule = f"must lie on the line of the joints, got {far:.4g} m off it: at angles of 0 the robot must be straight"
+        rule = f"must lie on the line of the joints, got {far:.4g} m off it: {RULE}"
         fail(chain.joints[worst].element, "origin", rule)
     return np.asarray(along)

@@ -5,7 +5,7 @@ import math
 from typing import NoReturn
 
 import numpy as np
-from eel_base.files.input_file import Misplaced
+from eel_base.files.input_file import Misplaced, is_number
 from eel_base.files.xml_tree import Element
 from eel_base.wording import shown
 
@@ -58,10 +58,7 @@ def positive_of(element: Element, key: str) -> float:
 
 
 def float_of(element: Element, key: str, text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
+    value = float(text) if is_number(text) else math.nan
     if not abs(value) <= LARGEST:
         fail(element, element.tag, f"{key} must be a finite number, got {shown(text)}")
     return value

@@ -42,4 +42,4 @@ def slow_motors(table: ModeTable | None, law: Law | SampledLaw, duration: float)
         f"{len(slow)} of {len(motors)} motors are too slow for the law: the one of {table.name[modes[worst]]} is asked "
         f"for {most[worst]:.3g} rad/s, its speed_limit is {fastest[worst]:.3g} rad/s"
     )
-    return SlowMotors(f"{text}; no run is made finer where they lag so far" if far else text, far)
+    return SlowMotors(f"{text}; they lag so far that no run is made finer for its target" if far else text, far)
