@@ -7,11 +7,13 @@ from eel_gaits.film.film import read_film
 from filmed import (
     TIMES,
     swimming,
+    with_scores,
     write_deeplabcut,
     write_deeplabcut_h5,
     write_sleap,
     write_sleap_h5,
 )
+from measured import write
 
 PIXELS = {"units": "px", "scale": 1e-3, "rate": 50.0}
 PARTS = [f"part{place}" for place in range(20)]
@@ -51,6 +53,15 @@ def test_points_that_a_tracker_doubts_count_as_missing_in_all_forms(tmp_path, na
     assert not any("likelihood" in note for note in trusted.notes)
     with pytest.raises(ValueError, match="likely must be from 0 to 1, got 3"):
         read_film(tmp_path / name, **PIXELS, likely=3.0)
+
+
+@pytest.mark.parametrize("name", ["part{}_likelihood", "score.part{}", "part{}_confidence"])
+def test_scores_beside_named_points_count_too(tmp_path, name):
+    points, scores = doubted()
+    heads = [each for part in range(20) for each in (f"part{part}_x", f"part{part}_y", name.format(part))]
+    rows = [[frame, *row] for frame, row in enumerate(with_scores(points, scores).reshape(80, -1).tolist())]
+    found = read_film(write(tmp_path / "flat.csv", ("frame", *heads), rows), **PIXELS)
+    assert np.array_equal(found.missing, scores < 0.6) and any("part7, part13" in note for note in found.notes)
 
 
 def test_points_without_a_score_are_seen(tmp_path):

@@ -29,6 +29,7 @@ UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}  # metres in each; pixels have no len
 COORDINATE = re.compile(  # x, x0, head_x, x_head, each before a unit; mxmm of fishmechr
     r"m?(?P<axis>[xy])_?(?P<number>[0-9]*)(?P<unit>mm|cm|px)?|(?P<name>.+)[._](?P<last>[xy])|(?P<first>[xy])[._](?P<part>.+)"
 )
+SCORE = re.compile(r"[._](?:likelihood|score|confidence)$|^(?:likelihood|score|confidence)[._]")
 FRAMES = "frame", "frames", "image"  # names of a column that counts them
 TRACK = "track"  # SLEAP's column of names
 
@@ -86,6 +87,7 @@ def _of_columns(table: Table, column: str) -> Tracks:
     timed = column or not frames or any(map(is_time, table.head))
     times = time_of(table, column, besides=[*used, *frames]) if timed else None
     time = table.numbers(frames[:1], missing=False)[:, 0] if times is None else times
+    scores: dict[str, np.ndarray] = {}
     if marks == [""] and "point" in table:
         time, points, marks = _by_point(table, time, points)
     elif marks == [""]:
@@ -95,9 +97,13 @@ def _of_columns(table: Table, column: str) -> Tracks:
     else:
         check_rising(table, time, np.arange(len(time)))
         points = points.reshape(len(time), -1, 2)
+        told = {SCORE.sub("", name): place for place, (name, _) in enumerate(names) if SCORE.search(name)}
+        told = {mark: place for mark, place in told.items() if mark in marks}
+        scores[""] = np.full(points.shape[:2], np.nan)
+        scores[""][:, [marks.index(mark) for mark in told]] = table.numbers(list(told.values()))
     if times is not None:
         check_steps(table, time, 2)
-    return Tracks(time, {"": points}, {"": marks}, units.pop(), times is None, {}, ", ".join(table.notes))
+    return Tracks(time, {"": points}, {"": marks}, units.pop(), times is None, scores, ", ".join(table.notes))
 
 
 def _by_point(table: Table, time: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[str]]:
