@@ -46,6 +46,7 @@ class Flow:
     vectors: names of the fields that lie in the plane where u does.
     """
 
+    what: ClassVar[str] = "flow"
     vectors: ClassVar[tuple[str, ...]] = ()
 
     def sources(self, planar: bool) -> list[tuple[Any, ...]]:

@@ -61,7 +61,7 @@ class Uniform(Flow):
 
 @documented
 @dataclass(frozen=True, kw_only=True)
-class Gust(Quantities, Flow):
+class Gust(Flow, Quantities):
     """A gust that is the same everywhere: it grows and falls by the smooth ramp f_r of eq. (64)."""
 
     vectors = ("velocity",)
@@ -84,7 +84,7 @@ class Gust(Quantities, Flow):
 
 @documented
 @dataclass(frozen=True, kw_only=True)
-class Shear(Quantities, Flow):
+class Shear(Flow, Quantities):
     """A shear layer: u = velocity tanh(d / width), d the distance from its middle plane; or u = velocity d / width.
 
     The theory is that of irrotational flow: see the limits in docs/howto/flow.md.
@@ -179,7 +179,7 @@ class VortexStreet(_Vortices, Quantities):
 
 @documented
 @dataclass(frozen=True, kw_only=True)
-class Wave(Quantities, Flow):
+class Wave(Flow, Quantities):
     """A wave on deep water, after Airy; the water at depth d moves on circles of radius amplitude exp(-k d).
 
     u = amplitude w exp(k (z - surface)) (cos p along the direction, sin p upwards), p = k s - w t + phase, w^2 = g k,
