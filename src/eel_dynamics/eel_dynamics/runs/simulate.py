@@ -87,8 +87,8 @@ def simulate(
         most_evaluations=most_evaluations,
     )
     request = SwimRequest.of(Run, law, setup, duration, sample_period, load, estimate)
-    if request.slow_motors:
-        warnings.warn(request.slow_motors.text, stacklevel=2)
+    if (slow := request.slow_motors) is not None:
+        warnings.warn(slow.text, stacklevel=2)
     seconds = float(request.times[-1])
     run = request.swim_to_end(ProgressMonitor(seconds, progress).update)
     if run.error_estimate is not None and (missed := run.error_estimate.over_target(run.accuracy.target, seconds)):

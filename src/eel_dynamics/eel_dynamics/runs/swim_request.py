@@ -41,7 +41,7 @@ class SwimRequest(NamedTuple, Generic[Kind]):
     """A swimmer that swims by `law`, the times (T,) [s] of its samples, and whether to record wrench and load.
 
     kind: class of the run. estimate: whether to measure its error, and to make it finer where it misses its target;
-    every: so many instants are then observed for each sample. slow_motors: where there are any.
+    every: so many instants are then observed for each sample.
     """
 
     kind: type[Kind]
@@ -52,7 +52,6 @@ class SwimRequest(NamedTuple, Generic[Kind]):
     load: bool
     estimate: bool = False
     every: int = 1
-    slow_motors: SlowMotors | None = None
 
     @staticmethod
     def of(
@@ -71,8 +70,7 @@ class SwimRequest(NamedTuple, Generic[Kind]):
         times, wrench = checked_times(seconds, period), setup.scene.internal_wrench
         check_covers(setup.flow, float(times[-1]))
         check_memory(1, len(times), len(setup.x), wrench, bool(load), 2 if estimate else 1)
-        slow = slow_motors(setup.modes, law, float(times[-1]))
-        request = SwimRequest(kind, law, setup, times, wrench, bool(load), slow_motors=slow)
+        request = SwimRequest(kind, law, setup, times, wrench, bool(load))
         return request.to_refine() if estimate else request
 
     def changed(self, **changes: Any) -> "SwimRequest[Kind]":
@@ -90,6 +88,11 @@ class SwimRequest(NamedTuple, Generic[Kind]):
         if isinstance(accuracy, Accuracy) and accuracy.target:
             accuracy = replace(accuracy, refinable=True)
         return self.changed(accuracy=accuracy)._replace(estimate=True, every=every)
+
+    @property
+    def slow_motors(self) -> SlowMotors | None:
+        """Motors that cannot follow the law, if there are any."""
+        return slow_motors(self.setup.modes, self.law, float(self.times[-1]))
 
     @property
     def instants(self) -> np.ndarray:
