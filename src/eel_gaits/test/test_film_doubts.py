@@ -68,6 +68,13 @@ def test_a_point_that_slips_along_the_body_is_told():
     assert told.startswith("p4 slipped along the body: the distance from p3 to p4 changes by")
 
 
+def test_points_that_are_off_for_some_frames_are_told():
+    points = seen()
+    points[10:16, 5:7] += 0.06 * (points[10:16, 5:6] - points[10:16, 4:5]) / 0.11
+    points[50:56, 5:7] += 0.06 * (points[50:56, 5:6] - points[50:56, 4:5]) / 0.11
+    assert any("the distance from p4 to p5 changes by" in text for text in doubts(points))
+
+
 def test_two_trackers_that_slip_together_are_told():
     points = seen()
     middle, part = 0.5 * (points[:, 6] + points[:, 7]), np.linspace(0.0, 0.7, len(TIMES))[:, None]

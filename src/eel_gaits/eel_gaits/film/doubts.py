@@ -4,7 +4,8 @@
 A body does not stretch. So the distance of two neighbours must not follow the beat, as where a part of the points is
 seen moved sideways as a whole, nor change slowly, as where a tracker slips along the body. Of each distance the part
 counts that means over whole beats and the first harmonic of the beat explain, less what all have in common (a camera
-that comes nearer): noise has little of it, and the chords of a bent body change at twice the beat.
+that comes nearer): noise has little of it, and the chords of a bent body change at twice the beat. A slip for a time
+shows as frames far outside the distance's robust spread.
 
 Points that are moved as a whole where the body hardly turns show as a segment that is askew between parallel ones.
 
@@ -17,13 +18,14 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from eel_gaits.film.film import Film
+from eel_gaits.film.film import SPREADS, Film, usual_of
 from eel_gaits.film.kinematics import harmonics
 from eel_gaits.sources.order import FOLD
 
 STRETCH, OTHERS, SURE = 0.08, 3.0, 4.0  # RMS part of a distance, times that of steady ones, and standard errors
 STEADY, PARTS = 0.25, 8  # quantile of the distances that count as steady; most parts of a film with a mean each
 ASKEW, PARALLEL = 0.25, 0.5  # rad, of a segment in the mean; part of it by which those beside it may differ
+BRIEF, OFTEN = 0.25, 0.05  # part of a distance by which it may differ, and of the frames; or beyond robust spreads
 FOLDED = 0.1  # part of the frames in which a point may fold the line back
 BENT, TURNED, STILL = 0.18, 0.5, 0.1  # rad, of a mean bend; part of it that the path must turn a length; L a beat
 WINDOW, PLACES = 0.25, 61  # of the length, over which the body's angle is averaged, and where along it
@@ -41,7 +43,7 @@ def doubts_of(film: Film, period: float, stride: float | None = None) -> list[st
     number = np.unique(np.floor(beats + 1e-6), return_inverse=True)[1]
     bends = np.array([(angles - whole[:, None])[number == beat].mean(axis=0) for beat in range(number.max() + 1)])
     stretched, odd = _stretched(film, beats)
-    found = stretched + _folding(film, angles) + _askew(film, bends, odd)
+    found = _folding(film, angles) + stretched + _askew(film, bends, odd)
     return found + (_bent(film, bends, np.unwrap(whole), beats, stride) if stride is not None else [])
 
 
@@ -87,7 +89,11 @@ def _stretches(film: Film, beats: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             free = max(len(rest) * (1.0 - kept) / (1.0 + kept), design.shape[1])  # errors last for several frames
             errors[place] = np.std(rest) * math.sqrt((design.shape[1] - 1) / free)
     found -= np.median(found, axis=1, keepdims=True)
-    return np.where(np.sqrt(np.mean(found**2, axis=0)) > SURE * errors, found, 0.0), mean
+    found = np.where(np.sqrt(np.mean(found**2, axis=0)) > SURE * errors, found, 0.0)
+    usual, spread = usual_of(np.where(seen, steps, np.nan))
+    apart = np.where(seen, steps - usual, 0.0)
+    often = np.mean(np.abs(apart) > np.maximum(BRIEF * usual, SPREADS * spread), axis=0) > OFTEN
+    return np.where(often, apart / mean, found), mean
 
 
 def _folding(film: Film, angles: np.ndarray) -> list[str]:

@@ -195,7 +195,7 @@ def _repaired(name: str, time: np.ndarray, points: np.ndarray, names: list[str],
     missing = ~np.all(np.isfinite(points), axis=2)
     if np.any(missing):
         notes.append(f"{np.sum(missing)} of {missing.size} points filled in")
-        steps = _usual(np.linalg.norm(np.diff(points, axis=1), axis=2))[0]
+        steps = usual_of(np.linalg.norm(np.diff(points, axis=1), axis=2))[0]
         steps = np.where(np.isfinite(steps), steps, np.nanmedian(steps))  # of neighbours that are never seen together
         points = filled(points, missing, np.concatenate(([0.0], np.cumsum(steps))))
     return Film(name, time, points, tuple(notes), tuple(names), missing=missing)
@@ -203,10 +203,10 @@ def _repaired(name: str, time: np.ndarray, points: np.ndarray, names: list[str],
 
 def _apart(points: np.ndarray) -> list[int]:
     """The places without those that lie on the one ahead: two marks that were mixed up have no direction."""
-    usual = _usual(_usual(np.linalg.norm(np.diff(points, axis=1), axis=2))[0][:, None])[0]
+    usual = usual_of(usual_of(np.linalg.norm(np.diff(points, axis=1), axis=2))[0][:, None])[0]
     kept = [0]
     for place in range(1, points.shape[1]):
-        if not _usual(np.linalg.norm(points[:, [place]] - points[:, [kept[-1]]], axis=2))[0] <= CLOSE * usual:
+        if not usual_of(np.linalg.norm(points[:, [place]] - points[:, [kept[-1]]], axis=2))[0] <= CLOSE * usual:
             kept.append(place)
     return kept
 
@@ -215,7 +215,7 @@ def _unswapped(points: np.ndarray, names: list[str]) -> tuple[np.ndarray, list[s
     """The points with those exchanged whose exchange makes all distances of a frame usual and takes its folds away; and
     notes of these."""
     steps = np.linalg.norm(np.diff(points, axis=1), axis=2)
-    usual, spread = _usual(steps)
+    usual, spread = usual_of(steps)
     frames, notes = np.flatnonzero(_off(steps, usual, spread).any(axis=1) & _folded(points)), []
     for one, other in itertools.combinations(range(points.shape[1]), 2) if len(frames) else ():
         tried = points[frames]
@@ -240,7 +240,7 @@ def _folded(points: np.ndarray) -> np.ndarray:
     return np.asarray(turned.any(axis=1))
 
 
-def _usual(steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def usual_of(steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The median (n - 1,) of distances (N, n - 1), and their robust spread; NaN for those that are never known."""
     found, known = np.full((2, steps.shape[1]), np.nan), np.isfinite(steps).any(axis=0)
     found[0, known] = np.nanmedian(steps[:, known], axis=0)
@@ -257,7 +257,7 @@ def _off(steps: np.ndarray, usual: np.ndarray, spread: np.ndarray) -> np.ndarray
 def _jumps(points: np.ndarray) -> np.ndarray:
     """(N, n), whether both distances of a point to its neighbours, or the one of an end, are far from the usual."""
     steps = np.linalg.norm(np.diff(points, axis=1), axis=2)
-    off, found = _off(steps, *_usual(steps)), np.zeros(points.shape[:2], dtype=bool)
+    off, found = _off(steps, *usual_of(steps)), np.zeros(points.shape[:2], dtype=bool)
     found[:, 1:-1] = off[:, 1:] & off[:, :-1]
     found[:, 0] = off[:, 0] & ~found[:, 1]
     found[:, -1] = off[:, -1] & ~found[:, -2]
