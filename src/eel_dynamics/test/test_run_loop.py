@@ -15,7 +15,7 @@ from fake_publishers import FakeInbox, fake_publishers, run_loop
 from sensor_msgs.msg import JointState
 
 from eel_dynamics import Robot, Simulation
-from eel_gaits import falling, straight
+from eel_gaits import Law, falling, straight
 
 
 @pytest.mark.parametrize(
@@ -447,3 +447,19 @@ def test_of_commands_in_disorder_the_newest_acts_and_it_is_told_once():
         "a joint command of t = 0.05 s for joint_1 came with another value: the newest is taken",
         "a joint command of t = 0.04 s is older than that of t = 0.06 s for joint_1: left out, as are further ones",
     ]
+
+
+def test_set_points_that_come_now_and_then_make_no_line():
+    """Each brings its servo to the limit for a moment, and holds for longer than command_timeout."""
+    log = Log()
+
+    def publish(snapshot, nanoseconds):
+        if nanoseconds % 1_000_000_000 == 500_000_000:
+            for angle in (0.5, -0.5):
+                run.take_command(run.inputs.joints, joint_command(0.0, joint_3=angle * (1 + nanoseconds // 10**9)))
+
+    simulation = Simulation(accuracy=1e-2, robot=Robot.named("eight_servos"), law=Law())
+    run = run_loop(simulation, fake_publishers(publish), Report(log), real_time_factor=0.0, duration=3.4, rate=20.0)
+    run.run()
+    assert run.output.saturation.values()["at_torque_limit"].startswith("joint_3 ")
+    assert log.lines == [("info", "finished at t = 3.4 s")]

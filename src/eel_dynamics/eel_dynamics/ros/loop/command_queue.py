@@ -8,7 +8,9 @@ that is older than what has acted is left out.
 
 import math
 from bisect import bisect_left
+from collections import deque
 from collections.abc import Mapping
+from itertools import pairwise
 from operator import itemgetter
 from typing import Any
 
@@ -22,6 +24,7 @@ from eel_dynamics.ros.command_messages import Values, fin_command_from_message, 
 from eel_dynamics.ros.loop.awaited import FINS, JOINTS, MESSAGES, Awaited
 from eel_dynamics.simulation.simulation import Simulation
 
+IN_A_ROW = 4  # commands, from which on they are a stream
 LONGEST_WAY = 5.0  # s that a command may lie ahead of the simulation
 MOST_WAITING = 10_000  # instants ahead: 2 kHz for so long
 STAND_IN = Law(name="joint_commands")  # of a swimmer that is straight but for its commands
@@ -50,9 +53,7 @@ class CommandQueue:
         self._waiting: list[tuple[float, dict[str, tuple[float, Any]]]] = []  # instant; stamp and value by name
         self._present: Values = {}  # what the parts do
         self._stamps: dict[str, float] = {}  # s, of what has acted
-        self._last = self._pause = (
-            math.nan
-        )  # s, simulation time: when the last command came, and how long after another
+        self._arrivals: deque[float] = deque(maxlen=IN_A_ROW)  # s, simulation time: when the last commands came
 
     def read(self, message: Any) -> tuple[float, Values]:
         """Stamp [s] and values of a `message`. `ValueError` names what does not fit the present swimmer."""
@@ -75,14 +76,13 @@ class CommandQueue:
         is_stamped = stamp > 0.0 or now == 0.0
         if not is_stamped and self._lockstep and self._awaited.counts_as_stamped(self.topic, values):
             return  # a late answer to sample 0, which is repeated while the run stands at its start
-        self._queue(
-            stamp if is_stamped else now, max(stamp, now), {name: each for name, each in values.items() if each != {}}
-        )
-        self._last, self._pause = now, now - self._last
+        given = {name: value for name, value in values.items() if value != {}}
+        self._queue(stamp if is_stamped else now, max(stamp, now), given, is_stamped)
+        self._arrivals.append(now)
         if is_stamped:
             self._awaited.come(self.topic, stamp, now, values if self._lockstep else ())
 
-    def _queue(self, stamp: float, instant: float, values: Values) -> None:
+    def _queue(self, stamp: float, instant: float, values: Values, is_stamped: bool) -> None:
         """Have the `values` act at an `instant` [s], but for those of parts that a newer `stamp` [s] has acted on."""
         newer = {name: (stamp, value) for name, value in values.items() if stamp >= self._stamps.get(name, -math.inf)}
         for old in values.keys() - newer:
@@ -99,7 +99,7 @@ class CommandQueue:
         there = self._waiting[place][1]
         for name, (_, value) in newer.items():
             before = there.get(name, (self._stamps.get(name, math.nan), self._present.get(name)))
-            if before[0] == stamp > 0.0 and before[1] != value:
+            if is_stamped and before[0] == stamp > 0.0 and before[1] != value:
                 self._warn("double", f"of t = {stamp:.9g} s{_for(name)} came with another value: the newest is taken")
             if name not in there or stamp >= before[0]:
                 there[name] = stamp, value
@@ -133,20 +133,20 @@ class CommandQueue:
     def check(self, timeout: float) -> None:
         """Warn where commands that came in a row have stopped for `timeout` [s] of simulation time; 0: never.
 
-        A command that comes by itself, later than that after another, is a set point, and holds without a word.
+        Commands with longer pauses are set points, and hold without a word.
         """
-        time = self.simulation.time
-        if timeout > 0.0 and time - self._last > timeout >= self._pause:
-            said = (
-                f"no {MESSAGES[self.topic]} for {timeout:g} s of simulation time at t = {time:g} s: the last one holds"
-            )
-            self._report.begin(f"no {self.topic}", said)
+        time, arrivals, topic = self.simulation.time, self._arrivals, self.topic
+        if not timeout > 0.0 or len(arrivals) < IN_A_ROW or time - arrivals[-1] <= timeout:
+            return
+        if max(after - before for before, after in pairwise(arrivals)) <= timeout:
+            said = f"no {MESSAGES[topic]} for {timeout:g} s of simulation time at t = {time:g} s: the last one holds"
+            self._report.begin(f"no {topic}", said)
 
     def _begin(self, simulation: Simulation, names: tuple[str, ...]) -> None:
         """Begin at time 0 of a `simulation`, without commands for its parts with these names."""
         self.simulation, self.names = simulation, names
         self._waiting, self._present, self._stamps = [], {}, {}
-        self._last = self._pause = math.nan
+        self._arrivals.clear()
         for kind in ("old", "double"):
             self._report.end(f"{kind} {self.topic}")
 

@@ -148,7 +148,7 @@ class RunLoop:
         self._sample_begun = None
         if reason != self.standing:
             before, self.standing = self.standing, reason
-            if not {*reason.split(", ")} <= {*before.split(", ")}:  # what is left of it needs no line
+            if not waited_for(reason) <= waited_for(before):  # what is left of it needs no line
                 self._report.info(reason)
         now = time.monotonic()
         self.output.clock.repeat(self._stamp, now)
@@ -317,6 +317,11 @@ class RunLoop:
         self.laws.reset()
         self.inputs.begin(self._simulation, self._parameters.values)
         self._report.info("reset to t = 0 s")
+
+
+def waited_for(reason: str) -> set[str]:
+    """What is waited for by a `reason` to stand still, part by part; or the whole reason."""
+    return {*reason.removeprefix("waiting for ").split(", ")}
 
 
 def unforeseen(error: Exception) -> str:
