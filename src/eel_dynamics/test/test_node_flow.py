@@ -182,6 +182,7 @@ def test_first_sample_waits_for_the_subscribers_asked_for(start, client):
     first.laws.publish(law_to_message(falling()))
     node = start("dynamics", *FLAT_OUT[:-1], "wait_for_subscribers:=2", "-p", "duration:=1")
     node.wait_for_output("2 subscribers", LIMIT)
+    node.wait_for_output("law 'falling' adopted", LIMIT)
     first.until(lambda: len(first.received["/clock"]) > 20, "clock while the node waits")
     assert {seconds(message) for message in first.received["/clock"]} == {0.0} and not first.received["head_pose"]
     second = client(topics=tuple(SAMPLES))
