@@ -179,6 +179,14 @@ def test_a_bag_that_is_a_fifo_is_refused(tmp_path, name):
         Bag(tmp_path / name.split("/")[0])
 
 
+def test_a_folder_s_name_may_be_as_long_as_the_file_system_allows(tmp_path):
+    folder = tmp_path / ("b" * 255)
+    bag = GrowingBag(folder)
+    bag.write(connect(bag, "/one"), 10**18, bytes(28))
+    bag.close()
+    assert len(contents(folder)[0]) == 1 and max(len(each.name) for each in folder.iterdir()) == 255
+
+
 def test_the_place_of_damage_is_said(tmp_path):
     bag = GrowingBag(tmp_path / "bag")
     connection = connect(bag)

@@ -48,12 +48,12 @@ class Parts:
         self._key, self._count = key, count
         path = self.out = None if out is None else Path(checked_instance("out", out, (str, os.PathLike)))
         self._overwrite, self._began = overwrite, time.time_ns()
+        if path is not None and path.suffix != ".nc":
+            raise ValueError(f"out must end in .nc, got {shown(str(out))}")
         self.folder: Any = None if path is None else beside(path, "", ".parts")
         self._number = itertools.count()
         if path is None or self.folder is None:
             return
-        if path.suffix != ".nc":
-            raise ValueError(f"out must end in .nc, got {shown(str(out))}")
         check_output("out", path)
         if self.folder.exists() and self._key_of_folder() not in (None, key):
             if not overwrite:

@@ -14,6 +14,7 @@ import pathlib
 from typing import IO, Any, Literal, cast
 
 import mcap.writer
+from eel_base.files.output_file import beside
 from eel_base.wording import shown
 from rosbags.interfaces import Connection
 from rosbags.rosbag2 import StoragePlugin, Writer, WriterError
@@ -44,7 +45,7 @@ class GrowingFile:
     """rosbags' storage of one MCAP file; each call of `close` makes the file whole, and more may follow."""
 
     def __init__(self, path: pathlib.Path, compression: CompressionMode) -> None:
-        self.path = path / f"{path.name}.mcap"
+        self.path = beside(path / f"{path.name}.mcap", "")
         self._file = self.path.open("xb", buffering=0)
         self._pending = PendingBytes()
         self._end = b""  # the file's end, behind the bytes that no `close` touches again

@@ -14,11 +14,13 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import fields
 from itertools import count
+from pathlib import Path
 from typing import Any
 
 from eel_base.command.command import command
 from eel_base.command.command_line import Parser, print_to_stderr
 from eel_base.command.progress import Progress
+from eel_base.files.output_file import beside
 from eel_base.quantity import limits
 
 from eel_viz.bags.bag import Bag
@@ -117,7 +119,7 @@ def _add_options(parser: Parser) -> None:
     interrupted=": the recording ends there",
 )
 def main(chosen: argparse.Namespace) -> None:
-    output = chosen.out or f"{name_of(chosen.bag)}.rrd"
+    output = chosen.out or str(beside(Path(f"{name_of(chosen.bag)}.rrd"), ""))
     other = chosen.compare if chosen.compare.strip("/") and os.path.exists(chosen.compare) else None
     began = time.monotonic()
     if chosen.spawn and not display():
