@@ -7,11 +7,36 @@ import re
 import subprocess
 import sys
 from collections import Counter
+from dataclasses import fields
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 import pytest
-from fuzzed_texts import case_of
+from eel_base.texts import made
+from eel_base.wording import one_line
+from eel_dynamics.ros.parameters import DynamicsParameters
+from eel_gaits.laws.ramp import Ramp
+from eel_gaits.pilot.settings import PilotSettings
+from eel_model.fins.fins import Fin, RollHold
+from fuzzed_texts import EXTREMES, ODD, VALUES, case_of
+
+from eel_dynamics import (
+    Appendage,
+    Gust,
+    Joint,
+    Muscle,
+    PassiveTail,
+    Scene,
+    Servo,
+    Shear,
+    Torque,
+    Uniform,
+    Vortex,
+    VortexStreet,
+    Wave,
+)
+from eel_gaits import Law, Term
 
 LIMIT, SECONDS = 4000, 20  # MB of address space, and s of wall time, of a case
 LONGEST = 330  # characters of a line
@@ -75,3 +100,37 @@ def test_a_mutated_text_is_one_line_or_a_run(tmp_path, count):
     print(f"\n{dict(Counter(each.status for each in found))}, slowest {max(each.seconds for each in found):.1f} s")
     assert not [each for each in found if not each.fits]
     assert {each.status for each in found} >= {0, 2}
+
+
+FIN = {"station": 0.5, "side": "left", "area": 1e-3, "aspect_ratio": 2.0}
+TAIL = {"start": 0.6, "bending_stiffness": 0.5, "damping": 0.01}
+WAVE = {"amplitude": (0.5,), "period": 1.0}
+OTHERS = np.array(1.0), np.array([]), np.zeros((2, 3)), object(), len, b"a", 1j, {1}, range(3), ("a",)
+OBJECTS = (
+    (Fin, FIN), (RollHold, {}), (Joint, {"position": 0.5}), (Servo, {}), (Torque, {"torque": (0, 1), "time": (0, 1)}),
+    (PassiveTail, TAIL), (Muscle, TAIL | {"end": 0.9, "moment": Law(Term(**WAVE))}), (Scene, {}), (Term, WAVE),
+    (Ramp, {"start": 0, "end": 1, "delta": 1}), (Appendage, {"x": 0.1}), (Uniform, {"velocity": (0, 0, 0)}), (Gust, {}),
+    (Shear, {}), (Vortex, {}), (VortexStreet, {}), (Wave, {}), (DynamicsParameters, {}), (PilotSettings, {}),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("kind", "good"), OBJECTS, ids=[kind.__name__ for kind, _ in OBJECTS])
+def test_a_plain_value_of_any_field_is_taken_or_refused_by_name(kind, good):
+    for item in fields(kind):
+        for value in (
+            *VALUES,
+            *EXTREMES,
+            *ODD,
+            np.array(1.0),
+            np.zeros((2, 3)),
+            object(),
+            len,
+            b"a",
+            1j,
+            {1},
+            range(3),
+        ):
+            try:
+                made(kind, {**good, item.name: value}, kind.__name__.lower())
+            except ValueError as error:
+                assert not FOREIGN.search(str(error)) and len(one_line(error)) <= LONGEST, (item.name, value, error)

@@ -246,11 +246,12 @@ def _of_kind(good: bool, value: Any, rule: str) -> Any:
 
 
 def _checked_row(default: tuple[Any, ...], value: Any, name: str) -> tuple[Any, ...]:
-    row = isinstance(value, (list, tuple, np.ndarray)) or hasattr(value, "typecode")  # of rclpy: an array.array
+    array = hasattr(value, "typecode")  # of rclpy: an array.array
+    row = array or (isinstance(value, (list, tuple, np.ndarray)) and getattr(value, "ndim", 1) == 1)
     if isinstance(default[0], str):
         words: Any = value.split(",") if isinstance(value, str) else value if row else (None,)
         _of_kind(all(isinstance(word, str) for word in words), value, f"{name} must be a list of texts")
         return tuple(word.strip() for word in words)
-    good = row and getattr(value, "ndim", 1) == 1 and len(value) == len(default) and all(map(is_finite, value))
+    good = row and len(value) == len(default) and all(map(is_finite, value))
     _of_kind(good, value, f"{name} must be {len(default)} finite numbers")
     return tuple(checked_row(name, value, len(default)).tolist())
