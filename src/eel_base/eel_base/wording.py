@@ -41,8 +41,8 @@ def one_line(error: object) -> str:
 
     The middle of long words, and of a long line, is left out.
     """
-    if isinstance(error, OSError) and error.filename is not None:
-        error = f"{error.strerror}: {shown(error.filename)}"
+    if isinstance(error, OSError) and error.strerror:
+        error = error.strerror if error.filename is None else f"{error.strerror}: {shown(error.filename)}"
     line = _LONG_WORD.sub(lambda word: _shortened(word[0]), " ".join(str(error).split()))
     if not line.isprintable():
         line = "".join(each if each.isprintable() else ascii(each)[1:-1] for each in line)

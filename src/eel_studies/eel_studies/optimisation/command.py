@@ -8,6 +8,7 @@ eel optimise kern_fast --body kern2006 --bound period=0.5:2 --bound bend_tail=0:
 
 import argparse
 import time
+from contextlib import suppress
 from functools import partial
 
 from eel_base.command.command import command
@@ -76,10 +77,11 @@ def main(options: argparse.Namespace) -> None:
 
 
 def _speeds(text: str) -> list[float]:
-    try:
-        return [float(speed) for speed in varied_values(text, _check_count)]
-    except ValueError:
-        raise ValueError(f"--speeds must be start:end:count, count >= 1, or a,b,c in m/s, got {shown(text)}") from None
+    with suppress(ValueError):
+        found = varied_values(text, _check_count)
+        if all(isinstance(speed, float) for speed in found):
+            return found
+    raise ValueError(f"--speeds must be start:end:count, count >= 1, or a,b,c in m/s, got {shown(text)}")
 
 
 def _check_count(count: int) -> None:
