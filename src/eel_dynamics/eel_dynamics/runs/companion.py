@@ -95,7 +95,6 @@ def with_error_estimate(swim: Any, request: Any) -> Any:
     target = request.setup.accuracy.target
     if swim.stopped is not None or len(request.times) < 2:
         return swim
-    lags = (slow := request.slow_motors) is not None and slow.far
     marching = _for_comparison(request)
     companion = _finished(marching, swim.run.accuracy.coarser().by_adams(), swim.run.nodes)
     for refinement in range(MOST_REFINEMENTS + 1):
@@ -115,7 +114,9 @@ def with_error_estimate(swim: Any, request: Any) -> Any:
         cost = sum(each.evaluations * each.nodes for each in others)
         error = replace(error, evaluations=sum(each.evaluations for each in others), cost=cost)
         swim = swim._replace(run=replace(swim.run, error_estimate=error))
-        if target is None or lags or error.worst <= target / ACCEPTED or refinement == MOST_REFINEMENTS:
+        if target is None or error.worst <= target / ACCEPTED or refinement == MOST_REFINEMENTS:
+            break
+        if refinement == 0 and (slow := request.slow_motors) is not None and slow.far:
             break
         if refinement and error.hopeless(target, float(swim.run.time[-1])):  # the first pair may be far apart
             break

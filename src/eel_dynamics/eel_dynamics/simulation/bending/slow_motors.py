@@ -12,7 +12,8 @@ from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.robot.compiled import ModeTable
 
-LOOKS = 200  # instants at which the law is looked at
+LOOKS = 40  # instants at which the law is looked at
+GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)  # its multiples fall on all phases of any period alike
 FAR = 3.0  # times its speed limit, from which a motor is far too slow
 
 
@@ -30,7 +31,8 @@ def slow_motors(table: ModeTable | None, law: Law | SampledLaw, duration: float)
     if table is None or not np.isfinite(fastest).any():
         return None
     modes = [motor.mode for motor in motors]
-    rates = np.array([law.curvature(time, table.points)[1] for time in np.linspace(0.0, duration, LOOKS)])
+    times = duration * (GOLDEN * np.arange(LOOKS) % 1.0)
+    rates = np.array([law.curvature(time, table.points)[1] for time in times])
     asked = np.einsum("mp,tpm->tm", table.projection[modes], rates[:, :, table.axis[modes]])
     most = np.abs(asked).max(axis=0)
     slow = np.flatnonzero(most > fastest)
