@@ -49,13 +49,14 @@ def sudden_changes(
     length: float,
     until: float,
 ) -> frozenset[float]:
-    """Times [s] at which torques and flows begin or end to change suddenly; of functions, those before `until` [s].
+    """Times [s] at which torques and flows begin or end to change suddenly, before `until` [s] (0: of tables all).
 
     A flow is looked at along a straight body of this `length` [m], at its start.
     """
     found: set[float] = set()
     for torque in given_torques(robot):
         start, end = (0.0, until) if torque.time is None else (torque.time[0], torque.time[-1])
+        end = min(end, until or end, start + MOST_LOOKS * STEP)
         found |= changes_of(partial(_torques, torque), start, end, torque.time or ())
     places = position - np.linspace(0.0, length, PLACES)[:, None] * world_from_body(np.array(orientation))[:, 0]
     for field in given_flows(flow):
