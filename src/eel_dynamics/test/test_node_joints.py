@@ -256,6 +256,7 @@ def test_a_robot_that_does_not_fit_ends_the_start(start_in_turn):
             "wait_for:=[joints]",
         ): "wait_for must be one of curvature_law, curvature_samples, joint_com",
         ("robot:=eight_servos", "wait_for:=[fin_command]"): "wait_for must name inputs that there are, got fin_command",
+        ("wait_for:=[curvature_law/foo]",): "wait_for curvature_law has no names, got 'foo'",
         ("robot:=eight_servos", "wait_for:=[joint_commands/hip]"): "wait_for joint_commands/ must be one of joint_1",
         (
             "robot:=eight_servos",

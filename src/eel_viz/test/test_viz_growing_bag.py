@@ -12,7 +12,7 @@ import pytest
 import yaml
 import zstandard
 from eel_viz.bags.bag import Bag
-from eel_viz.bags.bounds import check_mcap
+from eel_viz.bags.bounds import MOST_CHUNK_BYTES, check_mcap, inflated
 from eel_viz.bags.definitions import definition, message_class, type_hash
 from eel_viz.bags.growing_bag import GrowingBag
 from mcap.reader import make_reader
@@ -214,3 +214,9 @@ def test_a_type_that_names_no_interface_imports_nothing(tmp_path, monkeypatch):
             message_class(name)
     assert not (tmp_path / "ran").exists()
     assert message_class("eel_msgs/msg/Backbone").__name__ == "Backbone"
+
+
+def test_a_message_that_inflates_is_refused_before_it_does():
+    assert inflated(zstandard.compress(b"abc")) == b"abc"
+    with pytest.raises(ValueError, match=f"at most {MOST_CHUNK_BYTES} bytes when inflated, got {2 * MOST_CHUNK_BYTES}"):
+        inflated(zstandard.compress(bytes(2 * MOST_CHUNK_BYTES)))

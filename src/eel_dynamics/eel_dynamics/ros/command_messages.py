@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads the commands of a robot's joints and of fins from messages (sensor_msgs/JointState).
 
-A joint is driven by position, velocity or effort, or several of them. What a message does not have for a joint, it
-leaves as it is: a value that is NaN, or, where an array is shorter than `name`, that of a joint whose interfaces (the
-parameter `command_interfaces`) are others. So sends joint_state_topic_hardware_interface of ros2_control.
+A joint is driven by position, velocity or effort, or several of them. A joint for which a message has no value
+goes on as before: its values are NaN, or an array is shorter than `name`, as the joint's interfaces (the parameter
+`command_interfaces`) are others. So sends joint_state_topic_hardware_interface of ros2_control.
 """
 
 import math

@@ -91,7 +91,8 @@ class UrdfReader:
             fail(self._joints[0].element, "axis", "must point across the line of joints, got one along it")
         if stacked:
             axes = [round(float(each), 3) + 0.0 for each in up / size]
-            rule = "its other end is the tail, and what turns about the first joint's axis is yaw: up is"
+            end = "tail" if self._from_tail else "nose"
+            rule = f"it is the {end}, and what turns about the first joint's axis is yaw: up is"
             self._notes.append(f"modules are stacked along the base link's z: {rule} {shown(axes)} in its axes")
         return np.asarray(up / size)
 

@@ -22,7 +22,7 @@ from rosbags.rosbag2 import Reader
 from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_types_from_msg, get_typestore
 
-from eel_viz.bags.bounds import METADATA, MOST_CHUNK_BYTES, check_mcap, check_metadata
+from eel_viz.bags.bounds import METADATA, check_mcap, check_metadata, inflated
 
 SUFFIXES = (".mcap", ".db3")
 JOURNALS = ".db3-wal", ".db3-journal"  # of sqlite: what a recorder that was killed has not brought into its file
@@ -91,7 +91,7 @@ class Bag:
                 raise ValueError(f"bag {shown(str(self._path))} is damaged: {_line(error)}") from error
             try:
                 if bytes(raw[:4]) == zstandard.FRAME_HEADER:  # without metadata.yaml nothing else tells
-                    raw = zstandard.ZstdDecompressor().decompress(raw, MOST_CHUNK_BYTES)
+                    raw = inflated(raw)
                 message = self._deserialised(raw, connection.msgtype)
             except Exception as error:  # rosbags' own, struct.error, ValueError of numpy or of text
                 unreadable(connection.topic, _line(error))

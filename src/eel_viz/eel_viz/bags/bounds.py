@@ -58,6 +58,13 @@ def check_mcap(path: pathlib.Path) -> None:
             raise ValueError(f"{path.name}, from byte {place} on: {reason} (`mcap recover` repairs it)") from error
 
 
+def inflated(frame: bytes) -> bytes:
+    """What is in a frame of zstd. `ValueError` where that is more than `MOST_CHUNK_BYTES`."""
+    if (size := zstandard.frame_content_size(frame)) > MOST_CHUNK_BYTES:
+        raise ValueError(f"a message must have at most {MOST_CHUNK_BYTES} bytes when inflated, got {size}")
+    return zstandard.ZstdDecompressor().decompress(frame, MOST_CHUNK_BYTES)  # where the frame does not state its size
+
+
 def check_chunk(chunk: Chunk) -> None:
     """`ValueError` where a chunk inflates to more than `MOST_CHUNK_BYTES`, or not to the size that it states."""
     size = chunk.uncompressed_size
@@ -69,7 +76,7 @@ def check_chunk(chunk: Chunk) -> None:
         except zstandard.ZstdError:  # no frame at all: nothing is inflated
             return
         if found < 0:  # the frame does not state it
-            found = len(zstandard.ZstdDecompressor().decompress(chunk.data, MOST_CHUNK_BYTES))
+            found = len(inflated(chunk.data))
     elif chunk.compression == "lz4":
         try:
             found = lz4.frame.get_frame_info(chunk.data)["content_size"]

@@ -211,6 +211,8 @@ def wanted_inputs(wait_for: Iterable[str], parts: Mapping[str, tuple[str, ...]])
             raise ValueError(not_one_of("wait_for", topic, INPUTS))
         if topic in (JOINTS, FINS) and not parts.get(topic):
             raise ValueError(f"wait_for must name inputs that there are, got {topic}: nothing follows it")
+        if slash and not parts.get(topic):
+            raise ValueError(f"wait_for {topic} has no names, got {shown(name)}")
         if slash and name not in parts.get(topic, ()):
             raise ValueError(not_one_of(f"wait_for {topic}/", name, parts.get(topic, ())))
         try:

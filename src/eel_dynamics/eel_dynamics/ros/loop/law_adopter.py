@@ -31,9 +31,7 @@ class LawAdopter:
     def __init__(self, simulation: Simulation, awaited: Awaited, report: Report) -> None:
         self.simulation, self._awaited, self._report = simulation, awaited, report
         self._origin = 0.0  # s: simulation time of the law's t = 0
-        self._first: dict[
-            float, int
-        ] = {}  # time [s] of the instants that were added at the start, and a hash of the values
+        self._first: dict[float, int] = {}  # of instants [s] added at the start: a hash of the values
         self._driven = False  # whether a controller's samples drove the swimmer when it was last looked at
 
     @property
