@@ -10,6 +10,7 @@ from eel_gaits.film.kinematics import kinematics
 from filmed import TIMES, TWICE, WAVE, swimming, write_deeplabcut, write_long, write_sleap, write_wide
 
 X = np.linspace(0.05, 0.95, 37)
+PIXELS = {"units": "px", "scale": 1e-3, "rate": 50.0}
 
 
 def film(points, times=TIMES):
@@ -261,3 +262,41 @@ def test_rows_of_points_may_be_left_out_or_stand_point_by_point(tmp_path):
     assert [tuple(each) for each in np.argwhere(missing)] == out and np.array_equal(found.time, whole.time)
     assert np.array_equal(found.animals[""][~missing], read_tracks(tmp_path / "whole.csv").animals[""][~missing])
     assert any("3 of 1600 points filled" in note for note in read_film(path).notes)
+
+
+def test_a_coordinate_in_two_columns_is_refused_by_name(tmp_path):
+    points = swimming()
+    head, *rows = write_wide(tmp_path / "wide.csv", points).read_text().splitlines()
+    path = tmp_path / "two.csv"
+    path.write_text("\n".join([f"{head},x7_mm,y7_mm", *(f"{row},1,2" for row in rows)]))
+    with pytest.raises(ValueError, match=r"two.csv.*must stand in one column, got \['[xy]7_m', '[xy]7_mm'\]"):
+        read_film(path)
+    path.write_text("\n".join([f"{head},error_x,error_y,error_x", *(f"{row},1,2,3" for row in rows)]))
+    assert np.allclose(read_film(path).points, points)  # no point of the body
+    names = ["part0", *(f"part{place}" for place in range(19))]
+    with pytest.raises(ValueError, match=r"sleap.csv.*a point must stand in the columns once, got 'part0' twice"):
+        read_film(write_sleap(tmp_path / "sleap.csv", {"": 1e3 * points}, names), **PIXELS)
+    text = write_deeplabcut(tmp_path / "dlc.csv", {"": 1e3 * points}).read_text()
+    (tmp_path / "dlc.csv").write_text(text.replace("part1,part1,part1,", "part0,part0,part0,", 1))
+    with pytest.raises(ValueError, match=r"dlc.csv.*must stand in one column, got 'part0/x' twice"):
+        read_film(tmp_path / "dlc.csv", **PIXELS)
+
+
+@pytest.mark.parametrize("write", [write_deeplabcut, write_sleap])
+def test_a_trackers_frame_needs_a_number_and_a_column_of_times_has_no_place(tmp_path, write):
+    path = write(tmp_path / "fish.csv", {"": 1e3 * swimming()})
+    with pytest.raises(ValueError, match=r"fish.csv.*counts frames: a column of times has no place, got 'foo'"):
+        read_film(path, **PIXELS, time="foo")
+    rows = path.read_text().splitlines()
+    place = 1 if write is write_sleap else 0
+    for cell, got in (("", "must be a number, got ''"), ("nan", "must be finite, got nan")):
+        cells = rows[20].split(",")
+        path.write_text("\n".join([*rows[:20], ",".join([*cells[:place], cell, *cells[place + 1 :]]), *rows[21:]]))
+        with pytest.raises(ValueError, match=rf"fish.csv', line 21: .*{got}"):
+            read_film(path, **PIXELS)
+
+
+def test_a_stray_frame_far_behind_the_others_is_refused_by_its_time():
+    times = np.append(TIMES[:-1], 2e5)
+    with pytest.raises(ValueError, match=r"80 frames are too far apart .* none from 1.56 s to 200000 s"):
+        beat_of(film(swimming(), times))

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Points that were not seen: the beat of a film with gaps is that of the whole film."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from eel_gaits.film.beat import beat_of
@@ -18,8 +20,16 @@ def test_what_is_hidden_hardly_changes_the_beat_whose_band_holds_the_change(tmp_
         filled = np.sum(beat.film.missing)
         assert any(note.startswith(f"{filled} of ") for note in beat.film.notes) and filled > 20
         apart = np.hypot(*(beat.curvature - whole.curvature)[1:3]) / np.max(np.hypot(*whole.curvature[1:3]))
-        assert np.mean(apart) < 1.5 * whole.band and np.mean(apart) < 0.05
+        assert np.mean(apart) < 1.5 * beat.band and np.mean(apart) < 0.05
         assert beat.band > 0.8 * whole.band
+
+
+def test_bands_are_wider_like_an_error_by_the_root_of_the_segments_that_were_seen(tmp_path):
+    lost = hidden("two in a row, often", np.random.default_rng(4))
+    beat = beat_without(tmp_path / "gaps.csv", swimming(noise=1e-3, arc=ARC), lost)
+    plain = replace(beat, film=beat.film._replace(missing=None)).band
+    unseen = np.mean(beat.film.missing[:, 1:] | beat.film.missing[:, :-1])
+    assert unseen > 0.1 and beat.band / plain == pytest.approx(1.0 / np.sqrt(1.0 - unseen))
 
 
 def test_a_point_lost_wherever_the_body_bends_most_is_put_back_by_the_beat(tmp_path):

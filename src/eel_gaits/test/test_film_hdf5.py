@@ -141,3 +141,20 @@ def test_what_is_no_hdf5_and_what_needs_h5py_is_told(tmp_path, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "h5py", None)
     with pytest.raises(ValueError, match=r"fish.h5.*HDF5 needs h5py \(pip install h5py\)"):
         read_film(tmp_path / "fish.h5", **PIXELS)
+
+
+def test_a_frame_without_a_number_and_a_column_of_times_are_refused(tmp_path):
+    path = write_deeplabcut_h5(tmp_path / "fish.h5", {"": 1e3 * swimming()}, "table")
+    with pytest.raises(ValueError, match=r"fish.h5.*a column of times has no place, got 'foo'"):
+        read_film(path, **PIXELS, time="foo")
+    with h5py.File(path, "a") as file:
+        table = file["df_with_missing/table"]
+        rows, attributes = table[:], dict(table.attrs)
+        rows = rows.astype([("index", "<f8"), *rows.dtype.descr[1:]])
+        rows["index"][4] = np.nan
+        del file["df_with_missing/table"]
+        file["df_with_missing/table"] = rows
+        for name, value in attributes.items():
+            file["df_with_missing/table"].attrs[name] = value
+    with pytest.raises(ValueError, match=r"fish.h5.*each frame must have a number, got nan in row 5"):
+        read_film(path, **PIXELS)

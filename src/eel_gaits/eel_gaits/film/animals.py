@@ -13,7 +13,7 @@ from eel_base.wording import shown
 from eel_gaits.film.forms import Tracks
 
 APART, LOST = 0.25, 0.5  # of the length, and of the way since, by which a track may be beside where it is expected
-LISTED = 8  # names in a message
+NAMED = 8  # names in a message
 
 
 def of_one(tracks: Tracks, animal: str | None) -> tuple[np.ndarray, np.ndarray, list[str], list[str]]:
@@ -89,4 +89,4 @@ def _merged(tracks: dict[str, np.ndarray], names: list[str]) -> np.ndarray:
 
 def _listed(names: Iterable[str]) -> str:
     listed = [shown(name) for name in names]
-    return ", ".join(listed[:LISTED]) + (f" and {len(listed) - LISTED} others" if len(listed) > LISTED else "")
+    return ", ".join(listed[:NAMED]) + (f" and {len(listed) - NAMED} others" if len(listed) > NAMED else "")

@@ -40,11 +40,9 @@ LEAST_KNOTS, KNOTS = 2, 12  # along the body
 CONDITION = 100.0  # singular values below a part of 1 / 100 do not count: uneven points do not tell those shapes
 TRAVELS = 1.0  # rad of phase along the body, less of which counts as standing
 LEAST_SHARE = 0.5  # of the variance that the other beats must predict
-ROUNDS, FILLINGS, STILL = (
-    4,
-    40,
-    1e-4,
-)  # of choosing, and of filling at most; part of the length that a filled point moves
+ROUNDS, FILLINGS = 4, 40  # of choosing, and of filling, at most
+STILL = 1e-4  # part of the length by which a filled point may still move
+THIN = 20.0  # times the frames that are seen, beyond which the beats of a film cannot be counted
 FINE = 257  # places along the body at which splines are integrated
 OF_LAW = 65  # knots of the law's splines, where a part of the body is rigid
 QUANTILE = 0.975  # of Student's t, for the bands: 95 %
@@ -290,6 +288,12 @@ class _Fit:
     def _first_period(self) -> float:
         """The period whose first harmonic explains most of the angles."""
         step, span = float(np.median(np.diff(self.time))), float(self.time[-1])
+        if span > THIN * step * len(self.time):
+            gap = int(np.argmax(np.diff(self.film.time)))
+            raise ValueError(
+                f"{self.film.name}: its {len(self.time)} frames are too far apart to count the beats between them, "
+                f"with none from {self.film.time[gap]:g} s to {self.film.time[gap + 1]:g} s: give one side of that"
+            )
         periods = 1.0 / np.arange(1.5 / span, 1.0 / (LEAST_FRAMES * step), 0.1 / span)
         if not len(periods):
             raise ValueError(f"{self.film.name}: its frames are too few for a beat, {len(self.time)} in {span:.3g} s")

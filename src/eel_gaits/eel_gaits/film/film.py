@@ -26,7 +26,7 @@ from eel_gaits.film.kinematics import arc_of
 from eel_gaits.sources.order import FOLD, check_order
 
 FEWEST_POINTS, FEWEST_FRAMES = 5, 16
-MISSING = 0.25  # part of a frame's points that may be missing
+MOST_MISSING = 0.25  # part of a frame's points that may be missing
 OFTEN, ENDS = 0.5, 0.2  # part of the frames in which a point must be seen to count; the same of the two ends
 JUMP, SPREADS = 0.5, 6.0  # of a segment's median length, and of its robust spread, beyond which a point has jumped
 CUT, STEPS = 0.25, 10.0  # of the length, and of the median step, beyond which the whole body has jumped
@@ -189,7 +189,8 @@ def _repaired(name: str, time: np.ndarray, points: np.ndarray, names: list[str],
             f"{np.sum(jumped)} points have jumped along the body and count as missing: {_names_of(names, jumped)}"
         )
     keep(~(missing[:, 0] | missing[:, -1]), "an end of the body is missing")
-    keep(np.mean(~np.all(np.isfinite(points), axis=2), axis=1) <= MISSING, "more than a quarter of the points missing")
+    part = np.mean(~np.all(np.isfinite(points), axis=2), axis=1)
+    keep(part <= MOST_MISSING, "more than a quarter of the points missing")
     if len(time) < FEWEST_FRAMES:
         raise ValueError(f"there must be {FEWEST_FRAMES} frames or more, got {len(time)}{in_brackets()}")
     missing = ~np.all(np.isfinite(points), axis=2)

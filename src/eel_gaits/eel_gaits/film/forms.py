@@ -52,29 +52,50 @@ def read_tracks(path: Path, time: str = "") -> Tracks:
     time: the column of times, where its name does not tell.
     """
     if path.suffix.lower() == ".h5":
-        return _of_hdf(path)
+        return _counted(time, _of_hdf(path))
     if not is_table(path):
         raise ValueError("tracked points must be in a .csv or .h5 file")
     table = read_table(path)
     rows = {row[0].lower(): list(row[1:]) for row in table.heads}
     if "scorer" in rows:
-        return _of_deeplabcut(table, rows)
-    return _of_sleap(table) if "frame_idx" in table.head else _of_columns(table, time)
+        return _counted(time, _of_deeplabcut(table, rows))
+    return _counted(time, _of_sleap(table)) if "frame_idx" in table.head else _of_columns(table, time)
+
+
+def _counted(time: str, tracks: Tracks) -> Tracks:
+    """A tracker's `tracks`. `ValueError` where a column of times is named, a frame has no number, or names repeat."""
+    if time:
+        raise ValueError(f"a tracker's file counts frames: a column of times has no place, got {shown(time)}")
+    if len(bad := np.flatnonzero(~np.isfinite(tracks.time))):
+        raise ValueError(f"each frame must have a number, got {tracks.time[bad[0]]:g} in row {bad[0] + 1}")
+    if len(back := np.flatnonzero(np.diff(tracks.time) <= 0.0)):
+        raise ValueError(f"its frames must rise, got {tracks.time[back[0] + 1]:g} after {tracks.time[back[0]]:g}")
+    for names in tracks.names.values():
+        if twice := next((name for name in names if names.count(name) > 1), None):
+            raise ValueError(f"a point must stand in the columns once, got {shown(twice)} twice")
+    return tracks
 
 
 def _of_columns(table: Table, column: str) -> Tracks:
     names = [split_name(name) for name in table.head]
     found = {place: m for place, (name, _) in enumerate(names) if (m := COORDINATE.fullmatch(name))}
-    places = {
-        (m["axis"] or m["last"] or m["first"], m["number"] or m["name"] or m["part"] or ""): place
-        for place, m in found.items()
-    }
+    places: dict[tuple[str, str], int] = {}
+    twice: dict[str, list[str]] = {}  # columns of one coordinate
+    for place, m in found.items():
+        mark = m["number"] or m["name"] or m["part"] or ""
+        first = places.setdefault((m["axis"] or m["last"] or m["first"], mark), place)
+        if first != place:
+            twice[mark] = [table.head[first], table.head[place]]
     marks = [mark for axis, mark in places if axis == "x" and ("y", mark) in places]
     marks = [mark for mark in marks if not mark or mark.isdigit()] or marks  # names may be of a mean or an error
     if not marks or ("" in marks and len(marks) > 1):
         raise ValueError(
             "its columns must be time, x, y (perhaps with a unit: time_s, x_mm), or time, x0, y0, x1, y1 ..., "
             f"or those of DeepLabCut or SLEAP, got {shown(table.head)}"
+        )
+    if both := next((twice[mark] for mark in marks if mark in twice), None):
+        raise ValueError(
+            f"a coordinate must stand in one column, got {shown(both)}: two animals? Give the columns of one"
         )
     used = [places[axis, mark] for mark in marks for axis in "xy"]
     units = {names[place][1] or found[place]["unit"] or "" for place in used}
@@ -135,15 +156,18 @@ def _by_point(table: Table, time: np.ndarray, points: np.ndarray) -> tuple[np.nd
 def _of_deeplabcut(table: Table, rows: dict[str, list[str]]) -> Tracks:
     if not {"bodyparts", "coords"} <= rows.keys():
         raise ValueError("a DeepLabCut file must have the header lines scorer, bodyparts and coords")
-    values = table.numbers(range(len(table.head)))
+    frames, values = table.numbers([0], missing=False)[:, 0], table.numbers(range(1, len(table.head)))
     animals = rows.get("individuals", [""] * len(rows["coords"]))
-    names = list(zip(animals, rows["bodyparts"], rows["coords"], strict=True))[: values.shape[1] - 1]
-    return _of_parts(values[:, 0], names, values[:, 1:])._replace(read=", ".join(table.notes))
+    names = list(zip(animals, rows["bodyparts"], rows["coords"], strict=True))[: values.shape[1]]
+    return _of_parts(frames, names, values)._replace(read=", ".join(table.notes))
 
 
 def _of_parts(frames: np.ndarray, names: list[tuple[str, str, str]], values: np.ndarray) -> Tracks:
     """Tracks of DeepLabCut's columns, each with the names of (animal, body part, x, y or likelihood)."""
     column = {name: index for index, name in enumerate(names)}
+    if len(column) < len(names):
+        twice = next(name for index, name in enumerate(names) if column[name] != index)
+        raise ValueError(f"a coordinate must stand in one column, got {shown('/'.join(filter(None, twice)))} twice")
     animals, scores, parts_of = {}, {}, dict[str, list[str]]()
     for animal, part in dict.fromkeys(name[:2] for name in names):
         parts_of.setdefault(animal, []).append(part)
@@ -157,8 +181,6 @@ def _of_parts(frames: np.ndarray, names: list[tuple[str, str, str]], values: np.
             if (index := column.get((animal, part, "likelihood"))) is not None:
                 scores[animal][:, place] = values[:, index]
         animals[animal] = points
-    if len(back := np.flatnonzero(np.diff(frames) <= 0.0)):
-        raise ValueError(f"its frames must rise, got {frames[back[0] + 1]:g} after {frames[back[0]]:g}")
     return Tracks(frames, animals, parts_of, "px", True, scores)
 
 
@@ -178,7 +200,7 @@ def _of_sleap(table: Table) -> Tracks:
     parts = [name[:-2] for name in head if name.endswith(".x") and f"{name[:-2]}.y" in head]
     if not parts:
         raise ValueError(f"a SLEAP file must have columns such as nose.x, nose.y, got {shown(head)}")
-    frame = table.numbers([head.index("frame_idx")])[:, 0]
+    frame = table.numbers([head.index("frame_idx")], missing=False)[:, 0]
     points = table.numbers([head.index(f"{part}.{axis}") for part in parts for axis in "xy"])
     told = [place for place, part in enumerate(parts) if f"{part}.score" in head]
     score = table.numbers([head.index(f"{parts[place]}.score") for place in told])

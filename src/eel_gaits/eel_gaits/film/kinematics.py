@@ -59,9 +59,8 @@ def kinematics(time: np.ndarray, points: np.ndarray, period: float) -> Kinematic
     length = float(arc[-1])
     turns = 2.0 * math.pi / period * time
     powers = np.column_stack((np.ones_like(time), time, time**2))
-    found = np.linalg.lstsq(np.column_stack((powers, *harmonics(turns, HARMONICS))), points.mean(axis=1), rcond=None)[
-        0
-    ][:3]
+    design = np.column_stack((powers, *harmonics(turns, HARMONICS)))
+    found = np.linalg.lstsq(design, points.mean(axis=1), rcond=None)[0][:3]
     velocity = found[1] + 2.0 * time[:, None] * found[2]
     speed = float(np.mean(np.linalg.norm(velocity, axis=1)))
     axis = (points[:, 0] - points[:, -1]).mean(axis=0)
