@@ -129,7 +129,11 @@ def two_in_one(points):
     ("change", "options", "words"),
     [
         (lambda points: points, {"units": "m"}, "its columns are in mm, the units given are m"),
-        (lambda points: points, {"units": "ft"}, "units must be one of m, cm, mm, px, got 'ft'"),
+        (
+            lambda points: points,
+            {"units": "ft"},
+            "units must be one of m, cm, mm, um, km, inch, px, pixel, pixels, got 'ft'",
+        ),
         (lambda points: points, {"rate": 50.0}, "it has times: a rate"),
         (lambda points: points, {"animal": "b"}, "there is no animal 'b'"),
         (lambda points: points[:10], {}, "5 points in 16 frames or more, got 20 in 10"),
@@ -300,3 +304,18 @@ def test_a_stray_frame_far_behind_the_others_is_refused_by_its_time():
     times = np.append(TIMES[:-1], 2e5)
     with pytest.raises(ValueError, match=r"80 frames are too far apart .* none from 1.56 s to 200000 s"):
         beat_of(film(swimming(), times))
+
+
+@pytest.mark.parametrize(("unit", "metres"), [("inch", 0.0254), ("um", 1e-6), ("km", 1e3)])
+def test_lengths_have_the_units_of_all_tables(tmp_path, unit, metres):
+    points = swimming()
+    told = read_film(write_long(tmp_path / "told.csv", points, unit=unit, factor=1.0 / metres))
+    given = read_film(write_long(tmp_path / "bare.csv", points, unit="", factor=1.0 / metres), units=unit)
+    assert np.allclose(told.points, points) and np.allclose(given.points, points)
+
+
+def test_pixels_by_any_of_their_names_need_a_scale(tmp_path):
+    path = write_long(tmp_path / "fish.csv", swimming(), unit="pixels")
+    assert np.allclose(read_film(path, units="px", scale=1e-3).points, swimming())
+    with pytest.raises(ValueError, match="in pixels, which have no length"):
+        read_film(path)

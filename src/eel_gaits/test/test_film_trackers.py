@@ -117,3 +117,58 @@ def test_animals_that_share_frames_need_a_choice_of_tracks(tmp_path):
     assert len(found.time) == 80 and np.allclose(found.points, 1e-3 * points)
     with pytest.raises(ValueError, match="there is no animal 'e', there are: 'a', 'b', 'c', 'd'"):
         read_film(path, **PIXELS, animal="a,e")
+
+
+@pytest.mark.parametrize("form", ["likelihood0 beside x0", "a row for each point", "a row for each point by number"])
+def test_scores_count_in_all_forms_of_columns(tmp_path, form):
+    points, scores = doubted()
+    values, path = with_scores(points, scores), tmp_path / "fish.csv"
+    if form == "likelihood0 beside x0":
+        heads = [f"{what}{part}" for part in range(20) for what in ("x", "y", "likelihood")]
+        write(path, ("frame", *heads), [[frame, *row] for frame, row in enumerate(values.reshape(80, -1).tolist())])
+    else:
+        named = form.endswith("number")
+        rows = [
+            (frame, *([f"part{place}"] if named else []), *row)
+            for frame, rows in enumerate(values.tolist())
+            for place, row in enumerate(rows)
+        ]
+        write(path, ("frame", *(["point"] if named else []), "x", "y", "likelihood"), rows)
+    found = read_film(path, **PIXELS)
+    assert np.array_equal(found.missing, scores < 0.6) and any("50 of 1600" in note for note in found.notes)
+
+
+def test_scores_that_are_not_read_or_are_in_percent_are_told(tmp_path):
+    points, scores = doubted()
+    with pytest.raises(ValueError, match=r"fish.csv.*must be from 0 to about 1, got 80: in percent\?"):
+        read_film(write_deeplabcut(tmp_path / "fish.csv", {"": points}, 100.0 * scores), **PIXELS)
+    heads = [f"{axis}{part}" for part in range(20) for axis in "xy"]
+    rows = [[frame, *row, 0.9] for frame, row in enumerate(1e3 * swimming().reshape(80, -1))]
+    path = write(tmp_path / "flat.csv", ("frame", *heads, "likelihood"), rows)
+    assert "no scores from ['likelihood'], which name no point" in read_film(path, **PIXELS).read
+    with pytest.raises(ValueError, match=r"flat.csv.*no likelihoods or scores of its points: likely has no place"):
+        read_film(path, **PIXELS, likely=0.6)
+
+
+@pytest.mark.parametrize(("animal", "chance"), [(None, 0.01), ("a,b", 0.01), ("a,b", 0.9)])
+def test_a_track_that_is_lost_at_low_likelihood_makes_way_for_the_next(tmp_path, animal, chance):
+    points, whole = 1e3 * swimming(), np.arange(80)
+    tracks = {"a": np.where((whole < 40)[:, None, None], points, points[40]), "b": points}
+    path, rows = write_deeplabcut(tmp_path / "fish.csv", tracks), []
+    for row in path.read_text().splitlines():
+        cells = row.split(",")
+        if cells[0].isdigit():
+            lost = 1 if int(cells[0]) >= 40 else 61
+            cells[lost + 2 : lost + 60 : 3] = [str(chance), *["0.01"] * 19]
+        rows.append(",".join(cells))
+    path.write_text("\n".join(rows))
+    found = read_film(path, **PIXELS, animal=animal)
+    assert len(found.time) == 80 and np.allclose(found.points, 1e-3 * points)
+    assert any("tracks 'a', 'b' joined" in note for note in found.notes)
+
+
+def test_a_track_of_low_likelihood_is_named_or_refused(tmp_path):
+    points = 1e3 * swimming()
+    path = write_deeplabcut(tmp_path / "low.csv", {"": points}, np.full((80, 20), 0.1))
+    with pytest.raises(ValueError, match=r"low.csv.*all its points are missing or have a likelihood below 0.6"):
+        read_film(path, **PIXELS)

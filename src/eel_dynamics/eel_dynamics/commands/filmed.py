@@ -23,14 +23,16 @@ EEL = "kern2006"
 def add_film_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that say how a film is read: all have to do with files of midlines."""
     parser.add_argument(
-        "--units", metavar="UNIT", help="of midlines: m, cm, mm, or px with --scale; of joints: rad or deg"
+        "--units",
+        metavar="UNIT",
+        help="of midlines: m, cm, mm, um, km, inch, or px with --scale; of joints: rad or deg",
     )
     parser.add_argument("--time", default="", metavar="COLUMN", help="of times in a table, by its name or number")
     parser.add_argument("--rate", type=float, metavar="FPS", help="frames per second, where a file counts frames")
     parser.add_argument("--animal", metavar="NAME,...", help="which of several animals in the file, or its tracks")
     parser.add_argument("--points", metavar="NAME,...", help="those along the body, from head to tail: names, or "
                         "patterns such as spine* (all, in the file's order)")  # fmt: skip
-    parser.add_argument("--likely", type=float, default=LIKELY, metavar="P", help="a tracker's likelihood or score "
+    parser.add_argument("--likely", type=float, metavar="P", help="a tracker's likelihood or score "
                         f"below which a point counts as missing ({LIKELY:g})")  # fmt: skip
     parser.add_argument(
         "--rigid", type=float, default=0.0, metavar="PART", help="of the length from the head on that does not bend (0)"

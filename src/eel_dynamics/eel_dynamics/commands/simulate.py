@@ -25,7 +25,6 @@ from eel_base.files.output_file import replacing, written_as
 from eel_base.quantity import described_fields
 from eel_base.wording import one_line, shown
 from eel_gaits.film.beat import Beat
-from eel_gaits.film.film import LIKELY
 from eel_gaits.gaits.registry import gait
 from eel_gaits.gaits.sequence import sequence_from_file
 from eel_gaits.laws.law import Law
@@ -191,7 +190,7 @@ def _law(options: argparse.Namespace, body: Body, beat: Beat | None, robot: Logg
     """The law of the gait, of the sequence, of the motion in a file, of the `beat` of a film, or of a `robot`'s log."""
     if options.file is None and (options.unsmoothed or (options.scale != 1.0 and beat is None)):
         raise ValueError("--unsmoothed and --scale belong to --file, which is not given")
-    of_film = options.rate, options.animal, options.points, options.rigid, options.harmonics, options.likely != LIKELY
+    of_film = options.rate, options.animal, options.points, options.rigid, options.harmonics, options.likely is not None
     if beat is None and (any(of_film) or (options.units and robot is None)):
         rule = "--units, --rate, --animal, --points, --likely, --rigid and --harmonics belong to --midlines"
         raise ValueError(f"{rule}, which is not given")

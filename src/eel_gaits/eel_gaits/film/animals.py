@@ -14,13 +14,18 @@ from eel_gaits.film.forms import Tracks
 
 APART, LOST = 0.25, 0.5  # of the length, and of the way since, by which a track may be beside where it is expected
 NAMED = 8  # names in a message
+MOST_SCORE = 2.0  # peaks of SLEAP's maps go a little beyond 1
 
 
-def of_one(tracks: Tracks, animal: str | None) -> tuple[np.ndarray, np.ndarray, list[str], list[str]]:
-    """Points (N, n, 2) of one animal, their scores (N, n) or NaN, their names (n,), and notes.
+def of_one(tracks: Tracks, animal: str | None, likely: float) -> tuple[np.ndarray, np.ndarray, list[str], list[str]]:
+    """Points (N, n, 2) of one animal, which of them are left out (N, n) as their scores are below `likely`, their names
+    (n,), and notes.
 
-    animal: its name, or the names of its tracks with commas between them; where they share a frame, the first counts.
+    animal: its name, or the names of its tracks with commas between them; where they share a frame, the one with most
+    points counts, of equals the first.
     """
+    given = {name: points for name, points in tracks.animals.items() if _there(points).any()}
+    tracks = tracks._replace(animals={name: _sure(tracks, name, likely) for name in tracks.animals})
     seen = {name: _there(points) for name, points in tracks.animals.items()}
     seen = {name: seen[name] for name in sorted(seen, key=lambda name: np.argmax(seen[name])) if seen[name].any()}
     wanted = list(seen)
@@ -30,7 +35,8 @@ def of_one(tracks: Tracks, animal: str | None) -> tuple[np.ndarray, np.ndarray, 
             raise ValueError(f"there is no animal {shown(unknown[0])}, there are: {_listed(seen)}")
     names = [name for name in seen if name in wanted]
     if not names:
-        raise ValueError("all its points are missing")
+        low = f" or have a likelihood below {likely:g}" if given else ""
+        raise ValueError(f"all its points are missing{low}")
     if animal is None and np.any(np.sum([seen[name] for name in names], axis=0) > 1):
         raise ValueError(f"it has {len(names)} animals, {_listed(names)}: say which one, or which tracks are one")
     if any(tracks.names[name] != tracks.names[names[0]] for name in names):
@@ -43,11 +49,21 @@ def of_one(tracks: Tracks, animal: str | None) -> tuple[np.ndarray, np.ndarray, 
     one = max(groups, key=lambda group: sum(int(seen[name].sum()) for name in group))
     why = "" if animal is not None else ", as they share no frame and follow each other"
     notes = [f"tracks {_listed(one)} joined{why}"] if len(one) > 1 else []
-    if out := [name for name in seen if name not in one]:
+    if out := [name for name in given if name not in one]:
         notes.append(f"animal {_listed(one)} taken, left out: {_listed(out)}")
     points = _merged(tracks.animals, one)
-    scores = _merged(tracks.scores, one) if tracks.scores else np.full(points.shape[:2], np.nan)
-    return points, scores, tracks.names[one[0]], notes
+    low = np.isfinite(_merged(given, one)).all(axis=2) & ~np.isfinite(points).all(axis=2)
+    return points, low, tracks.names[one[0]], notes
+
+
+def _sure(tracks: Tracks, name: str, likely: float) -> np.ndarray:
+    """The points (N, n, 2) of a track, NaN where their score is below `likely`."""
+    points, scores = tracks.animals[name], tracks.scores.get(name)
+    if scores is None:
+        return points
+    if np.any(scores > MOST_SCORE):
+        raise ValueError(f"likelihoods and scores must be from 0 to about 1, got {np.nanmax(scores):g}: in percent?")
+    return np.where((scores < likely)[..., None], np.nan, points)
 
 
 def _is_one(tracks: Tracks, group: list[str], name: str) -> bool:
@@ -79,11 +95,13 @@ def _there(points: np.ndarray) -> np.ndarray:
 
 
 def _merged(tracks: dict[str, np.ndarray], names: list[str]) -> np.ndarray:
-    """The values (N, n, ...) of tracks with these `names`, in each frame of the first that is there."""
-    found = np.full_like(tracks[names[0]], np.nan)
-    for name in reversed(names):
-        here = np.isfinite(tracks[name]).any(axis=tuple(range(1, found.ndim)))
-        found[here] = tracks[name][here]
+    """The points (N, n, 2) of tracks with these `names`, in each frame of the first that has most."""
+    found = tracks[names[0]].copy()
+    most = np.isfinite(found).sum(axis=(1, 2))
+    for name in names[1:]:
+        count = np.isfinite(tracks[name]).sum(axis=(1, 2))
+        found[count > most] = tracks[name][count > most]
+        most = np.maximum(count, most)
     return found
 
 

@@ -21,7 +21,7 @@ from eel_base.quantity import number, positive
 from eel_base.wording import shown
 
 from eel_gaits.film.animals import of_one
-from eel_gaits.film.forms import UNITS, Tracks, read_tracks
+from eel_gaits.film.forms import LENGTHS, Tracks, read_tracks
 from eel_gaits.film.kinematics import arc_of
 from eel_gaits.sources.order import FOLD, check_order
 
@@ -66,7 +66,7 @@ def read_film(
     rate: float | None = None,
     animal: str | None = None,
     points: Sequence[str] | None = None,
-    likely: float = LIKELY,
+    likely: float | None = None,
 ) -> Film:
     """The swimmer in a file of tracked points, in a form of `eel_gaits.film.forms`.
 
@@ -74,7 +74,7 @@ def read_film(
     time: the column of times, by name or number, where its name does not tell. rate: frames per second, where the file
     counts frames. animal: which of several, or names of its tracks with commas between them. points: names of those
     along the body, from head to tail, or patterns such as spine*, whose points come in the file's order; None: all.
-    likely: a tracker's likelihood or score below which a point counts as missing.
+    likely: a tracker's likelihood or score below which a point counts as missing; None: 0.6, where it has scores.
     `ValueError` in one line for what does not fit, and for points that do not stand along the body in their order.
     """
     path = Path(path)
@@ -85,12 +85,19 @@ def read_film(
             raise ValueError("it counts frames: give the rate of the film, frames per second")
         if not tracks.frames and rate is not None:
             raise ValueError("it has times: a rate of the film has no place")
-        seen, scores, names, notes = of_one(tracks, animal)
+        least = LIKELY if likely is None else likely
+        if not 0.0 <= least <= 1.0:
+            raise ValueError(f"likely must be from 0 to 1, got {least:g}")
+        if likely is not None and not any(np.isfinite(each).any() for each in tracks.scores.values()):
+            raise ValueError(f"it has no likelihoods or scores of its points: likely has no place, got {likely:g}")
+        seen, low, names, notes = of_one(tracks, animal, least)
         places, out = _chosen(names, points)
         named = [names[place] for place in places]
         seconds = tracks.time / positive("rate", rate, "1/s") if rate is not None else tracks.time
-        along, unlikely = _likely(metres * seen[:, places], scores[:, places], named, likely)
-        found = _repaired(path.name, seconds, along, named, [*notes, *out, *unlikely], tracks.frames)
+        if np.any(low := low[:, places]):
+            what = f"have a likelihood below {least:g} and count as missing"
+            out.append(f"{np.sum(low)} of {low.size} points {what}: {_names_of(named, low)}")
+        found = _repaired(path.name, seconds, metres * seen[:, places], named, [*notes, *out], tracks.frames)
         if found.length > LONGEST:
             raise ValueError(f"its swimmer is {found.length:.4g} m long: give its units, or a scale")
         _check_whole(found)
@@ -99,20 +106,20 @@ def read_film(
 
 def _metres(tracks: Tracks, units: str | None, scale: float | None) -> float:
     """Metres in the file's unit of length."""
-    if units is not None and units not in (*UNITS, "px"):
-        raise ValueError(f"units must be one of {', '.join((*UNITS, 'px'))}, got {shown(units)}")
-    if units is not None and tracks.unit and units != tracks.unit:
+    if units is not None and units not in LENGTHS:
+        raise ValueError(f"units must be one of {', '.join(LENGTHS)}, got {shown(units)}")
+    if tracks.unit and tracks.unit not in LENGTHS:
+        raise ValueError(f"its columns have the unit {shown(tracks.unit)}, which must be one of {', '.join(LENGTHS)}")
+    if units is not None and tracks.unit and not np.isclose(LENGTHS[units], LENGTHS[tracks.unit], equal_nan=True):
         raise ValueError(f"its columns are in {tracks.unit}, the units given are {units}")
     unit = tracks.unit or units
     if scale is not None:
         return number("scale", positive("scale", scale, "m"))
-    if unit == "px":
-        raise ValueError("its points are in pixels, which have no length: give the scale, metres in a pixel")
     if unit is None:
-        raise ValueError(f"its columns do not tell their unit of length: give units, {', '.join(UNITS)} or px")
-    if unit not in UNITS:
-        raise ValueError(f"its columns have the unit {shown(unit)}, which must be one of {', '.join(UNITS)} or px")
-    return UNITS[unit]
+        raise ValueError(f"its columns do not tell their unit of length: give units, one of {', '.join(LENGTHS)}")
+    if math.isnan(LENGTHS[unit]):
+        raise ValueError("its points are in pixels, which have no length: give the scale, metres in a pixel")
+    return LENGTHS[unit]
 
 
 def _chosen(names: list[str], points: Sequence[str] | None) -> tuple[list[int], list[str]]:
@@ -132,19 +139,6 @@ def _chosen(names: list[str], points: Sequence[str] | None) -> tuple[list[int], 
         places += found
     out = [name for place, name in enumerate(names) if place not in places]
     return places, [f"points left out, as they are not among those given: {', '.join(out)}"] if out else []
-
-
-def _likely(points: np.ndarray, scores: np.ndarray, names: list[str], likely: float) -> tuple[np.ndarray, list[str]]:
-    """The points (N, n, 2) without those whose scores (N, n) are below `likely`, and a note that tells them."""
-    if not 0.0 <= likely <= 1.0:
-        raise ValueError(f"likely must be from 0 to 1, got {likely:g}")
-    low = (scores < likely) & np.isfinite(points).all(axis=2)
-    if not np.any(low):
-        return points, []
-    what = f"have a likelihood below {likely:g} and count as missing"
-    return np.where(low[..., None], np.nan, points), [
-        f"{np.sum(low)} of {low.size} points {what}: {_names_of(names, low)}"
-    ]
 
 
 def _names_of(names: list[str], which: np.ndarray) -> str:

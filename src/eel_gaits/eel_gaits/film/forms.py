@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 from eel_base.files.archive import MOST_NUMBERS
-from eel_base.files.table import LARGEST, Table, split_name
+from eel_base.files.table import LARGEST, UNITS, Table, split_name
 from eel_base.files.tables import is_table, read_table
 from eel_base.files.times import is_time, time_of
 from eel_base.wording import shown
@@ -25,11 +25,12 @@ from eel_base.wording import shown
 from eel_gaits.film.hdf5 import Columns, read_hdf5
 from eel_gaits.sources.frames import check_rising, check_steps, frame_starts
 
-UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}  # metres in each; pixels have no length
+LENGTHS = {unit: metres for unit, (si, metres) in UNITS.items() if si == "m"}  # NaN for pixels, which have no length
 COORDINATE = re.compile(  # x, x0, head_x, x_head, each before a unit; mxmm of fishmechr
-    r"m?(?P<axis>[xy])_?(?P<number>[0-9]*)(?P<unit>mm|cm|px)?|(?P<name>.+)[._](?P<last>[xy])|(?P<first>[xy])[._](?P<part>.+)"
+    rf"m?(?P<axis>[xy])_?(?P<number>[0-9]*)(?P<unit>{'|'.join(LENGTHS)})?|"
+    r"(?P<name>.+)[._](?P<last>[xy])|(?P<first>[xy])[._](?P<part>.+)"
 )
-SCORE = re.compile(r"[._](?:likelihood|score|confidence)$|^(?:likelihood|score|confidence)[._]")
+SCORE = re.compile(r"(?:(?P<before>.+?)[._]?)?(?:likelihood|score|confidence)(?:[._]?(?P<after>.+))?")
 FRAMES = "frame", "frames", "image"  # names of a column that counts them
 TRACK = "track"  # SLEAP's column of names
 
@@ -103,32 +104,47 @@ def _of_columns(table: Table, column: str) -> Tracks:
         raise ValueError(f"its columns must have one unit of length, got {shown(sorted(units))}")
     if all(map(str.isdigit, marks)):
         marks.sort(key=int)
-    points = table.numbers([places[axis, mark] for mark in marks for axis in "xy"])
+    points = table.numbers([places[axis, mark] for mark in marks for axis in "xy"]).reshape(len(table), -1, 2)
+    values = np.concatenate((points, _scores(table, marks, used)[..., None]), axis=2)
     frames = [place for place, (name, _) in enumerate(names) if name in FRAMES]
     timed = column or not frames or any(map(is_time, table.head))
     times = time_of(table, column, besides=[*used, *frames]) if timed else None
     time = table.numbers(frames[:1], missing=False)[:, 0] if times is None else times
-    scores: dict[str, np.ndarray] = {}
     if marks == [""] and "point" in table:
-        time, points, marks = _by_point(table, time, points)
+        time, values, marks = _by_point(table, time, values[:, 0])
     elif marks == [""]:
         starts = frame_starts(table, time)
-        time, points = time[starts], points.reshape(len(starts), -1, 2)
-        marks = [str(place + 1) for place in range(points.shape[1])]
+        time, values = time[starts], values.reshape(len(starts), -1, 3)
+        marks = [str(place + 1) for place in range(values.shape[1])]
     else:
         check_rising(table, time, np.arange(len(time)))
-        points = points.reshape(len(time), -1, 2)
-        told = {SCORE.sub("", name): place for place, (name, _) in enumerate(names) if SCORE.search(name)}
-        told = {mark: place for mark, place in told.items() if mark in marks}
-        scores[""] = np.full(points.shape[:2], np.nan)
-        scores[""][:, [marks.index(mark) for mark in told]] = table.numbers(list(told.values()))
     if times is not None:
         check_steps(table, time, 2)
-    return Tracks(time, {"": points}, {"": marks}, units.pop(), times is None, scores, ", ".join(table.notes))
+    scores, read = {"": values[..., 2]}, ", ".join(table.notes)
+    return Tracks(time, {"": values[..., :2]}, {"": marks}, units.pop(), times is None, scores, read)
 
 
-def _by_point(table: Table, time: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[str]]:
-    """Instants (N,), points (N, n, 2), NaN where a row is left out, and their names in the order of the fullest frame.
+def _scores(table: Table, marks: list[str], used: list[int]) -> np.ndarray:
+    """Scores (rows, marks) in the columns that are not `used`; NaN for a mark without one. Others go into the notes."""
+    found, told, other = np.full((len(table), len(marks)), np.nan), dict[str, int](), list[str]()
+    for place, name in enumerate(table.head):
+        if place in used or not (m := SCORE.fullmatch(split_name(name)[0])):
+            continue
+        mark = m["before"] or m["after"] or ""
+        mark = "" if marks == [""] and mark == "point" else mark
+        if mark not in marks:
+            other.append(name)
+        elif (first := told.setdefault(mark, place)) != place:
+            raise ValueError(f"a score must stand in one column, got {shown([table.head[first], name])}")
+    found[:, [marks.index(mark) for mark in told]] = table.numbers(list(told.values()))
+    if other:
+        table.notes.append(f"no scores from {shown(other)}, which name no point")
+    return found
+
+
+def _by_point(table: Table, time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[str]]:
+    """Instants (N,), the `values` x, y, score (rows, 3) of points as (N, n, 3), NaN where a row is left out, and the
+    points' names in the order of the fullest frame.
 
     `ValueError` where the time of a point does not rise.
     """
@@ -148,8 +164,8 @@ def _by_point(table: Table, time: np.ndarray, points: np.ndarray) -> tuple[np.nd
     if 2 * len(instants) * len(order) > MOST_NUMBERS:
         raise ValueError(f"its {len(order)} points and {len(instants)} frames make more than {MOST_NUMBERS} numbers")
     place = {name: index for index, name in enumerate(order)}
-    found = np.full((len(instants), len(order), 2), np.nan)
-    found[frame, [place[name] for name in names]] = points
+    found = np.full((len(instants), len(order), 3), np.nan)
+    found[frame, [place[name] for name in names]] = values
     return instants, found, order
 
 
