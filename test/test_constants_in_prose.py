@@ -47,8 +47,7 @@ QUOTED = {
     "docs/explanation/accuracy.md": (
         ", ".join(f"`{name}` {power(target)}" for name, target in accuracy.PRESETS.items()),
         f"The tolerance of a step is a {accuracy.STEPS_ERRORS:g}th of the target",
-        f"gets a {accuracy.SAFE_STEPS_ERRORS:g}th. Of a robot it is a {accuracy.ROBOT_STEPS:g}th, "
-        f"or a {accuracy.SAFE_ROBOT_STEPS:g}th.",
+        f"gets a {accuracy.SAFE_STEPS_ERRORS:g}th. Of a robot it is a {accuracy.ROBOT_STEPS:g}th.",
         f"The body gets {accuracy.POINTS_PER_DECADE:g} points per length for each decade",
         f"begins with {accuracy.COARSE_POINTS[0]:g} for each decade, less {-accuracy.COARSE_POINTS[1]:g}.",
         f"all {accuracy.POINTS_PER_DECADE:g} stay",
@@ -58,8 +57,7 @@ QUOTED = {
         f"than {accuracy.FEW_POINTS:g}; and longest steps that are {accuracy.LONGER_STEPS:g} times as long.",
         f"above the target divided by {companion.ACCEPTED:g}, the run becomes the companion of a finer one, up to "
         f"{companion.MOST_REFINEMENTS} times",
-        f"companion has {accuracy.ROBOT_LOOSER:g} times the tolerance and "
-        f"{accuracy.ROBOT_SAFETY / (accuracy.ROBOT_LOOSER - 1.0):g} of the distance counts",
+        f"companion has {accuracy.ROBOT_LOOSER:g} times the tolerance.",
         f"Torque is compared at {LEAST_COMPARED} gaps or more",
         f"at a random instant in every {1e3 * STEP:g} ms",
         f"What lasts {2e3 * STEP:g} ms or longer",

@@ -37,7 +37,7 @@ STEPS_ERRORS, SAFE_STEPS_ERRORS = 400.0, 1000.0
 CONTROL_STEPS_ERRORS = 300.0
 # The same of a robot's steps, which are of order 3: errors were 0.2 to 6 times the tolerance (18 for a tail with little
 # damping), at any tolerance.
-ROBOT_STEPS, SAFE_ROBOT_STEPS = 15.0, 20.0
+ROBOT_STEPS = 20.0
 # Times as many behind series springs: they ring after each command, and the torque's error is 50 times the tolerance.
 RINGING = 4.0
 POINTS_PER_DECADE = 8.0  # per body length: one block of nodes, which processors take at once
@@ -69,11 +69,11 @@ LOOSER, FEWER_POINTS, LONGER_STEPS = 30.0, 0.5, 1.5
 FEW_POINTS, FEWER_OF_FEW = 22.0, 0.6
 FINE, LOOSER_THAN_FINE = 1e-6, 20.0
 # The errors of a robot's steps go with the tolerance itself, so that the distance to a companion of ten times the
-# tolerance is some nine times the error. Seven tenths of it are a safe estimate: with half of it, 4 of 3,500 robots
-# were above their target unseen, by a tenth. No less is one for a companion that is looser still: where motors and
-# stops reach their limits, it may be as exact as the run by chance. Steps that growth alone bounds, as the first ones,
-# make ten times the error too where they are longer by the cube root of ten.
-ROBOT_LOOSER, ROBOT_SAFETY, ROBOT_LONGER_STEPS = 10.0, 6.3, 2.15
+# tolerance is some nine times the error. All of it is the estimate, no less: where motors and stops reach their limits,
+# a companion may be as exact as the run by chance. By half of it, 4 of 3,500 robots were above their target unseen.
+# Steps that growth alone bounds, as the first ones, make ten times the error too where they are longer by the cube root
+# of ten.
+ROBOT_LOOSER, ROBOT_LONGER_STEPS = 10.0, 2.15
 LEAST_ROBOT_TIGHTER = 1.0 / 4.0
 ADAMS_ERROR = 3.0  # some times that of the embedded pair at the same tolerance
 # What a tightened run changes with the ratio r < 1 of the wanted error to the measured one: the tolerance with r^1.2,
@@ -206,16 +206,9 @@ class Accuracy:
         """
         if self.method in ("classical", ROBOTS):
             return self
-        steps = (ROBOT_STEPS if self.refinable else SAFE_ROBOT_STEPS) * (RINGING if rings else 1.0)
+        steps = ROBOT_STEPS * (RINGING if rings else 1.0)
         tolerance = self.tolerance if self.target is None else max(FINEST_TOLERANCE, self.target / steps)
         return variant(self, tolerance=tolerance, method=ROBOTS, order=3)
-
-    def share_of_distance(self, companion: "Accuracy") -> float:
-        """Part of the distance to a run with the settings of a `companion` that counts as the error."""
-        if self.method != ROBOTS or companion.tolerance <= self.tolerance:
-            return 1.0
-        looser = min(ROBOT_LOOSER, companion.tolerance / self.tolerance)
-        return min(1.0, ROBOT_SAFETY / (looser - 1.0))
 
     def as_it_is(self) -> "Accuracy":
         """The same settings without a target. No scene and no motion changes them."""

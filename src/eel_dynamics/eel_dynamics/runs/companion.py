@@ -34,7 +34,6 @@ from eel_dynamics.simulation.stopping import SimulationStopped
 ACCEPTED = 1.5  # factor of the target by which an estimate must lie below it
 MOST_REFINEMENTS = 4  # of a run whose error is above its target
 BLENDED_ORDER = 3.0  # at most, at which the error of the grid falls where friction changes its law along the body
-GRID_ORDER = 6.0  # at which the error of the few nodes between a robot's edges falls, at least
 RESAMPLING = 1.0 / 3.0  # 1 / (2^p - 1) of the order p = 2 of an interpolation
 # The companion has every third of the samples, where they are many. A period has 20 of them by default, so that three
 # periods show as many phases of it as before.
@@ -42,14 +41,13 @@ COMPARED_EVERY, MANY_SAMPLES = 3, 100
 HALVINGS = 8  # of an unstable step, at most, in the search for a stable one
 
 
-def relative_errors(run, reference, share: float = 1.0) -> ErrorEstimate:
+def relative_errors(run, reference) -> ErrorEstimate:
     """Distance of `run` from `reference`, a run of the same swimmer with the same stations, at the reference's samples.
 
     Of the head's position: the greatest over the later half of the samples, relative to the length of the path, or of
     the body if that is longer. Of the torque: the greatest over samples and stations, relative to its own maximum.
     The others as `ErrorEstimate` tells. Sizes count for no less than `Floors`. growth_rate: of the distance of the
-    heads. share: of the distances, which counts; but at the start that of the torques counts in full, as the steps have
-    no part in it yet.
+    heads.
     """
     time, here = reference.time, np.searchsorted(run.time, reference.time)
     distance = np.linalg.norm(run.position[here] - reference.position, axis=1)
@@ -67,11 +65,10 @@ def relative_errors(run, reference, share: float = 1.0) -> ErrorEstimate:
         differs = np.abs(own[:, here] - others)
         apart["joint_angle"] = differs[0].max()
         apart["joint_rate"] = differs[1].max() / max(np.abs(others[1]).max(), least.rate)
-    found: dict[str, Any] = {"torque": None} | {name: float(share * value) for name, value in apart.items()}
+    found: dict[str, Any] = {"torque": None} | {name: float(value) for name, value in apart.items()}
     if run.torque is not None and reference.torque is not None:
         torques = torque_size(run.torque[here] - reference.torque)
-        greatest = max(share * torques.max(), torques[0].max())
-        found["torque"] = float(greatest / max(torque_size(reference.torque).max(), least.torque))
+        found["torque"] = float(torques.max() / max(torque_size(reference.torque).max(), least.torque))
     return ErrorEstimate(growth_rate=growth_rate_of(time, distance, SMALL * scale), **found)
 
 
@@ -100,11 +97,8 @@ def with_error_estimate(swim: Any, request: Any) -> Any:
     for refinement in range(MOST_REFINEMENTS + 1):
         error = ErrorEstimate(np.inf, None)
         if companion is not None:
-            share = swim.run.accuracy.share_of_distance(companion.run.accuracy)
-            if refinement:  # of a robot, whose grid is not as much finer as its steps are
-                share = max(share, min(1.0, (companion.run.nodes / swim.run.nodes) ** GRID_ORDER))
-            error = relative_errors(swim.compared, companion.compared, share)
-            error = error.with_torque(share * error_at_stops(swim.compared, companion.compared))
+            error = relative_errors(swim.compared, companion.compared)
+            error = error.with_torque(error_at_stops(swim.compared, companion.compared))
         if refinement and companion is not None:  # it falls no faster than this: else the two agree by chance
             share = swim.run.accuracy.tolerance / companion.run.accuracy.tolerance
             if request.setup.scene.friction in ROUGH_FRICTION:

@@ -187,9 +187,7 @@ class ErrorMeter:
         if self._torque is not None:
             apart = self._torque_distance
             if len(self._stops_met):
-                share = march.setup.settings.share_of_distance(self._companion.setup.settings)
-                angles = share * self._joints_apart
-                apart = max(apart, torque_at_stops(march.setup.robot, self._stops_met, angles))
+                apart = max(apart, torque_at_stops(march.setup.robot, self._stops_met, self._joints_apart))
             found["torque"] = apart / max(self._torque, least.torque)
         if self._bends is not None:
             found["joint_angle"] = self._bends[0]

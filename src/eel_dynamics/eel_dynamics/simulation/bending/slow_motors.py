@@ -12,7 +12,7 @@ from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_model.robot.compiled import ModeTable
 
-LOOKS = 40  # instants at which the law is looked at
+LOOKS = 24  # instants at which the law is looked at
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)  # its multiples fall on all phases of any period alike
 FAR = 3.0  # times its speed limit, from which a motor is far too slow
 
