@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields
 from typing import Any, TypeVar
 
+from eel_base.files.input_file import number_of
 from eel_base.wording import did_you_mean, shown
 
 Made = TypeVar("Made")
@@ -45,7 +46,7 @@ def value_of(text: str) -> Any:
     if text.lower() in TRUTH:
         return TRUTH[text.lower()]
     try:
-        return float(text)
+        return number_of(text)
     except ValueError:
         return text
 

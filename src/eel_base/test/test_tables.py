@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from eel_base.files.table import split_name
+from eel_base.files.table import UNITS, split_name
 from eel_base.files.tables import is_table, read_table
 from eel_base.files.times import time_of
 
@@ -54,6 +54,15 @@ def test_names_of_columns_end_in_their_units():
     names = ["time_ms", "t [ms]", "time(ms)", "timeMs", "Zeit / ms", "header.stamp.ms", "time in ms"]
     assert {split_name(name)[1] for name in names} == {"ms"}
     assert split_name("yaw_1 [°]") == ("yaw_1", "°") and split_name("half_width_mm") == ("half_width", "mm")
+    for name in ("time [ms] (raw)", "time_milliseconds", "time_millisecond"):
+        assert UNITS[split_name(name)[1]] == ("s", 1e-3)
+    for word, si, by in (
+        ("metres", "m", 1.0),
+        ("degree", "rad", np.pi / 180.0),
+        ("minute", "s", 60.0),
+        ("h", "s", 3600.0),
+    ):
+        assert UNITS[split_name(f"x_{word}")[1]] == (si, by)
     assert split_name("position[3]") == ("position_3", "") and split_name("s") == ("s", "")
     assert is_table("A.CSV") and not is_table("a.npz") and is_table("a.NPZ", ".npz")
 
@@ -87,6 +96,35 @@ def test_seconds_and_their_parts_may_stand_in_two_columns(tmp_path):
         table = read(tmp_path, head + text.partition("\n")[2])
         assert np.allclose(time_of(table, besides=[2, 3]), TIME, atol=1e-6)
 
+    degrees = ",".join(f"{0.01 * row:.2f}" for row in range(40))
+    rows = "\n".join(f"{row},{angle},0" for row, angle in enumerate(degrees.split(",")))
+    assert np.array_equal(time_of(read(tmp_path, f"sec,deg,x\n{rows}\n")), np.arange(40.0))  # no part of a second
+
+
+@pytest.mark.parametrize(
+    ("head", "first", "column"),
+    [
+        ("lifetime,time,x,y", "{n}", "time"),
+        ("update_rate,min,ns,t,x", "{n},{n},{n}", "t"),
+        ("altimeter,validated,elapsed time,x", "{n},{n}", "elapsed time"),
+        ("start time,header.stamp,x", "5", "header.stamp"),
+        ("Date,Time,x", "2026-11-28", "Time"),
+        ("start time,when", "5", "when"),
+    ],
+)
+def test_the_column_of_times_is_found_by_whole_words_of_its_name(tmp_path, head, first, column):
+    stamp = "17:00:{t:06.3f}" if column == "Time" else "{t:.3f}"
+    rows = [f"{first.format(n=7 * n)},{stamp.format(t=t)}" for n, t in enumerate(TIME)]
+    table = read(tmp_path, "\n".join([head, *(f"{row}{',1' * (head.count(',') - row.count(','))}" for row in rows)]))
+    found = time_of(table)
+    assert np.allclose(found - found[0], TIME, atol=1e-6)
+    assert not table.notes or f"time from {column}," in table.notes[0]
+
+
+def test_rows_that_begin_with_a_hash_are_left_out(tmp_path):
+    table = read(tmp_path, "a,b\n1,2\n#3,4\n# note,5\n6,7\n")
+    assert table.column("b").tolist() == [2.0, 7.0]
+
 
 @pytest.mark.parametrize(
     ("text", "words"),
@@ -98,6 +136,9 @@ def test_seconds_and_their_parts_may_stand_in_two_columns(tmp_path):
         (text_of(comma=True), "line 1: 3 names stand above 6 numbers: decimal commas need another separator"),
         (text_of().replace("x_m", "x_px"), "x_px must be in m, or units of it, got px"),
         (text_of().replace("y_m", "x_m"), "there must be one column x, got 2 in"),
+        (text_of().replace("time_s", "time_ms (ticks)"), "must have a known unit in brackets, got 'ticks'"),
+        (text_of().replace(f"{VALUES[3, 0]:.6f}", "1_0"), "line 5: x_m must be a number, got '1_0'"),
+        (text_of().partition("\n")[2].replace(f"{VALUES[0, 0]:.6f}", "err", 1), "line 1: column 2 must be a number"),
         (text_of().replace("\n0.000", "\n#VALUE!", 1), "line 2: time_s must be a time, got '#VALUE!'"),
     ],
 )  # fmt: skip
@@ -105,7 +146,8 @@ def test_what_may_mean_two_things_is_refused(tmp_path, text, words):
     with pytest.raises(ValueError) as refused:
         table = read(tmp_path, text)
         time_of(table)
-        assert table.column("x", "m").size + table.column("y", "m").size
+        x, y = "23" if "2" in table else "xy"
+        assert table.column(x, "m").size + table.column(y, "m").size
     assert words in str(refused.value) and "a.csv" in str(refused.value) and "\n" not in str(refused.value)
 
 
@@ -126,6 +168,8 @@ def test_columns_are_chosen_by_number_name_or_pattern(tmp_path):
     table = read(tmp_path, "time,a_1,a_2,b,note\n0,1,2,3,good\n1,4,5,6,\n")
     assert table.chosen("2-3,b", "columns") == table.chosen("a_*,4", "columns") == [1, 2, 3]
     assert table.texts(4) == ["good", ""] and not table.has_numbers(4)
+    named = read(tmp_path, "time,1,2,3,note\n0,1,2,3,a\n1,4,5,6,b\n")
+    assert named.chosen("1-3", "columns") == named.chosen("1,2,3", "columns") == [1, 2, 3]
     for text in ("c", "2,a_1", "4-9", "0"):
         with pytest.raises(ValueError, match="columns must name columns among the 5 of the file, each once"):
             table.chosen(text, "columns")

@@ -37,7 +37,14 @@ def test_a_field_that_is_empty_or_comes_twice_is_named(text):
 
 @pytest.mark.parametrize(
     ("text", "value"),
-    [("3", 3.0), ("on", True), ("1,x", (1.0, "x")), ("0,1;2,3", ((0.0, 1.0), (2.0, 3.0))), ("by shape", "by shape")],
+    [
+        ("3", 3.0),
+        ("1_0", "1_0"),
+        ("on", True),
+        ("1,x", (1.0, "x")),
+        ("0,1;2,3", ((0.0, 1.0), (2.0, 3.0))),
+        ("by shape", "by shape"),
+    ],
 )
 def test_a_value_is_a_truth_a_number_rows_or_a_word(text, value):
     assert value_of(text) == value

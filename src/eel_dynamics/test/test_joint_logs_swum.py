@@ -77,6 +77,8 @@ def test_friction_and_added_mass_by_factors_act_as_they_say():
     ("change", "words"),
     [
         ({"--links": "0.1x7"}, "--links must be 8 lengths for 7 joints, got 7"),
+        ({"--links": "0.1x1000000000000000000"}, "--links must be 8 lengths for 7 joints, got 1000000000000000000"),
+        ({"--links": "0.1x9,0.1x-1"}, "--links must be lengths"),
         ({"--links": "a"}, "--links must be lengths"),
         ({"--section": "0.05"}, "--section must be half-height,half-width"),
         ({"--topic": "joints"}, "--topic belongs to a bag"),

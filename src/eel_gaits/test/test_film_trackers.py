@@ -51,8 +51,10 @@ def test_points_that_a_tracker_doubts_count_as_missing_in_all_forms(tmp_path, na
     assert np.array_equal(found.missing, scores < 0.6)
     trusted = read_film(tmp_path / name, **PIXELS, likely=0.05)
     assert not any("likelihood" in note for note in trusted.notes)
-    with pytest.raises(ValueError, match="likely must be from 0 to 1, got 3"):
+    with pytest.raises(ValueError, match="likely must be <= 1, got 3"):
         read_film(tmp_path / name, **PIXELS, likely=3.0)
+    with pytest.raises(ValueError, match="likely must be a number, got 'x'"):
+        read_film(tmp_path / name, **PIXELS, likely="x")
 
 
 @pytest.mark.parametrize("name", ["part{}_likelihood", "score.part{}", "part{}_confidence"])

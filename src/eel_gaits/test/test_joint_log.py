@@ -80,6 +80,7 @@ def test_bad_stamps_are_mended_and_told(tmp_path, what):
     kept = np.delete(np.arange(300), 150) if lost else np.arange(300)
     assert np.allclose(log.time, TIME[kept]) and np.allclose(log.angles, ANGLES[kept], atol=2e-6)
     assert len(log.notes) == 1 and words in log.notes[0]
+    assert ("clock" in what) == ("if these are two logs" in log.notes[0])  # which look the same
 
 
 @pytest.mark.parametrize(
@@ -159,6 +160,10 @@ def test_the_law_of_links_keeps_each_angle_where_its_joint_lies(tmp_path):
         (["time", *"abcde"], 1.0, {"columns": "4-9"}, "among the 6 of the file, each once, got '4-9'"),
         (["time", *"abcde"], 1.0, {"columns": "a"}, "2 joints in 16 rows or more, got 1 in 300"),
         (["time", *(f"q{j}" for j in range(5))], 1.0, {"unit": "turns"}, "rad or deg, got 'turns'"),
+        (["time", *(f"q{j}" for j in range(5))], 1.0, {"clock": 0}, "clock must be > 0, got 0"),
+        (["time", "q0 [deg]", *(f"q{j}" for j in range(1, 5))], 1.0, {"columns": "2-6"}, "or none.*: q1 has none"),
+        (["time", *(f"q{j}_deg" for j in range(5))], 600.0, {}, "at most 3.2 rad, got 4.18.*: is it in deg"),
+        (["time", *(f"q{j} [turns]" for j in range(5))], 1.0, {}, "q0 .turns. must have a known unit in brackets"),
     ],
 )
 def test_a_log_that_does_not_fit_is_refused_in_a_sentence(tmp_path, head, factor, options, words):

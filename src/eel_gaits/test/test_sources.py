@@ -254,7 +254,7 @@ def test_other_files_are_refused(tmp_path):
     (tmp_path / "motion.npz").write_text("no archive")
     for name, words in (
         ("motion.npz", "not a zip file"),
-        ("motion.bin", "a .csv or .npz"),
+        ("motion.bin", "must be in a table .*or an .npz file"),
         ("none.csv", "no such file"),
     ):
         with pytest.raises(ValueError, match=f"{name}.*{words}"):

@@ -51,6 +51,7 @@ def test_appendages_come_from_a_file_whose_name_may_hold_spaces(tmp_path):
         ("x,drag_1\n0.1,1\n", "column 'drag_1' (did you mean 'drag1'?) must be one of x, y, z"),
         ("y,drag1\n0.1,1\n", "it must have a column x"),
         ("x,drag1\n0.1,a\n", "line 2: drag1 must be a number, got 'a'"),
+        ("x,drag1\n0.1,nan\n", "line 2: appendage drag1 must be finite, got nan"),
         ("x,drag1\n0.1,-1\n", "line 2: appendage drag1 must be >= 0"),
         ("x,drag1\n0.1,1,2\n", "line 2: a row must have 2 fields, as the header has, got 3"),
         ("x,law\n0.1,speeds\n", "line 2: appendage law must be one of axis, speed"),

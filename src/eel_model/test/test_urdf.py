@@ -204,7 +204,10 @@ def test_what_is_not_kept_is_said(tmp_path):
         (chain().replace('<parent link="link_1"', '<parent link="link_0"'), "'link_0' has two that move"),
         (chain().replace('<parent link="link_1"', '<parent link="nobody"'), "must name a link, got 'nobody'"),
         (chain().replace('<child link="link_2"', '<child link="link_1"'), "child 'link_1' has two parents"),
-        (chain().replace('xyz="-0.1 0 0"', 'xyz="-0.1 x 0"', 1), "xyz must be a finite number, got 'x'"),
+        (
+            chain().replace('xyz="-0.1 0 0"', 'xyz="-0.1 x 0"', 1),
+            "xyz must be a number of at most 1e+06 in size, got 'x'",
+        ),
         (chain().replace('xyz="-0.1 0 0"', 'xyz="-0.1 0"', 1), "xyz must be three numbers, got '-0.1 0'"),
         (chain().replace('xyz="-0.1 0 0"', 'xyz="-0.1 0.05 0"', 2), "must lie on the line of the joints, got"),
         (
@@ -214,7 +217,14 @@ def test_what_is_not_kept_is_said(tmp_path):
         (chain().replace('axis xyz="0 0 1"', 'axis xyz="0 0 0"'), "axis of 'j1': must have a direction"),
         (chain().replace('upper="0.6"', 'upper="-0.9"'), "limit: lower must be < upper, got -0.8 and -0.9"),
         (chain().replace('effort="3.0"', 'effort="-1"'), "limit: effort must be >= 0, got -1"),
-        (chain().replace('effort="3.0"', 'effort="inf"'), "effort must be a finite number, got 'inf'"),
+        (
+            chain().replace('effort="3.0"', 'effort="inf"'),
+            "effort must be a number of at most 1e+06 in size, got 'inf'",
+        ),
+        (
+            chain().replace('effort="3.0"', 'effort="1e300"'),
+            "effort must be a number of at most 1e+06 in size, got '1e300'",
+        ),
         (
             chain().replace('size="0.1 0.04 0.06"', 'size="0.1 0 0.06"'),
             "box: must have a size > 0 m, got [0.1, 0.0, 0.06]",

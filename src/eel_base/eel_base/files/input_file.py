@@ -85,10 +85,17 @@ def from_json(text: str | bytes, **options: Any) -> Any:
     return json.loads(text, **options)
 
 
+def number_of(text: str) -> float:
+    """The number in a `text`. `ValueError` where there is none: 1_0 is none, though Python takes it."""
+    if "_" in text:
+        raise ValueError(f"it must be a number, got {text!r}")
+    return float(text)
+
+
 def is_number(text: str) -> bool:
-    """Whether Python reads a number in the `text`."""
+    """Whether a `text` is a number."""
     try:
-        float(text)
+        number_of(text)
     except ValueError:
         return False
     return True

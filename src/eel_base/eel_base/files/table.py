@@ -18,25 +18,37 @@ from eel_base.wording import did_you_mean, shown
 LARGEST = 1e100  # of a number: squares and products of a few are finite
 MISSING = ("", "na", "n/a", "#n/a", "null", "none", "-")  # cells without a value
 LISTED = {
-    "s": {1.0: "s sec secs second seconds", 1e-3: "ms msec msecs millis millisec milliseconds",
-          1e-6: "us usec usecs micros microsec microseconds", 1e-9: "ns nsec nsecs nanos nanosec nanoseconds",
-          60.0: "min minutes"},
-    "m": {1.0: "m", 1e-2: "cm", 1e-3: "mm", 1e-6: "um", 1e3: "km", 0.0254: "inch", math.nan: "px pixel pixels"},
-    "rad": {1.0: "rad rads radians", 1e-3: "mrad", math.pi / 180.0: "deg degs degrees °"},
+    "s": {1.0: "s sec secs second seconds", 1e-3: "ms msec msecs millis millisec millisecond milliseconds",
+          1e-6: "us usec usecs micros microsec microsecond microseconds",
+          1e-9: "ns nsec nsecs nanos nanosec nanosecond nanoseconds",
+          60.0: "min mins minute minutes", 3600.0: "h hr hrs hour hours"},
+    "m": {1.0: "m meter meters metre metres",  # codespell:ignore meters
+          1e-2: "cm centimeter centimeters centimetre centimetres",
+          1e-3: "mm millimeter millimeters millimetre millimetres",
+          1e-6: "um micrometer micrometers micrometre micrometres micron microns",
+          1e3: "km kilometer kilometers kilometre kilometres", 0.0254: "inch inches", math.nan: "px pixel pixels"},
+    "rad": {1.0: "rad rads radian radians", 1e-3: "mrad mrads milliradian milliradians",
+            math.pi / 180.0: "deg degs degree degrees °"},
     "m/s": {1.0: "m/s", 1e-2: "cm/s", 1e-3: "mm/s"},
     "rad/m": {1.0: "rad/m 1/m", 1e3: "rad/mm 1/mm"},
     "kg/m": {1.0: "kg/m", 1e-3: "g/m"},
 }  # fmt: skip
 UNITS = {word: (si, by) for si, words in LISTED.items() for by, each in words.items() for word in each.split()}
 NAME = re.compile(rf"(.*?)(?:^|[_./])({'|'.join(map(re.escape, sorted(UNITS, key=len, reverse=True)))})")
+BRACKETS = re.compile(r"[\[(]\s*([^\[\]()]*?)\s*[\])]")
+INDEX = re.compile(r"\w*\d")  # in brackets: no unit, but a number or the name of a joint
 
 
 def split_name(name: str) -> tuple[str, str]:
     """A column's name in small letters, without its unit; and that unit, or ""."""
-    name = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name.strip().lstrip("%")).replace("μ", "u").replace("µ", "u")
+    name = name.strip().lstrip("%").replace("μ", "u").replace("µ", "u")
+    known = next((each for each in BRACKETS.finditer(name) if each[1].lower() in UNITS), None)
+    name = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", f"{name[: known.start()]} {name[known.end() :]}" if known else name)
     plain = re.sub(r"\s*/\s+|\s+/\s*|[\s\[\](){}_]+", "_", name).strip("_").lower()
+    if known:
+        return plain.rstrip("_./"), known[1].lower()
     found = NAME.fullmatch(plain)
-    return (found[1].rstrip("_./"), found[2]) if found and plain != "s" else (plain, "")
+    return (found[1].rstrip("_./"), found[2]) if found and plain not in ("s", "h") else (plain, "")
 
 
 class Table:
@@ -103,7 +115,11 @@ class Table:
         for part in map(str.strip, text.split(",")):
             span = re.fullmatch(r"(\d+)(?:-(\d+))?", part)
             named = self.places(part) or [at for at, name in enumerate(self.head) if fnmatchcase(name, part)]
-            if span and not named:
+            if span and span[2] and self.places(span[1]) and self.places(span[2]):  # numbers that are names
+                ends = int(span[1]), int(span[2])
+                numbers = [(int(name), at) for at, name in enumerate(self.head) if name.isdecimal()]
+                named = [at for number, at in sorted(numbers) if ends[0] <= number <= ends[1]]
+            elif span and not named:
                 named = list(range(int(span[1]) - 1, min(int(span[2] or span[1]), len(self.head) + 1)))
             if not named or min(named) < 0 or max(named) >= len(self.head) or set(named) & set(found):
                 hint = did_you_mean(part, self.head)
@@ -117,8 +133,12 @@ class Table:
         return f"column {self.head[place]}" if self.head[place].isdigit() else self.head[place] or f"column {place + 1}"
 
     def unit(self, place: int) -> str:
-        """The unit in the name of a column, or ""."""
-        return split_name(self.head[place])[1]
+        """The unit in the name of a column, or "". `ValueError` where there are others in brackets."""
+        unit, name = split_name(self.head[place])[1], self.head[place]
+        others = [each for each in BRACKETS.findall(name) if each and not INDEX.fullmatch(each)]
+        if others and (not unit or not any(unit in split_name(f"[{each}]") for each in others)):
+            raise self.error(f"{self.label(place)} must have a known unit in brackets, got {shown(others[-1])}")
+        return unit
 
     def numbers(
         self, columns: Sequence[int], unit: str = "", *, missing: bool = True, largest: float = LARGEST
@@ -166,8 +186,7 @@ class Table:
 
     def factor(self, place: int, unit: str) -> float:
         """What a column's numbers must be multiplied by to be in this SI `unit`; 1 where its name has none."""
-        given = self.unit(place)
-        if not unit or not given:
+        if not unit or not (given := self.unit(place)):
             return 1.0
         dimension, factor = UNITS[given]
         if dimension != unit or math.isnan(factor):

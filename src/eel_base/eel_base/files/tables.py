@@ -3,7 +3,8 @@
 
 What separates the cells (commas, semicolons, tabs, bars or blanks), whether numbers have decimal commas, the encoding
 and the header are told from the first lines. A header is the last row of names above the numbers; a row of units may
-stand below it, other lines above. Lines that begin with # are no rows. Numbers that may mean two things are refused.
+stand below it, other lines above. Rows that begin with # count not, but for a spreadsheet's errors: #REF!. Numbers that
+may mean two things are refused.
 """
 
 import array
@@ -20,7 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from eel_base.files.archive import MOST_NUMBERS, read_archive
-from eel_base.files.input_file import InputFile, Misplaced, is_number, reading
+from eel_base.files.input_file import InputFile, Misplaced, is_number, number_of, reading
 from eel_base.files.table import MISSING, UNITS, Table
 from eel_base.wording import shown
 
@@ -31,6 +32,7 @@ DELIMITERS = {";": "semicolons", "\t": "tabs", ",": "commas", "|": "bars", " ": 
 TRACKER = "scorer", "individuals", "bodyparts", "coords"  # rows of DeepLabCut's header, whose names may be numbers
 WITH_COMMA, WITH_POINT = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?"), re.compile(r"[+-]?\d*\.\d+(?:[eE][+-]?\d+)?")
 THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
+SPREADSHEETS = re.compile(r"#(?:n/a|[a-z]+[/0-9]*[!?])", re.IGNORECASE)  # errors in the cells of their tables
 SWAPPED = str.maketrans(",.", ".,")
 Row = tuple[list[str], int, int]  # cells up to the last that is not empty; its line; how many cells there are
 
@@ -87,7 +89,7 @@ def _read(path: Path, file: InputFile, what: str, lenient: bool) -> Table:
         plain = array.array("i", bytes(4 * width))
         for cells, line, size in _split(itertools.chain(first, rest), delimiter):
             fits = len(cells) <= width <= size
-            if line < start or (not fits and cells[0].startswith("#")):
+            if line < start or (cells[0].startswith("#") and not SPREADSHEETS.fullmatch(cells[0])):
                 continue
             if len(values) + width > MOST_NUMBERS:
                 raise Misplaced(f"line {line}", f"a table must hold at most {MOST_NUMBERS} numbers")
@@ -101,7 +103,7 @@ def _read(path: Path, file: InputFile, what: str, lenient: bool) -> Table:
             made = [cell.translate(SWAPPED) for cell in cells] if comma else cells
             lines.append(line)
             try:
-                values.extend(list(map(float, made)))
+                values.extend(list(map(float if "_" not in "".join(made) else number_of, made)))
                 marks.extend(plain)
             except ValueError:
                 for cell, number in zip(cells, made, strict=True):
@@ -197,6 +199,13 @@ def _is_number(cell: str) -> bool:
     return is_number(cell) or WITH_COMMA.fullmatch(cell) is not None
 
 
+def _counted(cells: Iterable[str]) -> bool:
+    """Whether the numbers among the cells are names that count, such as 1, 2, 3."""
+    numbers = [cell for cell in cells if _is_number(cell)]
+    whole = len(numbers) > 1 and all(len(cell) < 6 and cell.isdecimal() for cell in numbers)
+    return whole and len(set(numbers)) == len(numbers) == int(max(numbers, key=int)) - int(min(numbers, key=int)) + 1
+
+
 def _usual(sizes: Iterable[int]) -> int:
     """The most frequent of the sizes, the first of several; 0 without any."""
     return max(Counter(sizes).items(), key=lambda each: each[1], default=(0, 0))[0]
@@ -205,7 +214,8 @@ def _usual(sizes: Iterable[int]) -> int:
 def _head(first: list[Row]) -> tuple[list[str], list[list[str]], int, list[str]]:
     """The names of the columns, all rows of the header, the line after it, and what was guessed.
 
-    A row of the header has names where the columns have numbers; of its first row, one will do.
+    A row of the header has names where the columns have numbers; the first may have a few
+    numbers too, or such as count.
     """
     if not first:
         raise ValueError("it is empty")
@@ -219,7 +229,8 @@ def _head(first: list[Row]) -> tuple[list[str], list[list[str]], int, list[str]]
         there = [cell for place, cell in enumerate(cells) if place in numeric or not numeric]
         there = [cell for cell in there if cell.lower() not in MISSING]
         names = sum(not _is_number(cell) for cell in there)
-        loose = numeric and (not rows or cells[0].lower() in TRACKER)
+        mostly = not rows and (2 * names > len(there) or _counted(there))
+        loose = numeric and (mostly or cells[0].lower() in TRACKER)
         if size != usual and len(cells) != len(columns):
             skipped += [] if rows else [row]
         elif names and (names == len(there) or loose):

@@ -15,7 +15,13 @@ import numpy as np
 from eel_base.files.table import UNITS, Table, split_name
 from eel_base.wording import shown
 
-CALLED = re.compile(r".*(?:time|date|stamp|clock|elapsed|zeit|temps|tiempo)(?!s).*|(?:.*[_./])?(?:t|ts)")
+WORD = (  # of a name of a time, between separators
+    r"(?:date|wall|sys|ros|sim|run)?time(?:stamp|code)?|date|stamp|clock|elapsed"
+    r"|(?:mess|uhr)?zeit(?:stempel|punkt)?|temps|tiempo"
+)
+CALLED = re.compile(rf"(?:.*[^a-z])?(?:{WORD})(?:[^a-z].*)?|(?:.*[_./])?(?:t|ts)")
+PLAINLY = "time", "t", "stamp", "timestamp"  # names that count before others
+NOT_ALONE = "min", "ns", "h"  # units of time that mean other things without a name
 EPOCH = 9.5e8, 4.1e9  # s since 1970: the years 2000 to 2099
 PARTS = {1.0: "s", 1e-3: "ms", 1e-6: "us", 1e-9: "ns"}  # units of times since 1970
 DAY = 86400.0  # s
@@ -26,8 +32,9 @@ def time_of(table: Table, column: str = "", besides: Sequence[int] = (), *, miss
     """The times (rows,) [s] of a `table`, from the first on where they are dates. What is not plain from the column's
     name goes into the table's notes.
 
-    column: its name or number; "": the first that is called so, or the only one that rises and is none of those
-    `besides`. missing: NaN for a cell that is no time, in place of a `ValueError`.
+    column: its name or number; "": the one that is called time, or the first that is called so and is not always the
+    same, or the only one that rises and is none of those `besides`. missing: NaN for a cell that is no time, in place
+    of a `ValueError`.
     """
     place = _place_of_time(table, column, besides)
     values, factor, told = _stamps(table, place) if not table.has_numbers(place) else _numbers(table, place)
@@ -51,9 +58,12 @@ def _place_of_time(table: Table, column: str, besides: Sequence[int]) -> int:
         return found[0]
     places = [place for place in range(len(table.head)) if place not in besides]
     called = [place for place in places if is_time(table.head[place])]
-    if called := called or [place for place in places if _is_dated(table, place)]:
-        return max(called, key=lambda place: bool(table.filled(place).any()))  # the first that is not empty
+    varied = [place for place in called if _varies(table, place)]
+    if varied := varied or [place for place in places if _is_dated(table, place)]:
+        return max(varied, key=lambda place: split_name(table.head[place])[0] in PLAINLY)  # the first of several
     rising = [place for place in places if _rises(table.raw(place))]
+    if len(rising) != 1 and called:
+        return called[0]
     if len(rising) != 1:
         raise table.error(f"its time is not plain from {shown(table.head)}: say which column it is (--time)")
     return rising[0]
@@ -62,7 +72,15 @@ def _place_of_time(table: Table, column: str, besides: Sequence[int]) -> int:
 def is_time(name: str) -> bool:
     """Whether a column's name is one of a time."""
     base, unit = split_name(name)
-    return CALLED.fullmatch(base) is not None or (not base and unit != "" and UNITS[unit][0] == "s")
+    return CALLED.fullmatch(base) is not None or (not base and unit not in ("", *NOT_ALONE) and UNITS[unit][0] == "s")
+
+
+def _varies(table: Table, place: int) -> bool:
+    """Whether a column has more than one value."""
+    if not table.has_numbers(place):
+        return len(set(table.texts(place))) > 1
+    values = table.raw(place)
+    return bool(np.nanmin(values) < np.nanmax(values))
 
 
 def _is_dated(table: Table, place: int) -> bool:
@@ -88,7 +106,7 @@ def _rises(values: np.ndarray) -> bool:
 
 def _numbers(table: Table, place: int) -> tuple[np.ndarray, float, str]:
     """The times of a column of numbers, their unit [s], and what they are."""
-    values, (_, unit) = table.raw(place), split_name(table.head[place])
+    values, unit = table.raw(place), table.unit(place)
     size = float(np.nanmedian(np.abs(values)))
     dimension, factor = UNITS.get(unit, ("s", _of_epoch(values) or 1.0))
     if dimension != "s" or size * factor > EPOCH[1]:
@@ -125,10 +143,11 @@ def _part_of(table: Table, place: int, values: np.ndarray) -> tuple[int, np.ndar
     base, _ = split_name(table.head[place])
     for other, each in enumerate(table.head):
         name, unit = split_name(each)
-        by = UNITS.get(unit, ("", 1.0))[1]
+        dimension, by = UNITS.get(unit, ("s", 1.0))
         if other == place + 1 and each.isdigit() and np.nanmedian(values) > EPOCH[0]:
             name, by = base, 1e-9  # without a header, as ROS 2 prints messages
         part = by * table.raw(other)
-        if other != place and name == base and by < 1.0 and np.all((part >= 0.0) & (part < 1.0) | np.isnan(part)):
+        fits = other != place and name == base and dimension == "s" and by < 1.0
+        if fits and np.all((part >= 0.0) & (part < 1.0) | np.isnan(part)):
             return other, part
     return None

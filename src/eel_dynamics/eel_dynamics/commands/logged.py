@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from eel_base.command.command_line import Parser
+from eel_base.files.input_file import number_of
 from eel_base.files.table import Table
 from eel_base.quantity import positive
 from eel_base.wording import shown
@@ -25,7 +26,7 @@ FITTING = 1e-6  # part of the length by which the links' sum may miss the body's
 
 def add_joint_options(parser: Parser) -> None:
     """Add the options that say how a log of joints is read, and what the robot is."""
-    parser.add_argument("--columns", default="", metavar="WHICH", help='joints of a .csv: "8-13", names, "*Fbck*"')
+    parser.add_argument("--columns", default="", metavar="WHICH", help='joints of a table: "8-13", names, "*Fbck*"')
     parser.add_argument("--topic", metavar="TOPIC", help="of a bag with several of sensor_msgs/JointState")
     parser.add_argument("--tail-first", action="store_true", help="the first joint is that at the tail")
     parser.add_argument("--links", metavar="LENGTHS", help="m, from nose to tail: 0.18x9, or 0.2,0.1x5,0.2")
@@ -61,7 +62,7 @@ class LoggedRobot:
 
 
 def logged_robot(path: str, options: argparse.Namespace) -> LoggedRobot:
-    """The robot of the log at `path`, a .csv or a bag, as the `options` say. `ValueError` for what does not fit."""
+    """The robot of the log at `path`, a table or a bag, as the `options` say. `ValueError` for what does not fit."""
     log = _log(Path(path), options)
     links = _links(options.links, log.angles.shape[1])
     body = _body(options, float(links.sum()), len(links))
@@ -81,7 +82,7 @@ def _log(path: Path, options: argparse.Namespace) -> JointLog:
     columns, time = options.columns, options.time
     if path.is_dir() or path.suffix in BAGS:
         if columns or time:
-            raise ValueError("--columns and --time belong to a .csv file; joints of a bag have names")
+            raise ValueError("--columns and --time belong to a table; joints of a bag have names")
         seconds, angles, names = function_of_eel_viz("joints")(path, options.topic)
         head = ["time [s]", *(f"{name} [rad]" for name in names)]
         source, columns = Table(path, head, np.column_stack((seconds, angles))), f"2-{len(head)}"
@@ -99,18 +100,16 @@ def _log(path: Path, options: argparse.Namespace) -> JointLog:
 
 def _links(text: str | None, joints: int) -> np.ndarray:
     """Lengths [m] of the links, from nose to tail: one more than joints."""
-    found: list[float] = []
-    for part in (text or "").split(","):
-        length, _, count = part.partition("x")
-        try:
-            found += [float(length)] * int(count or 1)
-        except ValueError:
-            raise ValueError(
-                f"--links must be lengths such as 0.18x9 or 0.2,0.1x5,0.2 [m], got {shown(text)}"
-            ) from None
-    if len(found) != joints + 1:
-        raise ValueError(f"--links must be {joints + 1} lengths for {joints} joints, got {len(found)}")
-    return np.array([positive("link", each, "m") for each in found])
+    parts = [part.partition("x") for part in (text or "").split(",")]
+    try:
+        found = [(number_of(length), int(count or 1)) for length, _, count in parts]
+    except ValueError:
+        found = []
+    if min((count for _, count in found), default=0) < 1:
+        raise ValueError(f"--links must be lengths such as 0.18x9 or 0.2,0.1x5,0.2 [m], got {shown(text)}")
+    if (total := sum(count for _, count in found)) != joints + 1:
+        raise ValueError(f"--links must be {joints + 1} lengths for {joints} joints, got {shown(total)}")
+    return np.array([positive("link", length, "m") for length, count in found for _ in range(count)])
 
 
 def _body(options: argparse.Namespace, length: float, links: int) -> Body:

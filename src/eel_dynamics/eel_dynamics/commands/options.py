@@ -193,7 +193,7 @@ OPTIONS = {  # what argparse takes
     },
     "--body": {
         "default": "boyer2010",
-        "help": f"{', '.join(NAMED)}, a .csv or .npz file of half-axes, or links with their numbers, as 'links "
+        "help": f"{', '.join(NAMED)}, a table or .npz file of half-axes, or links with their numbers, as 'links "
         "length=1 number=8 half_width=0.03 half_height=0.04 joints=flush'; what differs follows, as 'fish.csv "
         "base_drag=0.2'",
     },

@@ -61,7 +61,7 @@ def _add_options(parser: Parser) -> None:
     parser.add_argument(
         "--file",
         metavar="FILE",
-        help="a measured motion in place of a gait: .csv or .npz with columns time and x, y (midlines), yaw_1, "
+        help="a measured motion in place of a gait: a table or .npz with columns time and x, y (midlines), yaw_1, "
         "yaw_2 ... (joint angles), or arc_length, yaw (curvature); yaw > 0 bends the tail to the right, and x, y are "
         "seen from above: docs/howto/motions.md",
     )

@@ -54,8 +54,8 @@ class DynamicsParameters(Quantities):
     body: str = quantity(
         "boyer2010",
         "",
-        "name of a body, a .csv or .npz file with columns x, half_width, half_height [m], or links with their numbers; "
-        "what differs follows as NAME=VALUE",
+        "name of a body, a table or .npz file with columns x, half_width, half_height [m], or links with their "
+        "numbers; what differs follows as NAME=VALUE",
         **LATER,
     )
     flow: str = quantity(

@@ -41,7 +41,7 @@ def law_from(motion: Motion, duration: float, length: float) -> Law | SampledLaw
 
 
 def _no_motion(motion: object, hint: str) -> ValueError:
-    kinds = "a Law, a SampledLaw, a function K(t, X) or a .csv or .npz file"
+    kinds = "a Law, a SampledLaw, a function K(t, X) or a table (.csv, .txt ...) or .npz file"
     return ValueError(f"law must be {kinds}, got {shown(motion)}{hint}")
 
 

@@ -85,9 +85,7 @@ def read_film(
             raise ValueError("it counts frames: give the rate of the film, frames per second")
         if not tracks.frames and rate is not None:
             raise ValueError("it has times: a rate of the film has no place")
-        least = LIKELY if likely is None else likely
-        if not 0.0 <= least <= 1.0:
-            raise ValueError(f"likely must be from 0 to 1, got {least:g}")
+        least = LIKELY if likely is None else number("likely", likely, minimum=0.0, maximum=1.0)
         if likely is not None and not any(np.isfinite(each).any() for each in tracks.scores.values()):
             raise ValueError(f"it has no likelihoods or scores of its points: likely has no place, got {likely:g}")
         seen, low, names, notes = of_one(tracks, animal, least)

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from eel_base.files.archive import MOST_NUMBERS
 from eel_base.files.table import LARGEST, UNITS, Table, split_name
-from eel_base.files.tables import is_table, read_table
+from eel_base.files.tables import SUFFIXES, is_table, read_table
 from eel_base.files.times import is_time, time_of
 from eel_base.wording import shown
 
@@ -55,7 +55,7 @@ def read_tracks(path: Path, time: str = "") -> Tracks:
     if path.suffix.lower() == ".h5":
         return _counted(time, _of_hdf(path))
     if not is_table(path):
-        raise ValueError("tracked points must be in a .csv or .h5 file")
+        raise ValueError(f"tracked points must be in a table ({', '.join(SUFFIXES)}) or an .h5 file")
     table = read_table(path)
     rows = {row[0].lower(): list(row[1:]) for row in table.heads}
     if "scorer" in rows:
@@ -99,7 +99,7 @@ def _of_columns(table: Table, column: str) -> Tracks:
             f"a coordinate must stand in one column, got {shown(both)}: two animals? Give the columns of one"
         )
     used = [places[axis, mark] for mark in marks for axis in "xy"]
-    units = {names[place][1] or found[place]["unit"] or "" for place in used}
+    units = {table.unit(place) or found[place]["unit"] or "" for place in used}
     if len(units) > 1:
         raise ValueError(f"its columns must have one unit of length, got {shown(sorted(units))}")
     if all(map(str.isdigit, marks)):

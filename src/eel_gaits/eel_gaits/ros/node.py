@@ -36,7 +36,9 @@ ABOUT = """\
 Publishes the curvature law of a gait, and a new one whenever a parameter is set. The numbers of the
 gait are parameters too: `eel simulate --help GAIT` lists them."""
 KNOWN = ", ".join(sorted((*GAITS, *FILE_GAITS)))
-FILE = "file of the gait 'file' (.csv, .npz: a measured motion; .yaml: a sequence) or 'sequence'; read when it is set"
+FILE = (
+    "file of the gait 'file' (a table, .npz: a measured motion; .yaml: a sequence) or 'sequence'; read when it is set"
+)
 ROWS = [
     ("gait", f"name of the gait, one of {KNOWN}", Settings.gait),
     ("file", FILE, Settings.file),

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Joint angles as robots log them, and the law of a chain of links whose joints lie where they lie.
 
-A log is a .csv file with or without a header, perhaps with lines before it, in degrees or radians. Rows that do not fit
+A log is a table with or without a header, perhaps with lines before it, in degrees or radians. Rows that do not fit
 and readings that jump are left out, and told. The links are rigid, so all bending is at the joints. Joint j at X_j is
 spread over a width w_j to either side, the mean distance to its neighbours, or less near an end:
 
@@ -20,7 +20,7 @@ from eel_base.files.input_file import reading
 from eel_base.files.table import UNITS, Table
 from eel_base.files.tables import read_table
 from eel_base.files.times import time_of
-from eel_base.quantity import checked_row
+from eel_base.quantity import checked_row, positive
 from eel_base.wording import shown
 
 from eel_gaits.sources.period import long_gap
@@ -76,14 +76,19 @@ def read_joint_log(
     path = source.path if isinstance(source, Table) else source
     with reading(shown(str(path))):
         table = source if isinstance(source, Table) else read_table(source, lenient=True)
+        clock = positive("clock", clock)
         chosen = table.chosen(columns, "columns") if columns else _joint_columns(table)
         times = time_of(table, time, besides=chosen, missing=True)
         joints, units = tuple(table.head[place] for place in chosen), {table.unit(place) for place in chosen} - {""}
         factors = [table.factor(place, "rad") for place in chosen]
         if unit not in ("", "rad", "deg"):
             raise ValueError(f"units of angles must be rad or deg, got {shown(unit)}")
-        if unit and units and any(by != UNITS[unit][1] for by in factors):
+        bare = [place for place in chosen if not table.unit(place)]
+        if unit and any(UNITS[each][1] != UNITS[unit][1] for each in units):
             raise ValueError(f"its columns are in {', '.join(sorted(units))}, the units given are {unit}")
+        if units and bare and not unit:
+            rule = "all columns of joints must have a unit in their names, or none, or --units be given"
+            raise ValueError(f"{rule}: {table.label(bare[0])} has none")
         angles = np.stack([table.raw(place) for place in chosen], axis=1) * (UNITS[unit][1] if unit else factors)
         told = unit or ", ".join(sorted(units)) or "rad"
         read = [*table.notes, f"joints {joints[0]} to {joints[-1]}, {told}"]
@@ -100,16 +105,23 @@ def read_joint_log(
         if len(seconds) < FEWEST_ROWS or len(joints) < FEWEST_JOINTS:
             rule = f"{FEWEST_JOINTS} joints in {FEWEST_ROWS} rows or more"
             raise ValueError(f"there must be {rule}, got {len(joints)} in {len(seconds)}")
-        if (most := np.max(np.abs(angles))) > LARGEST and told == "rad":
-            raise ValueError(f"an angle must be at most {LARGEST} rad, got {most:.4g}: give --units deg")
+        if told == "rad":
+            _check_size(angles, ": give --units deg")
         seconds = clock * (seconds - seconds[0])
         _check_pace(seconds, angles)
         angles, jumps = _without_jumps(seconds, angles)
+        _check_size(angles, f": is it in {told}?")
     if jumps:
         notes.append(f"{jumps} of {angles.size} readings have jumped: replaced by their neighbours")
     if tail_first:
         angles, joints = angles[:, ::-1], joints[::-1]
     return JointLog(path.name, seconds, angles, joints, tuple(notes), ", ".join(read))
+
+
+def _check_size(angles: np.ndarray, hint: str) -> None:
+    """`ValueError` where one of the `angles` (N, n) [rad] is none of a joint."""
+    if (most := np.max(np.abs(angles))) > LARGEST:
+        raise ValueError(f"an angle must be at most {LARGEST} rad, got {most:.4g}{hint}")
 
 
 def _check_pace(time: np.ndarray, angles: np.ndarray) -> None:
@@ -216,7 +228,7 @@ def _mended(
         told = f"the clock is set back by {time[place] - time[place + 1]:.4g} s in {table.word} {lines[place + 1]}"
         if moves[place] > SEAM * np.percentile(moves, 99.0) + FINEST or len(back) > MOST_SETS:
             raise ValueError(f"{told}: two logs in one file?")
-        notes.append(f"{told}: time goes on by a step there")
+        notes.append(f"{told}: time goes on by a step there; if these are two logs, cut the file there")
     steps = np.diff(time, prepend=time[:1])
     steps[back + 1] = step
     return (time[0] + np.cumsum(steps) if len(back) else time), angles, notes

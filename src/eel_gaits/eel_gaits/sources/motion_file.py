@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Motions in files: measured midlines, curvature or joint angles in a .csv or .npz file, or rows of a law in an .npz.
+"""Motions in files: measured midlines, curvature or joint angles in a table of text or an .npz file, or rows of a law
+in an .npz.
 
 The columns tell what a file holds; all have `time` [s]:
 
@@ -27,7 +28,7 @@ from eel_base.files.archive import read_archive
 from eel_base.files.input_file import reading
 from eel_base.files.output_file import replacing
 from eel_base.files.table import Table, split_name
-from eel_base.files.tables import is_table, read_table
+from eel_base.files.tables import SUFFIXES, is_table, read_table
 from eel_base.files.times import time_of
 from eel_base.quantity import checked_path, positive
 from eel_base.wording import shown
@@ -53,7 +54,7 @@ def read_motion(
     name: str | None = None,
     time: str = "",
 ) -> SampledLaw:
-    """The law of the motion in a .csv or .npz file, for a body of `length` [m].
+    """The law of the motion in a table of text or an .npz file, for a body of `length` [m].
 
     scale: metres in the file's unit of length. smooth: smooth measured data by generalised cross-validation; else the
     splines go through them. name: of the law; by default that of the file. time: the column of times, if its name does
@@ -68,7 +69,7 @@ def read_motion(
 
 def _motion(path: Path, length: float, scale: float, smooth: bool, name: str, time: str) -> SampledLaw:
     if not is_table(path, ARCHIVE):
-        raise ValueError("a motion must be in a .csv or .npz file")
+        raise ValueError(f"a motion must be in a table ({', '.join(SUFFIXES)}) or an .npz file")
     if path.suffix.lower() == ARCHIVE and (law := _rows(path, length, name)) is not None:
         return law
     table = read_table(path)
@@ -81,7 +82,9 @@ def _motion(path: Path, length: float, scale: float, smooth: bool, name: str, ti
 
 
 def read_midlines(path: str | os.PathLike[str], *, length: float = 1.0, scale: float = 1.0) -> Midlines:
-    """The midlines in a .csv or .npz file, as measured. `ValueError` as in `read_motion`, and for another motion."""
+    """The midlines in a table of text or an .npz file, as measured. `ValueError` as in `read_motion`, and for another
+    motion.
+    """
     with reading(shown(str(path))):
         table = read_table(path)
         if kind_of(table) != "midlines":

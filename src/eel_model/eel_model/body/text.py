@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from eel_base.files.input_file import reading
-from eel_base.files.table import split_name
+from eel_base.files.table import MISSING, split_name
 from eel_base.files.tables import read_table
 from eel_base.texts import made, named_fields, value_of
 from eel_base.wording import did_you_mean, not_one_of, shown
@@ -72,9 +72,10 @@ def appendages_from_file(path: str | os.PathLike[str]) -> tuple[Appendage, ...]:
             name: table.texts(at) if name == "law" else table.numbers([at], "m" if name in "xyz" else "")[:, 0].tolist()
             for at, name in enumerate(names)
         }
+        empty = [[cell.lower() in MISSING for cell in table.texts(at)] for at in range(len(names))]
         found: list[Appendage] = []
         for row in range(len(table)):
-            given = {name: each[row] for name, each in columns.items() if each[row] == each[row] != ""}  # or NaN
+            given = {name: each[row] for (name, each), out in zip(columns.items(), empty, strict=True) if not out[row]}
             try:
                 found.append(made(Appendage, given, "appendage"))
             except ValueError as error:

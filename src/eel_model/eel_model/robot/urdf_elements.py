@@ -60,7 +60,7 @@ def positive_of(element: Element, key: str) -> float:
 def float_of(element: Element, key: str, text: str) -> float:
     value = float(text) if is_number(text) else math.nan
     if not abs(value) <= LARGEST:
-        fail(element, element.tag, f"{key} must be a finite number, got {shown(text)}")
+        fail(element, element.tag, f"{key} must be a number of at most {LARGEST:g} in size, got {shown(text)}")
     return value
 
 

@@ -43,7 +43,7 @@ def _add_options(parser: Parser) -> None:
     parser.add_argument(
         "file",
         nargs="+",
-        help=".csv or .npz with the columns time, x, y (perhaps z), or time and a robot's joints, or speed and numbers "
+        help="a table or .npz of columns time, x, y (perhaps z), or time and a robot's joints, or speed and numbers "
         "of the gait; a run (.nc); a bag. All of one kind",
     )
     about = "a parameter and its first guess: body.FIELD, scene.FIELD, robot.FIELD, initial.v_x, a number of the "

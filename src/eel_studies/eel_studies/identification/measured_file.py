@@ -5,7 +5,7 @@
     time, joint_1, ...         angles of a robot's joints by their names: a row for each instant, [s, rad]
     speed, other columns       steady speeds: a row for each swim, [m/s]; the others are numbers of the swim, as period
 
-Tables are .csv files with a header, or .npz archives of columns. A run (.nc) and a bag give the path of a point of the
+Tables are of text with a header, or .npz archives of columns. A run (.nc) and a bag give the path of a point of the
 backbone, or the joint angles, the law and the body; a run the scene and the robot too.
 """
 
