@@ -132,7 +132,7 @@ def two_in_one(points):
         (
             lambda points: points,
             {"units": "ft"},
-            "units must be one of m, cm, mm, um, km, inch, px, pixel, pixels, got 'ft'",
+            "units must be one of m, cm, mm, um, km, inch, px, got 'ft'",
         ),
         (lambda points: points, {"rate": 50.0}, "it has times: a rate"),
         (lambda points: points, {"animal": "b"}, "there is no animal 'b'"),

@@ -21,7 +21,7 @@ from eel_base.quantity import number, positive
 from eel_base.wording import shown
 
 from eel_gaits.film.animals import of_one
-from eel_gaits.film.forms import LENGTHS, Tracks, read_tracks
+from eel_gaits.film.forms import LENGTHS, SHORT, Tracks, read_tracks
 from eel_gaits.film.kinematics import arc_of
 from eel_gaits.sources.order import FOLD, check_order
 
@@ -105,16 +105,16 @@ def read_film(
 def _metres(tracks: Tracks, units: str | None, scale: float | None) -> float:
     """Metres in the file's unit of length."""
     if units is not None and units not in LENGTHS:
-        raise ValueError(f"units must be one of {', '.join(LENGTHS)}, got {shown(units)}")
+        raise ValueError(f"units must be one of {SHORT}, got {shown(units)}")
     if tracks.unit and tracks.unit not in LENGTHS:
-        raise ValueError(f"its columns have the unit {shown(tracks.unit)}, which must be one of {', '.join(LENGTHS)}")
+        raise ValueError(f"its columns have the unit {shown(tracks.unit)}, which must be one of {SHORT}")
     if units is not None and tracks.unit and not np.isclose(LENGTHS[units], LENGTHS[tracks.unit], equal_nan=True):
         raise ValueError(f"its columns are in {tracks.unit}, the units given are {units}")
     unit = tracks.unit or units
     if scale is not None:
         return number("scale", positive("scale", scale, "m"))
     if unit is None:
-        raise ValueError(f"its columns do not tell their unit of length: give units, one of {', '.join(LENGTHS)}")
+        raise ValueError(f"its columns do not tell their unit of length: give units, one of {SHORT}")
     if math.isnan(LENGTHS[unit]):
         raise ValueError("its points are in pixels, which have no length: give the scale, metres in a pixel")
     return LENGTHS[unit]

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 from eel_base.files.archive import MOST_NUMBERS
-from eel_base.files.table import LARGEST, UNITS, Table, split_name
+from eel_base.files.table import LARGEST, LISTED, UNITS, Table, split_name
 from eel_base.files.tables import SUFFIXES, is_table, read_table
 from eel_base.files.times import is_time, time_of
 from eel_base.wording import shown
@@ -26,6 +26,7 @@ from eel_gaits.film.hdf5 import Columns, read_hdf5
 from eel_gaits.sources.frames import check_rising, check_steps, frame_starts
 
 LENGTHS = {unit: metres for unit, (si, metres) in UNITS.items() if si == "m"}  # NaN for pixels, which have no length
+SHORT = ", ".join(words.split()[0] for words in LISTED["m"].values())  # of them, for messages
 COORDINATE = re.compile(  # x, x0, head_x, x_head, each before a unit; mxmm of fishmechr
     rf"m?(?P<axis>[xy])_?(?P<number>[0-9]*)(?P<unit>{'|'.join(LENGTHS)})?|"
     r"(?P<name>.+)[._](?P<last>[xy])|(?P<first>[xy])[._](?P<part>.+)"
