@@ -110,6 +110,7 @@ def test_seconds_and_their_parts_may_stand_in_two_columns(tmp_path):
         ("start time,header.stamp,x", "5", "header.stamp"),
         ("Date,Time,x", "2026-11-28", "Time"),
         ("start time,when", "5", "when"),
+        ("reaction time,time,x", "{n}", "time"),
     ],
 )
 def test_the_column_of_times_is_found_by_whole_words_of_its_name(tmp_path, head, first, column):

@@ -240,6 +240,8 @@ def test_bad_rows_of_midlines_are_named(tmp_path, change, words):
         ),
         ("time,yaw_1,yaw_2,yaw_3\n" + "".join(f"{20 * n},0,0.1,0\n" for n in range(20)), ["20 s apart", "time in s?"]),
         ("time,yaw_1,yaw_2,yaw_3\n0,0,0,0\n0,0,0,0\n", ["line 3", "time must rise"]),
+        ("time,yaw_1_deg,yaw_2_deg,yaw_3\n0,0,0,0\n1,0,0,0\n", ["yaw_3 must have a unit in its name, as yaw_1_deg"]),
+        ("time,x_mm,y\n0,0,0\n1,0,0\n", ["y must have a unit in its name, as x_mm has"]),
     ],
 )
 def test_a_bad_file_is_refused_in_one_line(tmp_path, text, words):

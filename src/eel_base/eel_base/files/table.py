@@ -184,6 +184,14 @@ class Table:
         """Whether most cells of a column that have a value are numbers."""
         return bool(2 * np.sum(np.isfinite(self._values[:, place])) > np.sum(self.filled(place)))
 
+    def check_units(self, columns: Sequence[int]) -> None:
+        """`ValueError` where some of the `columns` have a unit in their names, and others none."""
+        bare = [place for place in columns if not self.unit(place)]
+        if 0 < len(bare) < len(columns):
+            other = next(place for place in columns if place not in bare)
+            rule = f"must have a unit in its name, as {self.label(other)} has, or none of them"
+            raise self.error(f"{self.label(bare[0])} {rule}")
+
     def factor(self, place: int, unit: str) -> float:
         """What a column's numbers must be multiplied by to be in this SI `unit`; 1 where its name has none."""
         if not unit or not (given := self.unit(place)):

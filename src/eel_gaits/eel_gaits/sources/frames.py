@@ -47,6 +47,8 @@ def frames_of(
     length, in place of what their names tell. time: the column of times. `ValueError` names the rows that do not fit.
     """
     si, length = (unit, "m") if scale == 1.0 else ("", "")
+    if length:
+        table.check_units([place for name in names for place in table.places(name)])
     fields = np.stack([table.column(name, si) for name in names], axis=-1)
     arc = scale * table.column("arc_length", length) if "arc_length" in table else None
     seconds = time_of(table, time)

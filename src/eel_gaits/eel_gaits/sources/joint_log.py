@@ -83,12 +83,10 @@ def read_joint_log(
         factors = [table.factor(place, "rad") for place in chosen]
         if unit not in ("", "rad", "deg"):
             raise ValueError(f"units of angles must be rad or deg, got {shown(unit)}")
-        bare = [place for place in chosen if not table.unit(place)]
         if unit and any(UNITS[each][1] != UNITS[unit][1] for each in units):
             raise ValueError(f"its columns are in {', '.join(sorted(units))}, the units given are {unit}")
-        if units and bare and not unit:
-            rule = "all columns of joints must have a unit in their names, or none, or --units be given"
-            raise ValueError(f"{rule}: {table.label(bare[0])} has none")
+        if not unit:
+            table.check_units(chosen)
         angles = np.stack([table.raw(place) for place in chosen], axis=1) * (UNITS[unit][1] if unit else factors)
         told = unit or ", ".join(sorted(units)) or "rad"
         read = [*table.notes, f"joints {joints[0]} to {joints[-1]}, {told}"]

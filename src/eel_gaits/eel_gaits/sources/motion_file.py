@@ -155,6 +155,7 @@ def _law_of_joints(table: Table, length: float, name: str, column: str, smooth: 
                 f"joints of {axis} must be {axis}_1 to {axis}_{max(FEWEST_JOINTS, len(names))} without gaps, "
                 f"got {shown(names)}"
             )
+    table.check_units([place for names in axes.values() for each in names for place in table.places(each)])
     time = time_of(table, column)
     check_rising(table, time, np.arange(len(time)))
     check_steps(table, time)
