@@ -58,7 +58,7 @@ class Drawing:
             )
         self._client.set_time(TIMELINE, duration=at, play_state="paused")
         picture = self.screenshot(self._view) if self._last else b""
-        if picture == self._last:  # the first, or perhaps not up to date
+        if picture in (b"", self._last):  # the first, or late, or perhaps not up to date
             picture = self._stable_picture()
         self._last = picture
         return picture if self._view is None else _cropped(picture, self._size)
@@ -92,8 +92,11 @@ class Drawing:
         return sorted(found, key=lambda view: view.view_class != "3D")
 
     def screenshot(self, view: str | None) -> bytes:
-        """What is shown now, as PNG: the `view` with this id, or the whole window."""
-        png: bytes = self._client.take_screenshot(view)
+        """What is shown now, as PNG: the `view` with this id, or the whole window; empty where the viewer is late."""
+        try:
+            png: bytes = self._client.take_screenshot(view)
+        except TimeoutError:  # a busy machine: the caller waits for a picture that stands still
+            return b""
         return png
 
     def _load(self) -> tuple[float, float]:

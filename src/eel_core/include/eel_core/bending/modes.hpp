@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -70,8 +71,9 @@ struct Command {
     enum Kind : std::uint8_t { law, position, velocity, effort };  // law: none
     Kind kind = law;
     double angle = 0.0, rate = 0.0, torque = 0.0;  // [rad], [rad/s], [N m], as a bend
-    double low = -INFINITY, high = INFINITY;       // [rad]: how far a velocity moves the reference
-    double since = 0.0;                            // [s]: when the reference was at `angle`
+    // [rad]: how far a velocity moves the reference.
+    double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
+    double since = 0.0;  // [s]: when the reference was at `angle`
 };
 
 // What a servo follows at an instant.
