@@ -79,8 +79,8 @@ def test_errors_of_the_head_s_turn_and_twist_are_by_their_scales():
     time, still = np.linspace(0.0, 1.0, 21), np.zeros((21, 3))
     true = run_at(still, time, turn=2.0 * time, twist=(0.0, 0.0, 0.0, 2.0, 0.0, 0.0))
     run = run_at(still, time, turn=2.0 * time + 2.0 * np.pi + 3e-4, twist=(0.0, 0.0, 1e-6, 2.0, 4e-4, 0.0))
-    found = relative_errors(run, true, share=0.5)
-    assert found.orientation == pytest.approx(1.5e-4) and found.twist == pytest.approx(0.5 * 1e-6 / 1e-3)
+    found = relative_errors(run, true)
+    assert found.orientation == pytest.approx(3e-4) and found.twist == pytest.approx(1e-6 / 1e-3)
     for swim in (run, true):
         swim.twist = swim.twist + np.array((0.0, 0.0, 5.0, 0.0, 0.0, 0.0))
     assert relative_errors(run, true).twist == pytest.approx(4e-4 / 2.0, rel=1e-3)
@@ -136,7 +136,7 @@ def test_a_refined_run_has_a_smaller_error():
 def test_the_estimate_of_a_refined_run_falls_with_the_tolerance_at_most(monkeypatch):
     """Errors vary unevenly with the tolerance, so that two runs may have nearly the same one."""
     apart = iter([ErrorEstimate(5e-3, None), ErrorEstimate(1e-12, None)])
-    monkeypatch.setattr(companion, "relative_errors", lambda run, other, share: next(apart))
+    monkeypatch.setattr(companion, "relative_errors", lambda run, other: next(apart))
     run = simulate(straight(), 1.0, scene=Scene(internal_wrench=False, ledger=False), accuracy=1e-3)
     assert run.error_estimate.position == pytest.approx(5e-3 * run.accuracy.tolerance / (1e-3 / settings.STEPS_ERRORS))
 
