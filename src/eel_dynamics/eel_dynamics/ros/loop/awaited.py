@@ -143,7 +143,7 @@ class Awaited:
         return [_text(topic, names) for topic, names in self._late(instant).items()]
 
     def missing(self, instant: float, now: float, timeout: float) -> list[str]:
-        """As `late`, for `timeout` [s] at most; a wait in vain is told. now: [s, steady clock]."""
+        """As `late`, for `timeout` [s] at most; then a warning. now: [s, steady clock]."""
         late = self._late(instant)
         if not late:
             self._late_since = math.inf
