@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 
 from eel_gaits.film.doubts import doubts_of
-from eel_gaits.film.film import Film, filled
+from eel_gaits.film.film import Film, filled, unseen_segments
 from eel_gaits.film.kinematics import Kinematics, harmonics, kinematics
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.spline import natural_spline
@@ -88,7 +88,7 @@ class Beat:
 
         rows, count = np.asarray(values), len(values)
         error = np.sqrt((count - 1) / count * np.sum((rows - rows.mean(axis=0)) ** 2, axis=0))
-        unseen = 0.0 if self.film.missing is None else float(np.mean(_unseen(self.film.missing)))
+        unseen = 0.0 if self.film.missing is None else float(np.mean(unseen_segments(self.film.missing)))
         return np.asarray(t.ppf(QUANTILE, count - 1) * error / math.sqrt(1.0 - unseen))
 
     @property
@@ -177,7 +177,7 @@ class _Fit:
         self.film, self.rigid, self.arc = film, rigid, film.arc
         self.weight = np.diff(self.arc) / np.mean(np.diff(self.arc))  # an error of a point turns a short segment more
         self.missing = np.zeros(film.points.shape[:2], dtype=bool) if film.missing is None else film.missing
-        self.seen = ~_unseen(self.missing)
+        self.seen = ~unseen_segments(self.missing)
         self.points = film.points
         self.angles, self.mean = self._angles_of(film.points)
         self.time, self.all = film.time - film.time[0], np.ones(len(film.time), dtype=bool)
@@ -330,11 +330,6 @@ class _Fit:
         apart = np.where(self.missing[..., None], np.nan, shape - self.film.points)
         apart = apart - np.nanmean(apart, axis=1, keepdims=True)
         return float(np.sqrt(np.nanmean(np.sum(apart**2, axis=2))))
-
-
-def _unseen(missing: np.ndarray) -> np.ndarray:
-    """The segments (N, n - 1) of which an end is `missing` (N, n)."""
-    return np.asarray(missing[:, 1:] | missing[:, :-1])
 
 
 def _solved(design: np.ndarray, values: np.ndarray, along: np.ndarray) -> np.ndarray:

@@ -18,7 +18,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from eel_gaits.film.film import SPREADS, Film, usual_of
+from eel_gaits.film.film import SPREADS, Film, unseen_segments, usual_of
 from eel_gaits.film.kinematics import harmonics
 from eel_gaits.sources.order import FOLD
 
@@ -73,7 +73,7 @@ def _stretches(film: Film, beats: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     steps = np.linalg.norm(np.diff(film.points, axis=1), axis=2)
     seen = np.ones(steps.shape, dtype=bool)
     if film.missing is not None:
-        seen = ~(film.missing[:, 1:] | film.missing[:, :-1])
+        seen = ~unseen_segments(film.missing)
     count = int(np.clip(beats[-1], 2.0, PARTS))
     parts = np.unique(np.minimum(count * beats // beats[-1], count - 1), return_inverse=True)[1]
     design = np.column_stack((np.eye(parts.max() + 1)[parts], *harmonics(2.0 * math.pi * beats, 1)))

@@ -233,6 +233,11 @@ def _folded(points: np.ndarray) -> np.ndarray:
     return np.asarray(turned.any(axis=1))
 
 
+def unseen_segments(missing: np.ndarray) -> np.ndarray:
+    """The segments (N, n - 1) of which an end is `missing` (N, n)."""
+    return np.asarray(missing[:, 1:] | missing[:, :-1])
+
+
 def usual_of(steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The median (n - 1,) of distances (N, n - 1), and their robust spread; NaN for those that are never known."""
     found, known = np.full((2, steps.shape[1]), np.nan), np.isfinite(steps).any(axis=0)
