@@ -39,7 +39,7 @@ _eel_setup() {
 
     local prefixes=() modules=()
     local libraries=("$root"/install/{eel_msgs,tf2_msgs}/lib "$root/.venv/lib" "$root/.venv/$site"/ros_*.libs)
-    for package in eel_gym eel_studies eel_viz eel_dynamics eel_model eel_gaits eel_ros eel_base; do
+    for package in eel_gym eel_studies eel_viz eel_dynamics eel_gaits eel_common; do
         prefixes+=("$root/install/$package")
         modules+=("$root/build/$package" "$root/install/$package/$site")
     done

@@ -16,7 +16,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from eel_ros.qos import keep_all
+from eel_common.ros.qos import keep_all
 from measuring import Lines, nodes_in_a_domain
 from nav_msgs.msg import Odometry
 

@@ -15,8 +15,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from eel_ros.testing.fixtures import starter
-from eel_ros.testing.ros_domain import reserve_domain
+from eel_common.ros.testing.fixtures import starter
+from eel_common.ros.testing.ros_domain import reserve_domain
 
 from eel_dynamics import Accuracy, Scene, Simulation
 from eel_gaits import Law

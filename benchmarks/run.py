@@ -10,7 +10,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Mapping
 
-from eel_base.wording import did_you_mean
+from eel_common.wording import did_you_mean
 from evaluations import evaluation, flows, wrench
 from integrators import integrators
 from lockstep import lockstep

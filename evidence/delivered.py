@@ -8,9 +8,9 @@ import argparse
 import sys
 from functools import partial
 
-from eel_base.command.command import command
-from eel_base.command.command_line import Parser
-from eel_base.command.progress import Progress
+from eel_common.command.command import command
+from eel_common.command.command_line import Parser
+from eel_common.command.progress import Progress
 from eel_studies.options import check_least
 from eel_studies.outputs import Outputs, add_output_options
 from studied.random_swims import COUNT, SEED, deliver, delivered_table, draw_delivered

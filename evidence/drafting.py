@@ -10,9 +10,9 @@ import argparse
 import sys
 
 import numpy as np
-from eel_base.command.command import command
-from eel_base.command.command_line import Parser
-from eel_base.command.progress import Progress
+from eel_common.command.command import command
+from eel_common.command.command_line import Parser
+from eel_common.command.progress import Progress
 from eel_studies.options import check_least
 from eel_studies.outputs import Outputs, Table, add_output_options
 from eel_studies.pictures import BLUE, GREEN, GREY, ORANGE, Axes, Figure

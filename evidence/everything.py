@@ -9,7 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from eel_base.wording import not_one_of
+from eel_common.wording import not_one_of
 
 FOLDER = Path(__file__).resolve().parent
 LAWS = "gazzola", "eloy", "lighthill", "tytell"

@@ -9,9 +9,9 @@ import argparse
 import sys
 from collections.abc import Callable
 
-from eel_base.command.command import command
-from eel_base.command.command_line import Parser
-from eel_base.command.progress import Progress
+from eel_common.command.command import command
+from eel_common.command.command_line import Parser
+from eel_common.command.progress import Progress
 from eel_dynamics.commands.options import add_options
 from eel_studies.outputs import Outputs
 from eel_studies.pictures import Figure, letter_panels

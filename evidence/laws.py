@@ -9,10 +9,10 @@ import argparse
 import sys
 from functools import partial
 
-from eel_base.command.command import command
-from eel_base.command.command_line import Parser
+from eel_common.command.command import command
+from eel_common.command.command_line import Parser
 from eel_dynamics.commands.options import add_options
-from eel_model.scene import FRICTION
+from eel_dynamics.model.scene import FRICTION
 from eel_studies.outputs import checked_outs, write_files
 from eel_studies.pictures import BLACK, LOOKS, Figure, legend_above
 from studied.laws_of_swimming import LAWS, Result

@@ -11,13 +11,13 @@ from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
-from eel_base.command.command import command
-from eel_base.command.command_line import Parser
-from eel_base.quantity import positive
+from eel_common.command.command import command
+from eel_common.command.command_line import Parser
+from eel_common.quantity import positive
 from eel_dynamics.commands.filmed import add_film_options, beat_from
 from eel_dynamics.commands.options import add_options, add_repeated, scene_of, set_numbers
+from eel_dynamics.model.body.text import body_of
 from eel_gaits.film.beat import Beat
-from eel_model.body.text import body_of
 from eel_studies.outputs import Table, checked_outs, write_files
 from eel_studies.pictures import BLACK, BLUE, GREY, LOOKS, PALE_BLUE, Axes, Draw, Figure, along_way, legend_above
 from studied.lamprey import HEIGHTS, LampreySwim, Thickened, in_thick_water, lamprey, swims, thickened

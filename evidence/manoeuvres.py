@@ -12,8 +12,8 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-from eel_base.attitude import heading
-from eel_base.files import markdown
+from eel_common.attitude import heading
+from eel_common.files import markdown
 from eel_studies.outputs import Table
 from eel_studies.pictures import BLUE, ORANGE, SETTINGS, along_way
 from PIL import Image

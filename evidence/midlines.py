@@ -11,14 +11,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from eel_base.command.command import checked_out, command
-from eel_base.command.command_line import Parser
-from eel_base.command.progress import Progress
-from eel_base.files.output_file import written_as
+from eel_common.command.command import checked_out, command
+from eel_common.command.command_line import Parser
+from eel_common.command.progress import Progress
+from eel_common.files.output_file import written_as
 from eel_dynamics.commands.options import add_options
+from eel_dynamics.model.body.text import body_of
 from eel_gaits.sources.midlines import Midlines
 from eel_gaits.sources.order import laid_on
-from eel_model.body.text import body_of
 from eel_studies.pictures import PICTURES, Figure, write_picture
 
 from eel_dynamics import Run, simulate

@@ -17,10 +17,10 @@ from types import SimpleNamespace as NS
 from typing import Any
 
 from eel_dynamics.analysis.trim import Lump
+from eel_dynamics.model.fins.text import fins_from_text
 from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
 from eel_gaits.pilot.goals import path
 from eel_gaits.pilot.pilot import Pilot
-from eel_model.fins.text import fins_from_text
 from eel_studies.pilot.closed_loop import STEP, swim_with
 from eel_studies.roll_hold.study import PAIR
 from eel_viz.pictures.drawing import Drawing, SideBySide, drawn, drawn_beside

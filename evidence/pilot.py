@@ -13,9 +13,9 @@ from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
-from eel_base.files import markdown
+from eel_common.files import markdown
+from eel_dynamics.model.fins.text import fins_from_text
 from eel_gaits.pilot.settings import PilotSettings
-from eel_model.fins.text import fins_from_text
 from eel_studies.outputs import Table
 from eel_studies.pictures import BLUE, ORANGE, write_picture
 from eel_studies.roll_hold.study import PAIR

@@ -13,8 +13,8 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from eel_base.command.command import command
-from eel_base.command.command_line import Parser
+from eel_common.command.command import command
+from eel_common.command.command_line import Parser
 from eel_dynamics.commands.logged import add_joint_options, logged_robot
 from eel_dynamics.commands.options import add_options, add_repeated, scene_of, set_numbers
 from eel_dynamics.runs.storage.tables import write_columns

@@ -16,7 +16,7 @@ import sys
 from typing import Any
 
 import numpy as np
-from eel_base.command.command import command
+from eel_common.command.command import command
 from eel_dynamics.commands.options import add_options
 from eel_gaits.sources.joint_log import law_of_links, read_joint_log
 from eel_studies.outputs import Table, checked_outs, write_files

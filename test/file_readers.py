@@ -16,9 +16,9 @@ import time
 import warnings
 from pathlib import Path
 
+from eel_common.ros.parameters import shared_names
 from eel_gaits.film.film import read_film
 from eel_gaits.gaits.settings import Settings
-from eel_ros.parameters import shared_names
 from eel_studies.identification.measured_file import read_measured
 from eel_studies.sweeps.sweep_parts import Parts
 

@@ -27,9 +27,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import yaml
-from eel_base.command.command_line import print_to_stderr
-from eel_base.files.yaml_tree import read_yaml
-from eel_base.quantity import checked_instance
+from eel_common.command.command_line import print_to_stderr
+from eel_common.files.yaml_tree import read_yaml
+from eel_common.quantity import checked_instance
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
 from eel_gaits.gaits.settings import Settings

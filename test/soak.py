@@ -22,7 +22,7 @@ import sys
 import rclpy
 from rclpy.qos import HistoryPolicy, QoSProfile
 from eel_viz.bags.definitions import message_class
-from eel_base.topics import OWN, SAMPLED, WHERE_ASKED_FOR
+from eel_common.topics import OWN, SAMPLED, WHERE_ASKED_FOR
 
 rclpy.init()
 node = rclpy.create_node("listener")

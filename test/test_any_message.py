@@ -9,10 +9,10 @@ from itertools import islice
 import pytest
 import rclpy
 from builtin_interfaces.msg import Time
-from eel_base.topics import OWN
+from eel_common.ros.testing.node_process import PROMPT
+from eel_common.ros.testing.service_call import answer_of
+from eel_common.topics import OWN
 from eel_gaits.ros.messages import law_to_message
-from eel_ros.testing.node_process import PROMPT
-from eel_ros.testing.service_call import answer_of
 from eel_viz.recording.reading import read
 from extreme_messages import broken, extremes, for_names, get_message, get_service, huge, stamped
 from fake_swimmer import TOPICS, body_message, messages

@@ -5,10 +5,14 @@ import math
 from pathlib import Path
 
 import pytest
+from eel_common.ros.loop.channel import LIVE_DEPTH
+from eel_common.ros.loop.clock_ticks import TICK
+from eel_common.ros.serving import LARGEST_MESSAGE
 from eel_dynamics.accuracy import accuracy, error_estimate
 from eel_dynamics.accuracy.sudden_changes import UNSEEN
 from eel_dynamics.curvature.curvature_samples import MOST_POINTS as MOST_POINTS_OF_A_SAMPLE
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
+from eel_dynamics.model.fins.fins import Fin
 from eel_dynamics.ros.loop import law_adopter, sample_output
 from eel_dynamics.ros.messages import LARGEST_LAW
 from eel_dynamics.ros.parameters import DynamicsParameters
@@ -21,10 +25,6 @@ from eel_gaits.pilot.goals import MOST_POINTS as MOST_POINTS_OF_A_PATH
 from eel_gaits.pilot.settings import PilotSettings
 from eel_gaits.sources.function_law import STEP
 from eel_gaits.sources.period import LONGEST_GAP
-from eel_model.fins.fins import Fin
-from eel_ros.loop.channel import LIVE_DEPTH
-from eel_ros.loop.clock_ticks import TICK
-from eel_ros.serving import LARGEST_MESSAGE
 from eel_studies.gradients.gradient import KINKED_STEP
 from eel_viz.limit import RECENT
 from eel_viz.scene3d.track import AXES_LENGTH, LENGTH

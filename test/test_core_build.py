@@ -73,11 +73,11 @@ exec "$@"
 @pytest.mark.timeout(400)
 @pytest.mark.parametrize("compiles", [False, pytest.param(True, marks=pytest.mark.soak)])
 def test_pip_installs_the_library_without_ros(tmp_path, compiles):
-    """`pip install ./src/eel_{base,core,gaits,model,dynamics}` gives `simulate`. Of the module that it compiles for
+    """`pip install ./src/eel_{common,core,gaits,dynamics}` gives `simulate`. Of the module that it compiles for
     another level the build has no objects."""
     environment = {name: os.environ[name] for name in ("PATH", "HOME", "LD_LIBRARY_PATH") if name in os.environ}
     environment["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] = "1"
-    sources = [tmp_path / name for name in ("eel_base", "eel_core", "eel_gaits", "eel_model", "eel_dynamics")]
+    sources = [tmp_path / name for name in ("eel_common", "eel_core", "eel_gaits", "eel_dynamics")]
     for source in sources:  # setuptools leaves its own files beside the sources
         shutil.copytree(ROOT / "src" / source.name, source, ignore=shutil.ignore_patterns("*.egg-info", "__pycache__"))
     install = [sys.executable, "-m", "pip", "install", "--no-build-isolation", "--no-deps", "--no-index"]

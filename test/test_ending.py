@@ -6,7 +6,7 @@ import time
 
 import psutil
 import pytest
-from eel_ros.testing.node_process import PROMPT
+from eel_common.ros.testing.node_process import PROMPT
 
 NODES = {  # the gait generator's end is in the tests of its package
     "dynamics": ("--ros-args",),

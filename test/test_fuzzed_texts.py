@@ -13,12 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from eel_base.texts import made
-from eel_base.wording import one_line
+from eel_common.texts import made
+from eel_common.wording import one_line
+from eel_dynamics.model.fins.fins import Fin, RollHold
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.pilot.settings import PilotSettings
-from eel_model.fins.fins import Fin, RollHold
 from fuzzed_texts import EXTREMES, ODD, VALUES, case_of
 
 from eel_dynamics import (

@@ -5,7 +5,7 @@ import os
 import re
 
 import pytest
-from eel_base.wording import shown
+from eel_common.wording import shown
 from eel_gaits.ros.messages import law_to_message
 from eel_viz.recording.reading import read
 from swim_client import LIMIT, SwimClient

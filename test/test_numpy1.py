@@ -40,7 +40,7 @@ backbone = Backbone(x=numpy.linspace(0.0, 1.0, 51))
 law = deserialize_message(serialize_message(law_to_message(falling())), CurvatureLaw)
 json.dump({
     "numpy": numpy.__version__,
-    "built": [sys.modules[name].__file__ for name in ("eel_msgs", "eel_gaits", "eel_model", "eel_dynamics")],
+    "built": [sys.modules[name].__file__ for name in ("eel_msgs", "eel_gaits", "eel_dynamics")],
     "backbone": deserialize_message(serialize_message(backbone), Backbone) == backbone,
     "law": law_from_message(law) == falling(),
 }, sys.stdout)

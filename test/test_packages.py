@@ -11,12 +11,12 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
-from eel_base.topics import GLOBAL, OWN
+from eel_common.topics import GLOBAL, OWN
 
 ROOT = Path(__file__).resolve().parents[1]
-PYTHON_PACKAGES = ("eel_base", "eel_ros", "eel_gaits", "eel_model", "eel_dynamics", "eel_studies", "eel_gym", "eel_viz")
+PYTHON_PACKAGES = ("eel_common", "eel_gaits", "eel_dynamics", "eel_studies", "eel_gym", "eel_viz")
 EXECUTABLES = {
-    "eel_base": {"eel"},
+    "eel_common": {"eel"},
     "eel_gaits": {"gait_generator", "heading_controller", "pilot"},
     "eel_dynamics": {"dynamics", "simulate"},
     "eel_studies": {
@@ -31,7 +31,7 @@ EXECUTABLES = {
     "eel_viz": {"visualiser", "markers", "record", "eel_echo", "replay", "render"},
 }
 ROSDEP_KEY = {
-    "eel_command": "eel_base",  # lies beside it
+    "eel_command": "eel_common",  # lies beside it
     "numpy": "python3-numpy",
     "scipy": "python3-scipy",
     "matplotlib": "python3-matplotlib",
@@ -135,9 +135,7 @@ def test_every_message_field_is_commented_with_its_unit():
                 assert "[" in comment or declaration.startswith("std_msgs/Header"), f"{path.name}: {line}"
 
 
-@pytest.mark.parametrize(
-    "package", ("eel_base", "eel_gaits", "eel_model", "eel_dynamics", "eel_studies", "eel_gym", "eel_viz")
-)
+@pytest.mark.parametrize("package", PYTHON_PACKAGES)
 def test_library_imports_without_ros(package):
     """Everything but the nodes and the message glue runs where there is no ROS at all."""
     folder = ROOT / "src" / package
@@ -147,7 +145,7 @@ def test_library_imports_without_ros(package):
     assert len(modules) > 4
     blocked = [
         "rclpy",
-        "eel_ros",
+        "eel_common.ros",
         "eel_msgs",
         "std_msgs",
         "geometry_msgs",

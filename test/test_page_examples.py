@@ -15,8 +15,8 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from eel_base.command.suite import commands
-from eel_base.topics import OWN
+from eel_common.command.suite import commands
+from eel_common.topics import OWN
 from reference_pages import COMMANDS, NODES, ROOT, parameter_names
 from test_run_from_bag import write_bag
 

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray
-from eel_base.attitude import heading, roll
+from eel_common.attitude import heading, roll
 from eel_studies.roll_hold.study import PAIR
 from geometry_msgs.msg import Point, Pose, PoseStamped
 from nav_msgs.msg import Path

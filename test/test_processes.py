@@ -10,8 +10,8 @@ import time
 
 import psutil
 import pytest
-from eel_ros.testing.node_process import NodeProcess
-from eel_ros.testing.ros_domain import reserve_domain
+from eel_common.ros.testing.node_process import NodeProcess
+from eel_common.ros.testing.ros_domain import reserve_domain
 
 
 def await_death(pid: int) -> None:
@@ -49,7 +49,7 @@ def test_process_does_not_outlive_a_killed_owner(tmp_path):
     owner = textwrap.dedent(f"""
         import os, time
         from pathlib import Path
-        from eel_ros.testing.node_process import NodeProcess
+        from eel_common.ros.testing.node_process import NodeProcess
         node = NodeProcess("sleep", "1000", environment=dict(os.environ), log=Path({str(tmp_path)!r}) / "log.txt")
         print(node.process.pid, flush=True)
         time.sleep(1000)

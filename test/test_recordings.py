@@ -9,7 +9,7 @@ import time
 
 import numpy as np
 import pytest
-from eel_base.topics import SAMPLED, WHERE_ASKED_FOR
+from eel_common.topics import SAMPLED, WHERE_ASKED_FOR
 from eel_viz.recording.reading import read
 from eel_viz.viewer import free_port
 from rosbags.highlevel import AnyReader

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from eel_base.files.output_file import part_of
-from eel_ros.testing.ros_domain import reserve_domain
+from eel_common.files.output_file import part_of
+from eel_common.ros.testing.ros_domain import reserve_domain
 from eel_viz.recording.reading import read
 from swim_client import LIMIT, SwimClient, nanoseconds
 

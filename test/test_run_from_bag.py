@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from builtin_interfaces.msg import Time
-from eel_base.topics import ENERGY_FIELDS, GLOBAL, OWN
-from eel_base.topics import LATER_ENERGY_FIELDS as LATER
+from eel_common.topics import ENERGY_FIELDS, GLOBAL, OWN
+from eel_common.topics import LATER_ENERGY_FIELDS as LATER
 from eel_dynamics.ros.messages import SampleMessages, body_message, diagnostic_array
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.runs.exchange.messages_of_run import messages_of_run

@@ -6,7 +6,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from eel_base.command.suite import commands
+from eel_common.command.suite import commands
 from test_packages import EXECUTABLES
 
 ROOT = Path(__file__).resolve().parents[1]

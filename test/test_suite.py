@@ -6,8 +6,8 @@ import subprocess
 import sys
 
 import pytest
-from eel_base.command import suite
-from eel_base.command.command_line import COMPLETING
+from eel_common.command import suite
+from eel_common.command.command_line import COMPLETING
 from eel_dynamics.commands import simulate as command
 from test_packages import EXECUTABLES
 
@@ -31,9 +31,8 @@ def test_the_list_has_a_line_for_each_command(capsys):
 
 
 def test_the_list_imports_no_command():
-    code = (
-        "import sys; from eel_base.command import suite; suite.main([]); print('numpy' in sys.modules, file=sys.stderr)"
-    )
+    code = "import sys; from eel_common.command import suite; suite.main([])"
+    code += "; print('numpy' in sys.modules, file=sys.stderr)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
     assert done.stderr == "False\n"
 

@@ -5,10 +5,10 @@ import os
 import subprocess
 
 import pytest
-from eel_base.command.suite import commands
+from eel_common.command.suite import commands
 
 LONG = "lang und breit " * 6000  # 90 kB: a single argument can have 128 kB
-MODULES = {"eel": "eel_base.command.suite", "gait_generator": "eel_gaits.ros.node"}
+MODULES = {"eel": "eel_common.command.suite", "gait_generator": "eel_gaits.ros.node"}
 MODULES |= {"dynamics": "eel_dynamics.ros.node", "visualiser": "eel_viz.ros.node"}
 GIVEN = [  # each with an argument that does not fit, as long as can be
     ["eel", "simulate", LONG],

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from eel_base.wording import LONGEST, LONGEST_LINE, one_line, shown
+from eel_common.wording import LONGEST, LONGEST_LINE, one_line, shown
 
 from eel_dynamics import Accuracy, Body, Scene, Simulation, hydrodynamic_wrench, simulate, simulate_batch
 from eel_gaits import Law, Ramp, Term, falling, gait, natural_spline, straight

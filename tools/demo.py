@@ -18,10 +18,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from eel_common.ros.testing.node_process import NodeProcess
+from eel_common.ros.testing.ros_domain import reserve_domain
 from eel_dynamics.runs.exchange.eel_viz_functions import function_of_eel_viz
 from eel_dynamics.runs.exchange.recorded_run import fields_of_messages
-from eel_ros.testing.node_process import NodeProcess
-from eel_ros.testing.ros_domain import reserve_domain
 from plain_picture import draw_plain
 
 from eel_dynamics import Run, simulate

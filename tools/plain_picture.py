@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from eel_base.files.output_file import replacing
+from eel_common.files.output_file import replacing
 from eel_viz.recording.reading import read
 from eel_viz.scene3d import colours
 from matplotlib.colors import LightSource, ListedColormap

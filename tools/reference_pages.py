@@ -13,9 +13,9 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
-from eel_base.command.suite import commands as known_commands
-from eel_base.files.markdown import table
-from eel_base.quantity import limits
+from eel_common.command.suite import commands as known_commands
+from eel_common.files.markdown import table
+from eel_common.quantity import limits
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_gaits.gaits.registry import GAITS, Transition
 from eel_gaits.gaits.settings import FILE_GAITS, numbers_of

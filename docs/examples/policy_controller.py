@@ -10,13 +10,13 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from eel_common.ros.headers import seconds_of
+from eel_common.ros.parameter_node import ParameterNode
+from eel_common.ros.qos import keep_all
+from eel_common.ros.run_node import run_node
 from eel_gaits.ros.lead import Lead
 from eel_gaits.ros.messages import samples_to_message
 from eel_gaits.ros.pilot_messages import head_motion
-from eel_ros.headers import seconds_of
-from eel_ros.parameter_node import ParameterNode
-from eel_ros.qos import keep_all
-from eel_ros.run_node import run_node
 from nav_msgs.msg import Odometry
 from train_policy import actions_of, file_of
 

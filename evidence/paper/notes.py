@@ -3,7 +3,7 @@
 
 import numpy as np
 from eel_dynamics.analysis.analysis import Analysis
-from eel_model.section_data import CRITICAL_REYNOLDS
+from eel_dynamics.model.section_data import CRITICAL_REYNOLDS
 
 from eel_dynamics import Run
 from paper.drawings import INSTANT, PLACE, wrench_of

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from eel_model.section_data import GRAVITY, sections_of
+from eel_dynamics.model.section_data import GRAVITY, sections_of
 from eel_studies.steering.linearisation import (
     RESOLUTION,
     STATES,

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from eel_base.wording import shown
+from eel_common.wording import shown
 from eel_dynamics.analysis.analysis import Analysis
 
 from eel_dynamics import Body, Run, Scene, simulate_batch

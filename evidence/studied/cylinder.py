@@ -16,7 +16,7 @@ from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
-from eel_base.attitude import heading
+from eel_common.attitude import heading
 from eel_gaits.laws.steered_law import SteeredLaw
 
 from eel_dynamics import Flow, Scene, Simulation, Uniform, VortexStreet

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from eel_base.files.tables import read_table
+from eel_common.files.tables import read_table
 from eel_dynamics.commands.filmed import speeds_of
 from eel_gaits.film.beat import Beat
 from eel_gaits.film.kinematics import Kinematics, kinematics

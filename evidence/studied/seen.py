@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from eel_base.files.tables import read_table
-from eel_base.files.times import time_of
+from eel_common.files.tables import read_table
+from eel_common.files.times import time_of
 from eel_studies.pictures import BLACK, BLUE, PALE_BLUE, Axes, Figure, along_way, legend_above
 
 from studied.band import Replayed

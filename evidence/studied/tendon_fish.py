@@ -9,10 +9,10 @@ and 31 kg/m at its whole span just ahead.
 from pathlib import Path
 
 import numpy as np
-from eel_base.files.tables import read_table
+from eel_common.files.tables import read_table
+from eel_dynamics.model.body.text import appendages_from_file
 from eel_gaits.film.beat import Beat, beat_of
 from eel_gaits.film.film import read_film
-from eel_model.body.text import appendages_from_file
 
 from eel_dynamics import Body
 

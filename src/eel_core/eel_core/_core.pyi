@@ -72,8 +72,8 @@ class Swimmer(_Shared):
         servos: list[tuple[float, float, float, float, int, float]] = ...,
         appendages: list[tuple[int | None, list[float], list[float], bool, bool, int]] = ...,
     ) -> None:
-        """grid: with the attributes of `Grid` (eel_model/body/grid.py). sections, at its nodes, and stations: of
-        `SectionData` and `StationData` (eel_model/section_data.py). friction: of `FRICTION_LAWS`.
+        """grid: with the attributes of `Grid` (eel_dynamics/model/body/grid.py). sections, at its nodes, and stations:
+        of `SectionData` and `StationData` (eel_dynamics/model/section_data.py). friction: of `FRICTION_LAWS`.
         resistive: drag along the body. segmented: its links have one of their own. first_watched: first of the speeds
         (0 V1, 1 V2, 2 V3, 3 Omega1, 4 Re/8e4 - 1) whose changes of sign within a panel are integrated exactly; 5 for
         none. inertia_of_water: the nodes' sections have that of the water. tail_water: (3,) added masses [kg/m], [kg m]
@@ -157,8 +157,8 @@ class Modes(_Shared):
     def __init__(
         self, table: Any, x: Buffer, torques: list[tuple[Any, ...]], drive: LawOnGrid | None, push: Buffer
     ) -> None:
-        """table: with the attributes of `ModeTable` (eel_model/robot/compiled.py), of M modes and C coordinates. x: of
-        the nodes [m]. torques: (coordinate, function of the time [s]), or (coordinate, knots [s], cubics). drive, push:
+        """table: with the attributes of `ModeTable` (eel_dynamics/model/robot/compiled.py), of M modes and C coordinates. x:
+        of the nodes [m]. torques: (coordinate, function of the time [s]), or (coordinate, knots [s], cubics). drive, push:
         the law of the muscles' moments, and (C, its rows) what it does to the coordinates. `ValueError` for arrays that
         do not fit together."""
 

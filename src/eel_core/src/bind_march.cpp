@@ -8,7 +8,7 @@
 namespace eel_core {
 namespace {
 
-// The modes of a `ModeTable` (eel_model/robot/compiled.py) on a grid with nodes at `x` [m].
+// The modes of a `ModeTable` (eel_dynamics/model/robot/compiled.py) on a grid with nodes at `x` [m].
 std::shared_ptr<Modes> modes_from(const py::object& table, const py::object& x, const py::list& torques,
                                   const std::shared_ptr<LawOnGrid>& drive, const py::object& push)
 {

@@ -6,12 +6,13 @@ Studies of many swims (`sweep`, `optimise`, `identify`, `gradient` and others) a
 
 import eel_command  # noqa: F401  first: Ctrl-C ends a command during the other imports
 
-import eel_model
+from eel_dynamics import model
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.settling import Unsettled
 from eel_dynamics.analysis.trim import Ballast, Trim, ballast_for, trim_of
 from eel_dynamics.batches.batch import Batch
 from eel_dynamics.batches.simulate_batch import simulate_batch
+from eel_dynamics.model import *  # noqa: F403  the swimmer and its water
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.scene_file import load_scene, save_scene
 from eel_dynamics.runs.simulate import simulate
@@ -21,7 +22,6 @@ from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.prescribed import HydrodynamicWrench, hydrodynamic_wrench
 from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.stopping import SimulationStopped
-from eel_model import *  # noqa: F403  the swimmer and its water
 
 __all__ = [
     "Accuracy",
@@ -44,4 +44,4 @@ __all__ = [
     "simulate_batch",
     "trim_of",
 ]
-__all__ += eel_model.__all__
+__all__ += model.__all__

@@ -13,12 +13,12 @@ import sys
 from typing import Any, NamedTuple
 
 import numpy as np
+from eel_dynamics.model.fins.fins import Fin, RollHold
+from eel_dynamics.model.flow.functions import FlowField
+from eel_dynamics.model.flow.gridded import GriddedFlow
+from eel_dynamics.model.flow.sources import Gust, Shear, VortexStreet, Wave
+from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.simulation.sampled_swimmers import SampledSwimmers
-from eel_model.fins.fins import Fin, RollHold
-from eel_model.flow.functions import FlowField
-from eel_model.flow.gridded import GriddedFlow
-from eel_model.flow.sources import Gust, Shear, VortexStreet, Wave
-from eel_model.robot.robot import Robot
 
 import eel_core
 from eel_dynamics import Scene, Simulation

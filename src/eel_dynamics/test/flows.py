@@ -2,7 +2,7 @@
 """Flows of the library with their formulas written again, of places (n, 3) and a time that may be complex."""
 
 import numpy as np
-from eel_model.axes import turn_vector
+from eel_dynamics.model.axes import turn_vector
 from scipy.interpolate import CubicSpline
 
 from eel_dynamics import Gust, Shear, Uniform, Vortex, VortexStreet, Wave

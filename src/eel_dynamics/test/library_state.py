@@ -9,7 +9,7 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
-from eel_model.axes import SIGNS, turn_quaternion, turn_vector, turned
+from eel_dynamics.model.axes import SIGNS, turn_quaternion, turn_vector, turned
 from reference import Reference, rotation
 from reference import scene as reference_scene
 

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 from typing import NamedTuple
 
 import numpy as np
-from eel_model.body.appendages import Appendage
+from eel_dynamics.model.body.appendages import Appendage
 
 from eel_dynamics import Body
 from eel_gaits import Law, Term

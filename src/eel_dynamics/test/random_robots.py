@@ -4,10 +4,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from eel_model.robot.actuators import Servo
-from eel_model.robot.continuous import PassiveTail
-from eel_model.robot.joint import Joint
-from eel_model.robot.robot import Robot
+from eel_dynamics.model.robot.actuators import Servo
+from eel_dynamics.model.robot.continuous import PassiveTail
+from eel_dynamics.model.robot.joint import Joint
+from eel_dynamics.model.robot.robot import Robot
 
 from eel_dynamics import Scene
 from eel_gaits import Law, Term

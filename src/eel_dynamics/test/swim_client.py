@@ -6,7 +6,7 @@ import time
 from collections import defaultdict
 
 from diagnostic_msgs.msg import DiagnosticArray
-from eel_ros.testing.service_call import answer_of
+from eel_common.ros.testing.service_call import answer_of
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from nav_msgs.msg import Odometry
 from rcl_interfaces.srv import DescribeParameters, GetParameters, SetParameters

@@ -9,8 +9,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from eel_model.axes import turn_quaternion, turn_vector
-from eel_model.body.appendages import Appendage
+from eel_dynamics.model.axes import turn_quaternion, turn_vector
+from eel_dynamics.model.body.appendages import Appendage
 from flows import FLOWS, formula
 from flows import in_paper_axes as flow_in_paper_axes
 from library_state import distance, hydrodynamic_wrench, library_body, rotation, simulate_in_paper_axes, snapshot

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from eel_base.attitude import world_from_body
+from eel_common.attitude import world_from_body
 from eel_dynamics.analysis.settling import Unsettled
 from library_state import rotation
 from scipy.interpolate import make_interp_spline

@@ -7,10 +7,10 @@ from copy import deepcopy
 import numpy as np
 import pytest
 from eel_dynamics.analysis.powers import drag_powers
-from eel_model.robot.actuators import Servo, Torque
-from eel_model.robot.continuous import PassiveTail
-from eel_model.robot.joint import Joint
-from eel_model.robot.robot import Robot
+from eel_dynamics.model.robot.actuators import Servo, Torque
+from eel_dynamics.model.robot.continuous import PassiveTail
+from eel_dynamics.model.robot.joint import Joint
+from eel_dynamics.model.robot.robot import Robot
 
 from eel_dynamics import (
     Accuracy,

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from eel_model.axes import turn_quaternion, turn_vector
+from eel_dynamics.model.axes import turn_quaternion, turn_vector
 from flows import FLOWS, formula
 from flows import in_paper_axes as flow_in_paper_axes
 from library_state import library_body

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from cases import random_law, random_twist
 from eel_dynamics.analysis.powers import drag_powers
-from eel_model.axes import turn_quaternion, turn_vector
+from eel_dynamics.model.axes import turn_quaternion, turn_vector
 from flows import FLOWS, formula
 from flows import in_paper_axes as flow_in_paper_axes
 from library_state import (

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from cases import kern_body
 from draws import few, numbers
-from eel_model.section_data import sections_of
+from eel_dynamics.model.section_data import sections_of
 from hypothesis import given
 from library_state import Body, Scene, hydrodynamic_wrench, momentum
 from reference import boyer_body

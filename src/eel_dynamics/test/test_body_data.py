@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from eel_dynamics.model.body.grid import Grid
+from eel_dynamics.model.body.panels import panels_of
+from eel_dynamics.model.section_data import sections_of, sections_on
 from eel_dynamics.runs.companion import relative_errors
-from eel_model.body.grid import Grid
-from eel_model.body.panels import panels_of
-from eel_model.section_data import sections_of, sections_on
 from random_bodies import drawn_body, drawn_law, with_kinks_at_data
 
 import eel_core

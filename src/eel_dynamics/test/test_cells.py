@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 import pytest
-from eel_base.cell import cell_of
+from eel_common.cell import cell_of
 
 from eel_dynamics import Body, Scene, simulate, simulate_batch
 from eel_gaits import Law, Term, falling, straight

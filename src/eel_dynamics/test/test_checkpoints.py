@@ -10,9 +10,9 @@ import sys
 
 import numpy as np
 import pytest
-from eel_model.fins.fins import Fin, RollHold
-from eel_model.flow.functions import FlowField
-from eel_model.flow.sources import Gust, Shear
+from eel_dynamics.model.fins.fins import Fin, RollHold
+from eel_dynamics.model.flow.functions import FlowField
+from eel_dynamics.model.flow.sources import Gust, Shear
 from random_robots import drawn
 
 from eel_dynamics import Scene, Simulation
@@ -112,7 +112,7 @@ CASES = {  # name: (arguments of `Simulation`, what happens before the copy)
 
 
 def begun(arguments, before):
-    from eel_model.robot.robot import Robot
+    from eel_dynamics.model.robot.robot import Robot
 
     arguments = {"law": straight()} | arguments
     if "robot" in arguments:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from cases import FALLING_BREAKS, falling_law
 from draws import few, quaternions, scenes, swimmers, twists
-from eel_model.axes import turn_quaternion
+from eel_dynamics.model.axes import turn_quaternion
 from hypothesis import given
 from hypothesis import strategies as st
 from library_state import (

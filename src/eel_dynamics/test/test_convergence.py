@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from cases import falling_law, random_law, random_twist
-from eel_model.body.panels import panels_of
+from eel_dynamics.model.body.panels import panels_of
 from library_state import DENSE, Accuracy, Body, Scene, distance, simulate, snapshot
 
 from eel_gaits import falling
@@ -77,7 +77,7 @@ def test_order_in_space(measured, monkeypatch):
     to 160 points per length, counted where they follow the resolution: the nose's panel has them by a rule of its
     own. Below, panels gain several digits with each point: see `test_spectral_in_space`.
     """
-    monkeypatch.setattr("eel_model.body.panels.FILLED", 1)  # no nodes beyond those of the resolution
+    monkeypatch.setattr("eel_dynamics.model.body.panels.FILLED", 1)  # no nodes beyond those of the resolution
     law, resolutions = falling(pitch_bend=3.0), np.arange(90.0, 165.0, 10.0)
 
     def run(resolution):

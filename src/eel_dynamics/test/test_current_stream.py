@@ -3,8 +3,8 @@
 
 import numpy as np
 import pytest
-from eel_model.flow.stream import CurrentStream
-from eel_model.flow.text import flow_from_text, text_of_flow
+from eel_dynamics.model.flow.stream import CurrentStream
+from eel_dynamics.model.flow.text import flow_from_text, text_of_flow
 from scipy.integrate import quad
 
 from eel_dynamics import Accuracy, Gust, Scene, Shear, Simulation, Uniform, Vortex, VortexStreet, Wave

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from cases import falling_law, random_law, random_twist
 from draws import few, numbers, quaternions, scenes, swimmers, twists
-from eel_model.axes import turn_quaternion, turn_vector
-from eel_model.fins.text import fins_from_text, text_of_fins
-from eel_model.inertia import straight_inertia
-from eel_model.section_data import nose_of
+from eel_dynamics.model.axes import turn_quaternion, turn_vector
+from eel_dynamics.model.fins.text import fins_from_text, text_of_fins
+from eel_dynamics.model.inertia import straight_inertia
+from eel_dynamics.model.section_data import nose_of
 from flows import FLOWS, formula
 from flows import in_paper_axes as in_paper_axes_of_flow
 from hypothesis import given

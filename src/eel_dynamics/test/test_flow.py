@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from eel_dynamics.analysis.powers import drag_powers
-from eel_model.axes import turn_vector
+from eel_dynamics.model.axes import turn_vector
 from flows import FLOWS, ROWS, TIME, formula, in_paper_axes
 from library_state import Reference, library_body, reference_scene
 from random_scenes import pointed, robots_anywhere

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from cases import kern_body, random_law, random_twist
-from eel_model.axes import turn_quaternion, turn_vector
+from eel_dynamics.model.axes import turn_quaternion, turn_vector
 from flows import FLOWS, any_flow, formula, in_paper_axes
 from library_state import (
     DENSE,

@@ -5,10 +5,10 @@ import threading
 import time
 
 import pytest
+from eel_common.ros.loop.diagnostics import Report
+from eel_common.ros.loop.followed_clock import FollowedClock
+from eel_common.ros.testing.log import Log
 from eel_gaits.ros.messages import law_to_message
-from eel_ros.loop.diagnostics import Report
-from eel_ros.loop.followed_clock import FollowedClock
-from eel_ros.testing.log import Log
 from fake_publishers import fake_publishers, run_loop
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock

@@ -7,7 +7,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from eel_model.robot.robot import robot_of
+from eel_dynamics.model.robot.robot import robot_of
 from flow_files import write_flow
 from scipy.io import netcdf_file
 

@@ -6,7 +6,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from eel_base.topics import ENERGY_FIELDS
+from eel_common.ros.loop.serialised_message import MARKED_TIME, SerialisedMessage
+from eel_common.topics import ENERGY_FIELDS
 from eel_dynamics.accuracy.error_estimate import HeadErrors
 from eel_dynamics.ros.messages import SampleMessages, body_message, diagnostic_array, samples_from_message
 from eel_dynamics.ros.parameters import DynamicsParameters
@@ -14,7 +15,6 @@ from eel_dynamics.ros.simulation_from_parameters import simulation_from_paramete
 from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
 from eel_gaits.gaits.settings import Settings
 from eel_gaits.ros.messages import ROWS
-from eel_ros.loop.serialised_message import MARKED_TIME, SerialisedMessage
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry
 from rclpy.serialization import deserialize_message, serialize_message

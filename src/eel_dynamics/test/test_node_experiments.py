@@ -5,7 +5,7 @@ import math
 
 import pytest
 import yaml
-from eel_base.wording import shown
+from eel_common.wording import shown
 from eel_gaits.ros.messages import law_to_message
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
 from rcl_interfaces.srv import ListParameters, SetParameters

@@ -3,10 +3,10 @@
 
 import numpy as np
 import pytest
+from eel_dynamics.model.fins.text import fins_from_text, text_of_fins
+from eel_dynamics.model.flow.text import flow_from_text
+from eel_dynamics.model.robot.robot import robot_of
 from eel_gaits.ros.messages import law_to_message
-from eel_model.fins.text import fins_from_text, text_of_fins
-from eel_model.flow.text import flow_from_text
-from eel_model.robot.robot import robot_of
 from rclpy.duration import Duration
 from sensor_msgs.msg import JointState
 from swim_client import LIMIT, nanoseconds

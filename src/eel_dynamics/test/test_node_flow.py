@@ -10,6 +10,7 @@ import time
 
 import numpy as np
 import pytest
+from eel_common.ros import fastdds_profile
 from eel_gaits.ros.messages import law_to_message
 from geometry_msgs.msg import PoseStamped
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -18,7 +19,6 @@ from swim_client import LIMIT, LOSSLESS, SAMPLES, nanoseconds
 
 from eel_gaits import Law, Term, falling, straight
 from eel_msgs.msg import CurvatureSamples
-from eel_ros import fastdds_profile
 
 FLAT_OUT = ("--ros-args", "-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=1")
 CHEAP = (

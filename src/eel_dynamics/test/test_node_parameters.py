@@ -5,9 +5,9 @@ import math
 from dataclasses import fields
 
 import pytest
-from eel_base.quantity import checked
+from eel_common.quantity import checked
+from eel_common.ros.parameters import default_of
 from eel_dynamics.ros.parameters import DynamicsParameters
-from eel_ros.parameters import default_of
 
 from eel_dynamics import Scene
 

@@ -7,8 +7,8 @@ import math
 
 import numpy as np
 import pytest
+from eel_common.ros.testing.service_call import answer_of
 from eel_gaits.ros.messages import law_to_message, samples_to_message, stamp_of
-from eel_ros.testing.service_call import answer_of
 from geometry_msgs.msg import Vector3Stamped
 from nav_msgs.msg import Odometry
 from rclpy.duration import Duration

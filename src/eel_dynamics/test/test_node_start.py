@@ -6,10 +6,10 @@ import signal
 from dataclasses import fields
 
 import pytest
+from eel_common.ros.testing.node_process import PROMPT
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_gaits.ros.messages import law_to_message
-from eel_model.scene import Scene
-from eel_ros.testing.node_process import PROMPT
 from swim_client import LIMIT
 
 from eel_gaits import falling

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from eel_model.body.panels import nearest, panels_of
+from eel_dynamics.model.body.panels import nearest, panels_of
 
 from eel_dynamics import Accuracy, Body
 

@@ -4,11 +4,11 @@
 from types import SimpleNamespace
 
 import pytest
+from eel_common.ros.loop.channel import WaitBudget
+from eel_common.ros.loop.diagnostics import Report
+from eel_common.ros.testing.log import Log
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.publishers import END_TIMEOUT, Publishers
-from eel_ros.loop.channel import WaitBudget
-from eel_ros.loop.diagnostics import Report
-from eel_ros.testing.log import Log
 
 
 class FakeNode:

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from eel_model.robot.compiled import mode_table
+from eel_dynamics.model.robot.compiled import mode_table
 from reference import Reference, boyer_body, rotation, scene
 from reference_bending import BentReference
 

@@ -3,7 +3,7 @@
 
 from pathlib import Path
 
-from eel_ros.testing.release import check_manifest, sources_without_licence
+from eel_common.ros.testing.release import check_manifest, sources_without_licence
 
 PACKAGE = Path(__file__).resolve().parents[1]
 

@@ -6,11 +6,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from eel_common.ros.loop.clock_ticks import ClockTicks
+from eel_common.ros.loop.diagnostics import ERROR, OK, WARN, Report
+from eel_common.ros.loop.requests import Answer
+from eel_common.ros.testing.log import Log
 from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
-from eel_ros.loop.clock_ticks import ClockTicks
-from eel_ros.loop.diagnostics import ERROR, OK, WARN, Report
-from eel_ros.loop.requests import Answer
-from eel_ros.testing.log import Log
 from fake_publishers import FakeInbox, fake_publishers, run_loop
 from sensor_msgs.msg import JointState
 
@@ -270,7 +270,11 @@ class MadeUpTime(FakeInbox):
     def __init__(self, monkeypatch):
         super().__init__()
         self.now = 100.0
-        for module in ("eel_dynamics.ros.loop.run_loop", "eel_ros.loop.clock_ticks", "eel_ros.loop.requests"):
+        for module in (
+            "eel_dynamics.ros.loop.run_loop",
+            "eel_common.ros.loop.clock_ticks",
+            "eel_common.ros.loop.requests",
+        ):
             monkeypatch.setattr(f"{module}.time", SimpleNamespace(monotonic=lambda: self.now))
 
     def wait(self, seconds):

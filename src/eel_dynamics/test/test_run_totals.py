@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from eel_base.quantity import LARGEST
+from eel_common.quantity import LARGEST
 from eel_dynamics.ros.loop.run_totals import RunTotals, check_finite
 
 from eel_dynamics import Simulation, SimulationStopped

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 import yaml
 from eel_dynamics.commands import simulate as command
+from eel_dynamics.model.fins.fins import Fin, RollHold
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.runs.scene_file import WORDS, swim_of, words_of
 from eel_gaits.gaits.settings import Settings
-from eel_model.fins.fins import Fin, RollHold
 from swim_client import LIMIT
 
 from eel_dynamics import Accuracy, Body, Gust, Robot, Run, Scene, Shear, Swim, load_scene, save_scene, simulate

@@ -155,11 +155,11 @@ def test_what_costs_more_on_the_way_stops_with_what_to_change(monkeypatch):
 @pytest.fixture
 def hurried(monkeypatch):
     """A wall clock by which every look is a second after the one before."""
-    for module in ("eel_dynamics.runs.simulate", "eel_base.command.progress"):
+    for module in ("eel_dynamics.runs.simulate", "eel_common.command.progress"):
         ticks = itertools.count()
         clock = type("Clock", (), {"monotonic": lambda ticks=ticks: float(next(ticks))})
         monkeypatch.setattr(f"{module}.time", clock)
-    monkeypatch.setattr("eel_base.command.progress.QUIET", 2.0)
+    monkeypatch.setattr("eel_common.command.progress.QUIET", 2.0)
 
 
 def test_progress_is_told_with_what_is_left(hurried):

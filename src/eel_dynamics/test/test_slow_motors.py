@@ -5,8 +5,8 @@ import warnings
 
 import numpy as np
 import pytest
+from eel_dynamics.model.robot.compiled import mode_table
 from eel_dynamics.simulation.bending.slow_motors import slow_motors
-from eel_model.robot.compiled import mode_table
 
 from eel_dynamics import Body, Robot, Scene, simulate
 from eel_gaits import sampled, still, straight

@@ -4,12 +4,12 @@
 import numpy as np
 import pytest
 from eel_dynamics.accuracy.sudden_changes import changes_of
+from eel_dynamics.model.flow.functions import FlowField
+from eel_dynamics.model.robot.actuators import Torque
+from eel_dynamics.model.robot.continuous import Muscle, PassiveTail
+from eel_dynamics.model.robot.joint import Joint
+from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
-from eel_model.flow.functions import FlowField
-from eel_model.robot.actuators import Torque
-from eel_model.robot.continuous import Muscle, PassiveTail
-from eel_model.robot.joint import Joint
-from eel_model.robot.robot import Robot
 
 from eel_dynamics import Body, Scene, Simulation, simulate
 from eel_gaits import Law, Ramp, Term

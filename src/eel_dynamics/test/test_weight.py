@@ -9,10 +9,11 @@ import pytest
 from cases import falling_law, random_law, random_twist
 from draws import few, numbers, quaternions, scenes, swimmers, twists
 from eel_dynamics.commands.ballast import main as command
-from eel_model.axes import turn_vector
-from eel_model.inertia import straight_inertia
-from eel_model.robot.robot import Robot
-from eel_model.section_data import nose_of
+from eel_dynamics.model import section_data
+from eel_dynamics.model.axes import turn_vector
+from eel_dynamics.model.inertia import straight_inertia
+from eel_dynamics.model.robot.robot import Robot
+from eel_dynamics.model.section_data import nose_of
 from flows import FLOWS, formula
 from flows import in_paper_axes as in_paper_axes_of_flow
 from hypothesis import given
@@ -25,7 +26,6 @@ from test_against_reference import EXACT, check
 
 from eel_dynamics import Accuracy, Body, FlowField, Run, Scene, Simulation, ballast_for, simulate, trim_of
 from eel_gaits import Law, Term, straight
-from eel_model import section_data
 
 pytestmark = pytest.mark.identity("Bodies that weigh")
 G = 9.80665

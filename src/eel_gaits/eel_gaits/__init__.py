@@ -2,7 +2,7 @@
 """Curvature laws of elongated swimmers, and a ROS 2 node that publishes them. Nothing imported here needs ROS."""
 
 import eel_command  # noqa: F401  first: Ctrl-C ends a command during the other imports
-from eel_base.quantity import Quantities, quantity
+from eel_common.quantity import Quantities, quantity
 
 from eel_gaits.gaits.cpg import cpg
 from eel_gaits.gaits.diving import diving, falling, helix, rising, roll_over, rolling, spiral

@@ -3,8 +3,8 @@
 
 import time
 
+from eel_common.ros.testing.service_call import answer_of
 from eel_gaits.laws.law_message import law_from_message
-from eel_ros.testing.service_call import answer_of
 from rcl_interfaces.srv import (
     DescribeParameters,
     GetParameters,

@@ -5,8 +5,8 @@ import json
 
 import numpy as np
 import pytest
-from eel_base.files.archive import read_archive
-from eel_base.files.input_file import InputFile, from_json, reading
+from eel_common.files.archive import read_archive
+from eel_common.files.input_file import InputFile, from_json, reading
 
 from eel_gaits import sequence_from_file
 
@@ -66,7 +66,7 @@ def test_a_file_is_not_read_past_its_end_nor_over_and_over(tmp_path):
 
 
 def test_json_is_read_up_to_a_bound(monkeypatch):
-    monkeypatch.setattr("eel_base.files.input_file.MOST_VALUES", 10)
+    monkeypatch.setattr("eel_common.files.input_file.MOST_VALUES", 10)
     assert from_json(json.dumps(list(range(10)))) == list(range(10))
     with pytest.raises(ValueError, match="at most 10 values, got 11"):
         from_json(json.dumps(list(range(11))))

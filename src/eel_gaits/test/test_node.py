@@ -7,8 +7,8 @@ import time
 
 import numpy as np
 import pytest
+from eel_common.ros.testing.node_process import PROMPT
 from eel_gaits.gaits.cpg import Oscillation, Oscillators
-from eel_ros.testing.node_process import PROMPT
 from rclpy.qos import QoSProfile
 
 from eel_gaits import falling, gait, sampled, save_law, sequence, straight, turning

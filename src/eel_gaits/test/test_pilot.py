@@ -5,12 +5,12 @@ import math
 
 import numpy as np
 import pytest
-from eel_base.attitude import attitude
+from eel_common.attitude import attitude
+from eel_common.head_motion import HeadMotion
 from eel_gaits.laws.steered_law import NUMBERS, SteeredLaw
 from eel_gaits.pilot import goals
 from eel_gaits.pilot.estimate import PeriodMeans, plane_of
 from eel_gaits.pilot.guidance import PathGuidance, against_water
-from eel_gaits.pilot.head_motion import HeadMotion
 from eel_gaits.pilot.pilot import Pilot, Progress
 from eel_gaits.pilot.regulator import TorqueLimiter
 from eel_gaits.pilot.settings import PilotSettings

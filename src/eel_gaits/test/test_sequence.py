@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from eel_base.wording import shown
+from eel_common.wording import shown
 from eel_gaits.gaits.settings import Settings
 
 from eel_gaits import gait, sequence, sequence_from_file, still, straight, turning

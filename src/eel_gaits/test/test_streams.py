@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 from builtin_interfaces.msg import Time
+from eel_common.ros.headers import LATEST, seconds_of
 from eel_gaits.gaits.cpg import Oscillation, Oscillators
 from eel_gaits.pilot import goals
 from eel_gaits.pilot.settings import PilotSettings
@@ -13,7 +14,6 @@ from eel_gaits.ros.messages import samples_to_message
 from eel_gaits.ros.pilot_messages import head_motion, path_message, read_path
 from eel_gaits.ros.streams import MOST_SAMPLES, ROWS_AHEAD, OscillatorStream, RowStream
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_ros.headers import LATEST, seconds_of
 from nav_msgs.msg import Odometry
 from rclpy.serialization import serialize_message
 

@@ -15,7 +15,7 @@ try:
 except ImportError as error:
     raise ImportError(f"eel_gym needs gymnasium ({error}); install it with: pip install gymnasium") from None
 
-from eel_gaits.pilot.head_motion import HeadMotion
+from eel_common.head_motion import HeadMotion
 
 from eel_gym.depth import DepthEnv
 from eel_gym.heading import HeadingEnv

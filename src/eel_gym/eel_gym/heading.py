@@ -5,10 +5,10 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from eel_base.attitude import components
-from eel_base.quantity import quantity
-from eel_gaits.pilot.head_motion import wrapped
-from eel_model.scene import Scene
+from eel_common.attitude import components
+from eel_common.head_motion import wrapped
+from eel_common.quantity import quantity
+from eel_dynamics.model.scene import Scene
 
 from eel_gym.swimmer_env import SwimmerEnv
 from eel_gym.task import FASTEST, GREATEST_START_SPEED, SPIN, Episode, Observed, Start

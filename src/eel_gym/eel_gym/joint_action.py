@@ -4,10 +4,10 @@
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import checked_choice, checked_instance, positive
-from eel_base.wording import shown
+from eel_common.quantity import checked_choice, checked_instance, positive
+from eel_common.wording import shown
+from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.simulation.sampled_swimmers import Array
-from eel_model.robot.robot import Robot
 
 KINDS = {"position": ("rad", None), "velocity": ("rad/s", "speed_limit"), "torque": ("N m", "torque_limit")}
 """Of a command: its unit, and the field of a servo that is its greatest value."""

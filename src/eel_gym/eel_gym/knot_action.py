@@ -8,8 +8,8 @@ its acceleration never jump.
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import checked_row, positive
-from eel_base.wording import shown
+from eel_common.quantity import checked_row, positive
+from eel_common.wording import shown
 from eel_dynamics.simulation.sampled_swimmers import Array
 
 

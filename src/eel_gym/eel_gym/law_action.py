@@ -9,8 +9,8 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import checked_instance, checked_row, positive
-from eel_base.wording import shown
+from eel_common.quantity import checked_instance, checked_row, positive
+from eel_common.wording import shown
 from eel_dynamics.accuracy.law_waves import check_law
 from eel_dynamics.simulation.sampled_swimmers import Array
 from eel_gaits.laws.law import Law

@@ -2,8 +2,8 @@
 """A small picture of the swimmer, from above and from the side, drawn by matplotlib without a display."""
 
 import numpy as np
+from eel_dynamics.model.body.body import Body
 from eel_dynamics.simulation.observations import Snapshot
-from eel_model.body.body import Body
 
 SIZE, DPI = (8.0, 4.0), 100  # inches, dots per inch
 REACH = 1.5  # body lengths that each side of the head shows

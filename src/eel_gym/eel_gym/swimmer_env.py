@@ -8,18 +8,18 @@ from typing import Any, Self
 
 import gymnasium
 import numpy as np
-from eel_base.quantity import number
-from eel_base.wording import not_one_of, one_line, shown
+from eel_common.head_motion import HeadMotion
+from eel_common.quantity import number
+from eel_common.wording import not_one_of, one_line, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.batches.simulate_batch import MOST_THREADS
+from eel_dynamics.model.body.body import Body
+from eel_dynamics.model.flow.flow import Flow
+from eel_dynamics.model.initial_state import level_orientation
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.commanded_robots import CommandedRobots
 from eel_dynamics.simulation.sampled_swimmers import LEFT_OUT, Array, SampledSwimmers
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
-from eel_gaits.pilot.head_motion import HeadMotion
-from eel_model.body.body import Body
-from eel_model.flow.flow import Flow
-from eel_model.initial_state import level_orientation
-from eel_model.scene import Scene
 from numpy.typing import NDArray
 
 from eel_gym.episode_recording import EpisodeRecording

@@ -8,13 +8,13 @@ from typing import Any, ClassVar, NamedTuple
 
 import gymnasium
 import numpy as np
-from eel_base.quantity import Quantities, checked_instance, described_fields, quantity
-from eel_base.wording import shown
+from eel_common.head_motion import wrapped
+from eel_common.quantity import Quantities, checked_instance, described_fields, quantity
+from eel_common.wording import shown
+from eel_dynamics.model.body.body import Body, checked_body
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.sampled_swimmers import Array
 from eel_gaits.gaits.swimming import straight
-from eel_gaits.pilot.head_motion import wrapped
-from eel_model.body.body import Body, checked_body
-from eel_model.scene import Scene
 
 from eel_gym.joint_action import JointAction
 from eel_gym.knot_action import KnotAction

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import gymnasium
 import numpy as np
-from eel_base.wording import shown
+from eel_common.wording import shown
 from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space

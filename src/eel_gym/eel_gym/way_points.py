@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from eel_base.attitude import components
-from eel_base.quantity import quantity
-from eel_gaits.pilot.head_motion import wrapped
-from eel_model.scene import Scene
+from eel_common.attitude import components
+from eel_common.head_motion import wrapped
+from eel_common.quantity import quantity
+from eel_dynamics.model.scene import Scene
 
 from eel_gym.swimmer_env import SwimmerEnv
 from eel_gym.task import FARTHEST, FASTEST, GREATEST_START_SPEED, SPIN, Episode, Observed, Start

@@ -10,8 +10,8 @@ import sys
 import gymnasium
 import numpy as np
 import pytest
+from eel_dynamics.model.flow.sources import Gust, Shear
 from eel_gym.heading import HeadingEnv
-from eel_model.flow.sources import Gust, Shear
 
 from eel_dynamics import Scene
 from eel_gym import JointAction, KnotAction, ThreadedVectorEnv

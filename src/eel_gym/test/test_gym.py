@@ -9,8 +9,8 @@ import warnings
 import gymnasium
 import numpy as np
 import pytest
+from eel_dynamics.model.initial_state import level_orientation
 from eel_dynamics.simulation.sampled_swimmers import SampledSwimmers
-from eel_model.initial_state import level_orientation
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 

@@ -3,8 +3,8 @@
 
 import argparse
 
-from eel_base.command.command_line import Parser
-from eel_base.wording import shown
+from eel_common.command.command_line import Parser
+from eel_common.wording import shown
 from eel_dynamics.commands.options import add_changes, add_options, named_texts, set_numbers, swim_from
 
 from eel_dynamics import Swim

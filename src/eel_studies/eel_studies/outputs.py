@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from eel_base.command.command import checked_out
-from eel_base.command.command_line import Parser
-from eel_base.files import markdown
-from eel_base.files.output_file import check_output, replacing, written_as
+from eel_common.command.command import checked_out
+from eel_common.command.command_line import Parser
+from eel_common.files import markdown
+from eel_common.files.output_file import check_output, replacing, written_as
 from eel_dynamics.runs.storage.tables import needed
 
 from eel_studies.pictures import PICTURES, Draw, write_picture

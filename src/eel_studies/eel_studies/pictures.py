@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
-from eel_base.files.output_file import replacing
+from eel_common.files.output_file import replacing
 
 Figure: TypeAlias = Any  # of matplotlib, which takes longer to import than all the rest
 Axes: TypeAlias = Any

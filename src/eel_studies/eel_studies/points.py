@@ -22,25 +22,25 @@ from dataclasses import fields, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from eel_base.files.input_file import reading
-from eel_base.quantity import checked_instance, number
-from eel_base.wording import did_you_mean, shown
+from eel_common.files.input_file import reading
+from eel_common.quantity import checked_instance, number
+from eel_common.wording import did_you_mean, shown
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import AT_END, OF_LEDGER, OF_WRENCH, measures_of
 from eel_dynamics.batches.broadcast import numbered
 from eel_dynamics.batches.simulate_batch import swim_of, swum
+from eel_dynamics.model.body.body import MASSES, NUMBERS, Body, checked_body
+from eel_dynamics.model.fins.fins import Fin, RollHold, checked_fins
+from eel_dynamics.model.fins.text import GAINS, fins_from_text
+from eel_dynamics.model.flow.plain import KINDS
+from eel_dynamics.model.flow.text import flow_from_text
+from eel_dynamics.model.initial_state import InitialState
+from eel_dynamics.model.robot.robot import Robot, checked_robot, robot_of
+from eel_dynamics.model.scene import checked_scene
 from eel_dynamics.runs.sampling import checked_times
 from eel_dynamics.runs.swim_request import SwimRequest
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_gaits.gaits.registry import find
-from eel_model.body.body import MASSES, NUMBERS, Body, checked_body
-from eel_model.fins.fins import Fin, RollHold, checked_fins
-from eel_model.fins.text import GAINS, fins_from_text
-from eel_model.flow.plain import KINDS
-from eel_model.flow.text import flow_from_text
-from eel_model.initial_state import InitialState
-from eel_model.robot.robot import Robot, checked_robot, robot_of
-from eel_model.scene import checked_scene
 
 from eel_dynamics import Accuracy, Batch, Flow, Run, Scene, Swim
 from eel_gaits import Law

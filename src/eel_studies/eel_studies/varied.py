@@ -19,13 +19,13 @@ from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import number
-from eel_base.wording import shown
+from eel_common.quantity import number
+from eel_common.wording import shown
+from eel_dynamics.model.fins.fins import Fin, RollHold
+from eel_dynamics.model.robot.actuators import Servo
+from eel_dynamics.model.robot.continuous import Muscle, PassiveTail
+from eel_dynamics.model.robot.joint import Joint
 from eel_gaits.gaits.numbers import Periodic
-from eel_model.fins.fins import Fin, RollHold
-from eel_model.robot.actuators import Servo
-from eel_model.robot.continuous import Muscle, PassiveTail
-from eel_model.robot.joint import Joint
 
 from eel_dynamics import Accuracy, Scene, Swim
 from eel_studies.points import point_at

@@ -11,7 +11,7 @@ from concurrent.futures import Executor, ThreadPoolExecutor, as_completed
 from contextlib import contextmanager
 from typing import Any, NamedTuple, TypeVar
 
-from eel_base.wording import shown
+from eel_common.wording import shown
 from eel_dynamics.runs.storage.tables import needed
 
 PROCESSES = "processes"  # as a scheduler: of this machine

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from eel_base.cell import BLUE as BLUE_OF_CELLS
+from eel_common.cell import BLUE as BLUE_OF_CELLS
 from eel_studies.optimisation.front import PHASES, Front, draw_front
 from eel_studies.pictures import BLUE
 from eel_studies.varied import labelled

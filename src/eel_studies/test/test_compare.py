@@ -2,7 +2,7 @@
 """`eel compare`: the measures of two runs, their difference, a picture."""
 
 import pytest
-from eel_model.body.body import Body
+from eel_dynamics.model.body.body import Body
 from eel_studies.comparison.command import main
 
 from eel_dynamics import simulate

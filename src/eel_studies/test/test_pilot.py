@@ -5,11 +5,11 @@ import math
 
 import numpy as np
 import pytest
+from eel_dynamics.model.fins.text import fins_from_text
 from eel_gaits.pilot.goals import Station, course, path, station
 from eel_gaits.pilot.pilot import News, Pilot
 from eel_gaits.pilot.regulator import Gains
 from eel_gaits.pilot.settings import PilotSettings
-from eel_model.fins.text import fins_from_text
 from eel_studies.pilot.closed_loop import swim_with
 from eel_studies.roll_hold.study import PAIR
 

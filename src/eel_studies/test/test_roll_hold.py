@@ -3,8 +3,8 @@
 
 import numpy as np
 import pytest
+from eel_dynamics.model.fins.text import fins_from_text
 from eel_dynamics.runs.swim import Swim
-from eel_model.fins.text import fins_from_text
 from eel_studies.roll_hold.command import main
 from eel_studies.roll_hold.study import PAIR, holding, roll_window, swum
 from eel_studies.steering.period_map import turned_by

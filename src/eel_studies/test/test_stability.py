@@ -6,9 +6,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from eel_dynamics.model.inertia import condition_of, straight_inertia
+from eel_dynamics.model.section_data import nose_of
 from eel_dynamics.runs.scene_file import swim_of
-from eel_model.inertia import condition_of, straight_inertia
-from eel_model.section_data import nose_of
 from eel_studies.outputs import Outputs
 from eel_studies.stability import command, inertia, long_runs, maps
 from eel_studies.stability.extremes import maps_of

@@ -12,7 +12,7 @@ import threading
 
 import numpy as np
 import pytest
-from eel_base.wording import shown
+from eel_common.wording import shown
 from eel_dynamics.analysis.measures import measures_of
 from eel_dynamics.runs.swim import Swim
 from eel_studies.points import SwimSettings, base_point, batch_of_points, point_at

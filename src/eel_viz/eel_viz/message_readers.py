@@ -10,8 +10,8 @@ from math import isfinite
 from typing import Any
 
 import numpy as np
-from eel_base.topics import ENERGY_FIELDS, LATER_ENERGY_FIELDS
-from eel_base.wording import shown
+from eel_common.topics import ENERGY_FIELDS, LATER_ENERGY_FIELDS
+from eel_common.wording import shown
 
 from eel_viz import messages
 from eel_viz.messages import BadMessage

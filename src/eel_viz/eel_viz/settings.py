@@ -4,8 +4,8 @@
 import ipaddress
 from dataclasses import dataclass
 
-from eel_base.quantity import Quantities, quantity
-from eel_base.wording import shown
+from eel_common.quantity import Quantities, quantity
+from eel_common.wording import shown
 
 SINKS = ("spawn", "connect", "serve", "save")
 BLUEPRINTS = ("overview", "torques", "motion", "robot", "swimmer", "compare")

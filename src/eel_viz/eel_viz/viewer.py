@@ -17,7 +17,7 @@ import time
 from collections.abc import Iterator
 from typing import IO, TYPE_CHECKING
 
-from eel_base.wording import WorkStopped
+from eel_common.wording import WorkStopped
 
 if TYPE_CHECKING:
     from rerun.experimental import ViewerClient

@@ -11,7 +11,7 @@ import made_up
 import rclpy
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from eel_base.topics import OWN, SAMPLED
+from eel_common.topics import OWN, SAMPLED
 from eel_viz.bags.definitions import message_class
 from eel_viz.recording.dispatcher import READERS
 from geometry_msgs.msg import Vector3

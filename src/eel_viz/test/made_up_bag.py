@@ -4,7 +4,7 @@
 import pathlib
 
 import made_up
-from eel_base.topics import GLOBAL, OWN
+from eel_common.topics import GLOBAL, OWN
 from eel_viz.bags.definitions import definition, type_hash
 from fake_swimmer import body_message, diagnostics, messages
 from nav_msgs.msg import Path

@@ -13,8 +13,8 @@ import time
 from pathlib import Path
 
 import made_up
-from eel_base.files.output_file import part_of
-from eel_ros.process_end import exit_immediately
+from eel_common.files.output_file import part_of
+from eel_common.ros.process_end import exit_immediately
 from eel_viz.recording.recordings import Recordings
 from eel_viz.recording.sinks import destinations
 from eel_viz.settings import Settings

@@ -4,7 +4,7 @@
 import made_up
 import numpy as np
 import pytest
-from eel_base.attitude import world_from_body, world_from_section
+from eel_common.attitude import world_from_body, world_from_section
 from eel_viz.scene3d import camera, colours
 from eel_viz.scene3d.centre_line import Resampling
 from eel_viz.scene3d.skin import Skin

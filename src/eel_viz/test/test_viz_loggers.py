@@ -8,7 +8,7 @@ from types import SimpleNamespace as NS
 import made_up
 import numpy as np
 import pytest
-from eel_base.attitude import attitude, world_from_body, world_from_section
+from eel_common.attitude import attitude, world_from_body, world_from_section
 from eel_viz.batched_stream import Rates
 from eel_viz.limit import RECENT
 from eel_viz.messages import WRENCH_FIELDS, Pose

@@ -8,7 +8,7 @@ import made_up
 import numpy as np
 import pytest
 from builtin_interfaces.msg import Time
-from eel_base.topics import ENERGY_FIELDS, LATER_ENERGY_FIELDS
+from eel_common.topics import ENERGY_FIELDS, LATER_ENERGY_FIELDS
 from eel_viz.messages import CURVATURE_FIELDS, WRENCH_FIELDS, BadMessage
 from fake_swimmer import body_message, messages
 from geometry_msgs.msg import PoseStamped

@@ -7,7 +7,7 @@ from types import SimpleNamespace as NS
 import made_up
 import numpy as np
 import pytest
-from eel_base.attitude import section_axes
+from eel_common.attitude import section_axes
 from eel_viz.message_readers import read_body, read_joints, read_motors
 from eel_viz.messages import Backbone, BadMessage, Fin, Joint, Motors
 from eel_viz.recording.dispatcher import Dispatcher

@@ -7,7 +7,7 @@ from collections import Counter
 from contextlib import nullcontext
 
 import pytest
-from eel_base.topics import SWIMMER
+from eel_common.topics import SWIMMER
 from eel_viz.ros import polled_subscriptions
 from eel_viz.ros.polled_subscriptions import DROP_LIMIT, GONE, TAKE_LIMIT, PolledSubscriptions, SwimmerPresence
 from eel_viz.same_stamp import UNSEEN, SameStamp

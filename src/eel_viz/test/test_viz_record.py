@@ -10,8 +10,8 @@ import made_up
 import numpy as np
 import pytest
 import yaml
-from eel_base.topics import GLOBAL, OWN
-from eel_ros.testing.node_process import PROMPT
+from eel_common.ros.testing.node_process import PROMPT
+from eel_common.topics import GLOBAL, OWN
 from eel_viz.bags.definitions import definition, message_class, type_hash
 from eel_viz.ros.echo import as_yaml, picked
 from fake_swimmer import TOPICS, arrived, diagnostics, found, messages

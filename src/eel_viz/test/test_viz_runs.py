@@ -12,7 +12,7 @@ import made_up
 import numpy as np
 import pytest
 import rerun as rr
-from eel_base.wording import shown
+from eel_common.wording import shown
 from eel_viz.messages import Status
 from eel_viz.recording import recordings, sinks
 from eel_viz.recording.destination import CHECK_PERIOD

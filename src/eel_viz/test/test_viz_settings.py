@@ -6,7 +6,7 @@ import sys
 from dataclasses import fields
 
 import pytest
-from eel_base.quantity import limits
+from eel_common.quantity import limits
 from eel_viz.settings import Settings
 
 
@@ -74,7 +74,8 @@ def test_everything_but_the_nodes_is_imported_without_ros_and_the_package_brings
 import sys
 class Blocked:
     def find_spec(self, name, path=None, target=None):
-        if name.split(".")[0] in ("rclpy", "eel_ros", "eel_msgs", "geometry_msgs", "ament_index_python"):
+        blocked = ("rclpy", "eel_msgs", "geometry_msgs", "ament_index_python")
+        if name.split(".")[0] in blocked or name.startswith("eel_common.ros"):
             raise ImportError("blocked: " + name)
 sys.meta_path.insert(0, Blocked())
 import importlib, pkgutil

@@ -21,10 +21,11 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import checked_choice, is_finite, number, positive
-from eel_base.wording import did_you_mean, shown
-from eel_model.scene import ROUGH_FRICTION, Scene
-from eel_model.section_data import WATCHED
+from eel_common.quantity import checked_choice, is_finite, number, positive
+from eel_common.wording import did_you_mean, shown
+
+from eel_dynamics.model.scene import ROUGH_FRICTION, Scene
+from eel_dynamics.model.section_data import WATCHED
 
 PRESETS = {"draft": 1e-2, "standard": 1e-4, "fine": 1e-6, "reference": 1e-8}
 COARSEST, FINEST = 0.1, 1e-10

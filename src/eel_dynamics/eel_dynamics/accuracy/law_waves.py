@@ -4,7 +4,7 @@
 from functools import lru_cache
 
 import numpy as np
-from eel_base.wording import shown
+from eel_common.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.spline import natural_spline
 from eel_gaits.laws.term import LAW_ROW, Term, amplitude_of

@@ -12,12 +12,13 @@ from contextlib import suppress
 from functools import lru_cache, partial
 
 import numpy as np
-from eel_base.attitude import world_from_body
+from eel_common.attitude import world_from_body
 from eel_gaits.sources.function_law import MOST_LOOKS, SEED, STEP
-from eel_model.flow.flow import Flow, parts_of
-from eel_model.flow.functions import FlowField
-from eel_model.robot.actuators import Torque
-from eel_model.robot.robot import Robot
+
+from eel_dynamics.model.flow.flow import Flow, parts_of
+from eel_dynamics.model.flow.functions import FlowField
+from eel_dynamics.model.robot.actuators import Torque
+from eel_dynamics.model.robot.robot import Robot
 
 GAPS = 1.0 / 4.0, 1.0 / 16.0, 1.0 / 128.0  # s
 LONGEST = 2.0  # s: no step passes over a change that lasts longer

@@ -9,14 +9,14 @@ lacks (ledger, internal wrench) raise `ValueError`.
 """
 
 import numpy as np
-from eel_base.cached import cached_property
-from eel_model.section_data import GRAVITY
+from eel_common.cached import cached_property
 
 from eel_dynamics.analysis.averaged_path import AveragedPath
 from eel_dynamics.analysis.averaging_window import AveragingWindow
 from eel_dynamics.analysis.peaks import peaks, torque_size
 from eel_dynamics.analysis.powers import area, drag_powers, power_density, torque_of
 from eel_dynamics.analysis.settling import FEWEST, Settling, settling_of
+from eel_dynamics.model.section_data import GRAVITY
 
 STILL = 1e-9  # of the body's length in a period: slower is round-off, and no motion
 

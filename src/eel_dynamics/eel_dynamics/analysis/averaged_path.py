@@ -6,7 +6,7 @@ over a cycle likewise).
 """
 
 import numpy as np
-from eel_base.cached import cached_property
+from eel_common.cached import cached_property
 
 from eel_dynamics.analysis.averaging_window import AveragingWindow
 from eel_dynamics.analysis.powers import area

@@ -9,8 +9,8 @@ import math
 from typing import Any
 
 import numpy as np
-from eel_base.cached import cached_property
-from eel_base.wording import shown
+from eel_common.cached import cached_property
+from eel_common.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.term import Term
 from eel_gaits.sources.sampled_law import SampledLaw

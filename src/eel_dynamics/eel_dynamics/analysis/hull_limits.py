@@ -15,11 +15,11 @@ exact potential flow. k is the change of the phase of V2 over the last quarter o
 """
 
 import numpy as np
-from eel_base.attitude import world_from_body
-from eel_model.axes import REP103
-from eel_model.body.hull import roundness_squared
+from eel_common.attitude import world_from_body
 
 from eel_dynamics.analysis.analysis import Analysis
+from eel_dynamics.model.axes import REP103
+from eel_dynamics.model.body.hull import roundness_squared
 
 MOST_ATTACHED, LEAST_SEPARATED, ROUND = 5.0, 6.0, 0.7  # KC, KC, roundness s
 MOST_WAVY, MOST_STROUHAL = 0.5, 1.0

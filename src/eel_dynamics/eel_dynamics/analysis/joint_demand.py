@@ -9,7 +9,7 @@ against the part behind: their power per length is -C . dK/dt, C of eq. 26 of Bo
 from dataclasses import dataclass
 
 import numpy as np
-from eel_base.wording import shown
+from eel_common.wording import shown
 
 from eel_dynamics.analysis.peaks import peaks
 from eel_dynamics.analysis.powers import area, power_density

@@ -5,7 +5,7 @@ from contextlib import suppress
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import checked_choice
+from eel_common.quantity import checked_choice
 
 from eel_dynamics.analysis.analysis import Analysis
 

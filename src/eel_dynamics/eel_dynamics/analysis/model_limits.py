@@ -21,11 +21,11 @@ by t1 (1 + K2 z - K3 y) per length, which must stay positive out to the skin.
 """
 
 import numpy as np
-from eel_base.attitude import world_from_body
-from eel_model.axes import REP103
+from eel_common.attitude import world_from_body
 
 from eel_dynamics.analysis.analysis import STILL, Analysis
 from eel_dynamics.analysis.hull_limits import hull_warnings
+from eel_dynamics.model.axes import REP103
 from eel_dynamics.simulation.energy import WORKS
 
 LEAST_SLENDERNESS = 5.0

@@ -4,11 +4,11 @@
 from dataclasses import replace
 
 import numpy as np
-from eel_base.attitude import world_from_body
-from eel_model.axes import REP103
+from eel_common.attitude import world_from_body
 
 import eel_core
 from eel_dynamics.curvature.law_follower import LawFollower
+from eel_dynamics.model.axes import REP103
 from eel_dynamics.simulation.bending.modes_on_grid import ModesOnGrid, motion_of_run
 from eel_dynamics.simulation.discretisation import discretise
 

@@ -2,10 +2,10 @@
 """The text of `Run.summary()`: the figures of a run with their units."""
 
 import numpy as np
-from eel_model.robot.actuators import at_limit
 
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.trim import trim_of
+from eel_dynamics.model.robot.actuators import at_limit
 
 NOT_PROMISED = (  # errors that are measured, and that no target is for
     ("orientation", "orientation", " rad"),

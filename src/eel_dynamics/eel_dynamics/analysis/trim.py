@@ -9,11 +9,12 @@ body, for two conditions, no net weight and no moment: `ballast_for`.
 from dataclasses import dataclass, replace
 
 import numpy as np
-from eel_base.quantity import number, positive
-from eel_base.wording import shown
-from eel_model.body.body import Body, checked_body
-from eel_model.scene import Scene, checked_scene
-from eel_model.section_data import GRAVITY, NEUTRAL
+from eel_common.quantity import number, positive
+from eel_common.wording import shown
+
+from eel_dynamics.model.body.body import Body, checked_body
+from eel_dynamics.model.scene import Scene, checked_scene
+from eel_dynamics.model.section_data import GRAVITY, NEUTRAL
 
 LEVEL = 1e-9  # of the length: centres of mass and buoyancy that are this close along the body
 PART = 0.1  # of the length, that a piece of ballast takes by default

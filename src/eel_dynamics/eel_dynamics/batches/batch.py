@@ -6,21 +6,21 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
-from eel_base.cell import cell_of
+from eel_common.cell import cell_of
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.body.body import Body
-from eel_model.equality import same_fields
-from eel_model.fins.fins import Fin
-from eel_model.flow.flow import Flow
-from eel_model.robot.joint import Joint
-from eel_model.robot.robot import Robot
-from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.analysis.measures import MEASURES, measures_of
 from eel_dynamics.analysis.settling import tell_unsettled
+from eel_dynamics.model.body.body import Body
+from eel_dynamics.model.equality import same_fields
+from eel_dynamics.model.fins.fins import Fin
+from eel_dynamics.model.flow.flow import Flow
+from eel_dynamics.model.robot.joint import Joint
+from eel_dynamics.model.robot.robot import Robot
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.run_data import ObservedArrays
 from eel_dynamics.runs.run_picture import lines_of_batch, picture_of_batch

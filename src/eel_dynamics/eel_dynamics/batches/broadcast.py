@@ -4,16 +4,16 @@
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import checked_instance, checked_row, numbers, positive
-from eel_base.wording import shown
+from eel_common.quantity import checked_instance, checked_row, numbers, positive
+from eel_common.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.body.body import Body
-from eel_model.flow.flow import Flow
-from eel_model.robot.robot import Robot
-from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.model.body.body import Body
+from eel_dynamics.model.flow.flow import Flow
+from eel_dynamics.model.robot.robot import Robot
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.motions import LAWS
 from eel_dynamics.runs.storage.run_contents import OF_EACH
 from eel_dynamics.simulation.simulation_setup import SimulationSetup, check_planar_law, checked_stations

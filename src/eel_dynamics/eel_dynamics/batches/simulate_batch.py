@@ -16,15 +16,15 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any, TypeVar
 
 import numpy as np
-from eel_base.wording import shown
-from eel_model.body.body import Body
-from eel_model.flow.flow import check_covers
-from eel_model.scene import Scene
+from eel_common.wording import shown
 from numpy.typing import ArrayLike
 
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.batches.batch import Batch, batch_of, coordinates_of
 from eel_dynamics.batches.broadcast import Swimmer, swimmers_of
+from eel_dynamics.model.body.body import Body
+from eel_dynamics.model.flow.flow import check_covers
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.motions import check_duration
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period

@@ -8,14 +8,14 @@ eel ballast --scene density=850 --offset 0.02 --out level.csv
 import argparse
 
 import numpy as np
-from eel_base.command.command import checked_out, command
-from eel_base.command.command_line import Parser
-from eel_base.files.output_file import written_as
-from eel_model.body.body import COLUMNS, MASSES, Body
-from eel_model.body.text import body_of
+from eel_common.command.command import checked_out, command
+from eel_common.command.command_line import Parser
+from eel_common.files.output_file import written_as
 
 from eel_dynamics.analysis.trim import ballast_for, trim_of
 from eel_dynamics.commands.options import add_options, scene_of
+from eel_dynamics.model.body.body import COLUMNS, MASSES, Body
+from eel_dynamics.model.body.text import body_of
 from eel_dynamics.runs.storage.tables import write_columns
 
 NAME = "eel ballast"

@@ -5,14 +5,14 @@ import argparse
 from collections.abc import Sequence
 
 import numpy as np
-from eel_base.wording import shown
+from eel_common.wording import shown
 from eel_gaits.film.beat import Beat, beat_of
 from eel_gaits.film.film import LIKELY, Film, read_film
-from eel_model.body.body import Body
-from eel_model.body.text import body_of
-from eel_model.scene import Scene
 
 from eel_dynamics.batches.simulate_batch import simulate_batch
+from eel_dynamics.model.body.body import Body
+from eel_dynamics.model.body.text import body_of
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED
 
 FITTING = 0.05  # part of the length by which body and film may differ

@@ -6,17 +6,17 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from eel_base.command.command_line import Parser
-from eel_base.files.input_file import number_of
-from eel_base.files.table import Table
-from eel_base.quantity import positive
-from eel_base.wording import shown
+from eel_common.command.command_line import Parser
+from eel_common.files.input_file import number_of
+from eel_common.files.table import Table
+from eel_common.quantity import positive
+from eel_common.wording import shown
 from eel_gaits.sources.joint_log import JointLog, law_of_links, read_joint_log
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.body.body import Body
-from eel_model.body.links import ALONE, FLUSH, joint_drag_of
-from eel_model.body.text import body_of
 
+from eel_dynamics.model.body.body import Body
+from eel_dynamics.model.body.links import ALONE, FLUSH, joint_drag_of
+from eel_dynamics.model.body.text import body_of
 from eel_dynamics.runs.exchange.eel_viz_functions import function_of_eel_viz
 from eel_dynamics.runs.run import Run
 

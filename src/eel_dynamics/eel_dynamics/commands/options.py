@@ -11,16 +11,16 @@ from dataclasses import fields
 from typing import Any
 
 import numpy as np
-from eel_base.command.command_line import Parser
-from eel_base.texts import TRUTH, value_of
-from eel_base.wording import shown
+from eel_common.command.command_line import Parser
+from eel_common.texts import TRUTH, value_of
+from eel_common.wording import shown
 from eel_gaits.gaits.registry import GAITS, find
-from eel_model.body.body import NAMED
-from eel_model.flow.text import NAMES
-from eel_model.robot.ready import READY
-from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import PRESETS
+from eel_dynamics.model.body.body import NAMED
+from eel_dynamics.model.flow.text import NAMES
+from eel_dynamics.model.robot.ready import READY
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.scene_file import SUFFIXES, load_scene, swim_of
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, until_settled
 from eel_dynamics.runs.swim import Swim

@@ -18,26 +18,26 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from eel_base.command.command import checked_out, command
-from eel_base.command.command_line import Parser, print_to_stderr
-from eel_base.command.progress import Progress
-from eel_base.files.output_file import replacing, written_as
-from eel_base.quantity import described_fields
-from eel_base.wording import one_line, shown
+from eel_common.command.command import checked_out, command
+from eel_common.command.command_line import Parser, print_to_stderr
+from eel_common.command.progress import Progress
+from eel_common.files.output_file import replacing, written_as
+from eel_common.quantity import described_fields
+from eel_common.wording import one_line, shown
 from eel_gaits.film.beat import Beat
 from eel_gaits.gaits.registry import gait
 from eel_gaits.gaits.sequence import sequence_from_file
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.motion_file import read_motion
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.body.body import Body
-from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.joint_demand import MOST_JOINTS
 from eel_dynamics.commands.filmed import EEL, add_film_options, beat_from, body_for, effect_of_fit
 from eel_dynamics.commands.logged import LoggedRobot, add_joint_options, logged_robot
 from eel_dynamics.commands.options import add_options, set_numbers, swim_from
+from eel_dynamics.model.body.body import Body
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.scene_file import SUFFIXES as SCENES
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, until_settled

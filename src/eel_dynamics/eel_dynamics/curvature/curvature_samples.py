@@ -9,8 +9,8 @@ from operator import attrgetter
 from typing import Any, NamedTuple
 
 import numpy as np
-from eel_base.quantity import checked_row, is_finite
-from eel_base.wording import shown
+from eel_common.quantity import checked_row, is_finite
+from eel_common.wording import shown
 from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.law_waves import MOST_WAVES, waves_of_rows

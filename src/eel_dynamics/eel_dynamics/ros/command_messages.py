@@ -10,11 +10,11 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from eel_base.quantity import checked_choice
-from eel_base.wording import shown
-from eel_model.robot.robot import Robot
+from eel_common.quantity import checked_choice
+from eel_common.wording import shown
 from sensor_msgs.msg import JointState
 
+from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.ros.messages import stamped
 
 INTERFACES = ("position", "velocity", "effort")

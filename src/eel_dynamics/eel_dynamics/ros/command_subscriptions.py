@@ -4,8 +4,8 @@
 from collections.abc import Callable
 from typing import Any
 
-from eel_ros.qos import keep_all
-from eel_ros.serving import ServedNode
+from eel_common.ros.qos import keep_all
+from eel_common.ros.serving import ServedNode
 from geometry_msgs.msg import Vector3Stamped
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState

@@ -7,9 +7,9 @@ The loop waits for samples and requests together, in a wait set of its own, as `
 from collections.abc import Iterator
 from typing import Any
 
-from eel_ros.loop.diagnostics import ERROR, Report
-from eel_ros.qos import Deliveries, keep_all
-from eel_ros.serving import PolledGroup, ServedNode, log_dropped
+from eel_common.ros.loop.diagnostics import ERROR, Report
+from eel_common.ros.qos import Deliveries, keep_all
+from eel_common.ros.serving import PolledGroup, ServedNode, log_dropped
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.qos import ReliabilityPolicy
 

@@ -5,18 +5,18 @@ from collections.abc import Mapping
 from dataclasses import Field, fields, replace
 from typing import Any
 
-from eel_base.quantity import checked
-from eel_model.body.text import body_of
-from eel_model.flow.plain import flow_of
-from eel_model.flow.text import flow_from_text, text_of_flow
-from eel_model.scene import Scene
-from eel_ros.headers import frame_in
-from eel_ros.parameter_node import ParameterNode
-from eel_ros.parameters import AT_RESET, declare, take_overrides, warn_of_unknown
+from eel_common.quantity import checked
+from eel_common.ros.headers import frame_in
+from eel_common.ros.parameter_node import ParameterNode
+from eel_common.ros.parameters import AT_RESET, declare, take_overrides, warn_of_unknown
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.parameter import Parameter
 
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.model.body.text import body_of
+from eel_dynamics.model.flow.plain import flow_of
+from eel_dynamics.model.flow.text import flow_from_text, text_of_flow
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.parameters import FRAMES, ROOT, DynamicsParameters
 from eel_dynamics.ros.simulation_from_parameters import robot_from_parameters
 

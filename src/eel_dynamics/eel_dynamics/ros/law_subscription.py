@@ -11,10 +11,10 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
+from eel_common.ros.loop.diagnostics import ERROR, Report
+from eel_common.ros.qos import Deliveries, latched
+from eel_common.ros.serving import ServedNode
 from eel_gaits.laws.law_message import law_from_message
-from eel_ros.loop.diagnostics import ERROR, Report
-from eel_ros.qos import Deliveries, latched
-from eel_ros.serving import ServedNode
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.qos import QoSProfile
 

@@ -13,17 +13,14 @@ from typing import Any
 import numpy as np
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from eel_base.attitude import heading
-from eel_base.topics import ENERGY_FIELDS
-from eel_base.wording import shown
+from eel_common.attitude import heading
+from eel_common.ros.headers import FieldReader, Stamp, seconds_of, stamp_of
+from eel_common.ros.loop.serialised_message import SerialisedMessage
+from eel_common.ros.serving import read_message
+from eel_common.topics import ENERGY_FIELDS
+from eel_common.wording import shown
 from eel_gaits.laws.law import MAXIMUM_TERMS
 from eel_gaits.ros.messages import ROWS
-from eel_model.axes import with_section_axes
-from eel_model.flow.flow import lattice_around, velocities_at
-from eel_model.robot.actuators import most_torque
-from eel_ros.headers import FieldReader, Stamp, seconds_of, stamp_of
-from eel_ros.loop.serialised_message import SerialisedMessage
-from eel_ros.serving import read_message
 from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped, Vector3Stamped
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
@@ -32,6 +29,9 @@ from tf2_msgs.msg import TFMessage
 from eel_dynamics.accuracy.error_estimate import HeadErrors
 from eel_dynamics.analysis.joint_demand import Joints
 from eel_dynamics.curvature.curvature_samples import LateSample, check_points
+from eel_dynamics.model.axes import with_section_axes
+from eel_dynamics.model.flow.flow import lattice_around, velocities_at
+from eel_dynamics.model.robot.actuators import most_torque
 from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
 from eel_dynamics.runs.exchange.message_fields import FIELDS, LINEAR, OF_JOINTS
 from eel_dynamics.runs.exchange.messages_of_run import fields_of_fins, fields_of_joints, numbers_of_appendages, outline

@@ -2,7 +2,7 @@
 """The dynamics node: declares parameters, subscribes to laws, runs the simulation, publishes samples and diagnostics.
 
 The run loop runs in one thread (loop/run_loop.py), callbacks in the main thread. A new topic begins in
-eel_base/topics.py.
+eel_common/topics.py.
 """
 
 import sys
@@ -14,26 +14,26 @@ from typing import Any
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
-from eel_base.command.command_line import one_line_warnings
-from eel_base.wording import one_line
-from eel_model.robot.robot import Robot
-from eel_model.scene import Scene
-from eel_ros.headers import stamp_of
-from eel_ros.loop.diagnostics import Report
-from eel_ros.loop.followed_clock import ClockSubscription, FollowedClock
-from eel_ros.loop.other_nodes import Identity, OtherNodes
-from eel_ros.loop.requests import Answer
-from eel_ros.parameter_node import ParameterNode
-from eel_ros.parameters import help_rows
-from eel_ros.process_end import exit_immediately
-from eel_ros.qos import latched
-from eel_ros.run_node import run_node
+from eel_common.command.command_line import one_line_warnings
+from eel_common.ros.headers import stamp_of
+from eel_common.ros.loop.diagnostics import Report
+from eel_common.ros.loop.followed_clock import ClockSubscription, FollowedClock
+from eel_common.ros.loop.other_nodes import Identity, OtherNodes
+from eel_common.ros.loop.requests import Answer
+from eel_common.ros.parameter_node import ParameterNode
+from eel_common.ros.parameters import help_rows
+from eel_common.ros.process_end import exit_immediately
+from eel_common.ros.qos import latched
+from eel_common.ros.run_node import run_node
+from eel_common.wording import one_line
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.duration import Duration
 from rclpy.qos import QoSProfile
 from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
+from eel_dynamics.model.robot.robot import Robot
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.command_subscriptions import subscribe_to_commands
 from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration

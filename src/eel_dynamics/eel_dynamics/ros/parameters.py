@@ -10,9 +10,9 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from eel_base.attitude import unit_quaternion
-from eel_base.quantity import AT_RESET, Quantities, quantity
-from eel_base.wording import shown
+from eel_common.attitude import unit_quaternion
+from eel_common.quantity import AT_RESET, Quantities, quantity
+from eel_common.wording import shown
 
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.joint_demand import MOST_JOINTS

@@ -6,17 +6,17 @@ possible, publishers are RELIABLE and KEEP_ALL: if the history is full, `publish
 subscriber has caught up, or is considered stuck. The topic then changes to a KEEP_LAST history, so that the run and the
 other subscribers go on.
 
-A new topic begins in eel_base/topics.py. What is costly to find for it is an entry of `PARTS` here.
+A new topic begins in eel_common/topics.py. What is costly to find for it is an entry of `PARTS` here.
 """
 
 import math
 import time
 from typing import Any
 
-from eel_ros.loop.channel import Channel, WaitBudget
-from eel_ros.loop.diagnostics import Report
-from eel_ros.qos import latched
-from eel_ros.serving import ServedNode
+from eel_common.ros.loop.channel import Channel, WaitBudget
+from eel_common.ros.loop.diagnostics import Report
+from eel_common.ros.qos import latched
+from eel_common.ros.serving import ServedNode
 from rclpy.duration import Duration
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rosgraph_msgs.msg import Clock

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes the simulation from the node's parameters."""
 
-from eel_base.wording import shown
-from eel_model.body.text import body_of
-from eel_model.fins.text import fins_from_text
-from eel_model.flow.text import flow_from_text
-from eel_model.robot.robot import Robot, robot_of
-from eel_model.scene import Scene
+from eel_common.wording import shown
 
+from eel_dynamics.model.body.text import body_of
+from eel_dynamics.model.fins.text import fins_from_text
+from eel_dynamics.model.flow.text import flow_from_text
+from eel_dynamics.model.robot.robot import Robot, robot_of
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.simulation.simulation import Simulation
 

@@ -4,7 +4,7 @@
 import time
 from typing import Any
 
-from eel_ros.loop.diagnostics import ERROR, Report
+from eel_common.ros.loop.diagnostics import ERROR, Report
 
 from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.loop.run_loop import RunLoop

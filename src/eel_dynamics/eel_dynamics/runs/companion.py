@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.scene import ROUGH_FRICTION, Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import (
@@ -27,6 +26,7 @@ from eel_dynamics.accuracy.error_estimate import (
     twist_size,
 )
 from eel_dynamics.analysis.peaks import torque_size
+from eel_dynamics.model.scene import ROUGH_FRICTION, Scene
 from eel_dynamics.simulation.bending.joint_motion import bends, stops_met, torque_at_stops
 from eel_dynamics.simulation.error_meter import on_another_grid
 from eel_dynamics.simulation.stopping import SimulationStopped

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from eel_base.files.tables import is_table
-from eel_base.quantity import is_finite
-from eel_base.wording import shown
+from eel_common.files.tables import is_table
+from eel_common.quantity import is_finite
+from eel_common.wording import shown
 from eel_gaits.gaits.registry import GAITS
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.function_law import sampled

@@ -7,11 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from eel_base.cached import cached_property
-from eel_base.cell import cell_of
-from eel_model.body.body import Body
-from eel_model.robot.robot import Robot
-from eel_model.scene import Scene
+from eel_common.cached import cached_property
+from eel_common.cell import cell_of
 
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.joint_demand import Actuators, actuators_of
@@ -19,6 +16,9 @@ from eel_dynamics.analysis.model_limits import warnings_of
 from eel_dynamics.analysis.peaks import FINER, MOST_SAMPLES, greatest_torque_of
 from eel_dynamics.analysis.run_summary import describe
 from eel_dynamics.analysis.settling import Unsettled
+from eel_dynamics.model.body.body import Body
+from eel_dynamics.model.robot.robot import Robot
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.exchange.eel_viz_functions import function_of_eel_viz
 from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
 from eel_dynamics.runs.exchange.properties_of_run import properties_of_run

@@ -6,22 +6,22 @@ from dataclasses import dataclass, fields, replace
 from typing import Any, Self
 
 import numpy as np
-from eel_base.attitude import world_from_section
-from eel_base.wording import shown
+from eel_common.attitude import world_from_section
+from eel_common.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.axes import CONVENTIONS, REP103, SIGNS, turn_vector, turned
-from eel_model.body.body import Body
-from eel_model.equality import same_fields
-from eel_model.fins.fins import Fin
-from eel_model.flow.flow import Flow
-from eel_model.initial_state import checked_state
-from eel_model.robot.robot import Robot
-from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
+from eel_dynamics.model.axes import CONVENTIONS, REP103, SIGNS, turn_vector, turned
+from eel_dynamics.model.body.body import Body
+from eel_dynamics.model.equality import same_fields
+from eel_dynamics.model.fins.fins import Fin
+from eel_dynamics.model.flow.flow import Flow
+from eel_dynamics.model.initial_state import checked_state
+from eel_dynamics.model.robot.robot import Robot
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.storage.variables import ENERGY, LEDGER, OWN, fields_of_arrays
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import Snapshot

@@ -4,7 +4,7 @@
 from typing import Any
 
 import numpy as np
-from eel_base.cell import BLUE, GREY, figure
+from eel_common.cell import BLUE, GREY, figure
 
 BODIES = 6  # instants at which the body is drawn
 MOST_ROWS = 10  # of a table of swimmers

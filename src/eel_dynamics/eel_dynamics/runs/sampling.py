@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import is_finite, number, positive
+from eel_common.quantity import is_finite, number, positive
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 

@@ -25,20 +25,20 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import yaml
-from eel_base.files.input_file import reading
-from eel_base.files.output_file import replacing
-from eel_base.files.yaml_tree import read_yaml
-from eel_base.quantity import checked_instance, checked_path, checked_row, positive
-from eel_base.wording import did_you_mean, shown
+from eel_common.files.input_file import reading
+from eel_common.files.output_file import replacing
+from eel_common.files.yaml_tree import read_yaml
+from eel_common.quantity import checked_instance, checked_path, checked_row, positive
+from eel_common.wording import did_you_mean, shown
 from eel_gaits.gaits.settings import SEQUENCES, Settings
-from eel_model.body.body import Body
-from eel_model.body.text import body_of
-from eel_model.fins.text import fins_from_text, text_of_fins
-from eel_model.flow.text import flow_from_text, text_of_flow
-from eel_model.robot.robot import robot_of
-from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.model.body.body import Body
+from eel_dynamics.model.body.text import body_of
+from eel_dynamics.model.fins.text import fins_from_text, text_of_fins
+from eel_dynamics.model.flow.text import flow_from_text, text_of_flow
+from eel_dynamics.model.robot.robot import robot_of
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.settled_duration import until_settled
 from eel_dynamics.runs.swim import AT_REST, Swim
 

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from eel_base.wording import shown
+from eel_common.wording import shown
 from eel_gaits.laws.law import Law
 
 from eel_dynamics.accuracy.accuracy import PRESETS, Accuracy

@@ -7,15 +7,15 @@ import warnings
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from eel_base.command.progress import Forecast
-from eel_model.body.body import Body
-from eel_model.flow.flow import Flow
-from eel_model.robot.robot import Robot
-from eel_model.scene import Scene
+from eel_common.command.progress import Forecast
 from numpy.typing import ArrayLike
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
+from eel_dynamics.model.body.body import Body
+from eel_dynamics.model.flow.flow import Flow
+from eel_dynamics.model.robot.robot import Robot
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.motions import Motion
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.swim_request import SwimRequest

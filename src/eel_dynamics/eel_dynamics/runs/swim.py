@@ -4,15 +4,15 @@
 from typing import Any, NamedTuple, Self
 
 import numpy as np
-from eel_base.wording import shown
+from eel_common.wording import shown
 from eel_gaits.gaits.settings import Settings
-from eel_model.body.body import Body
-from eel_model.fins.fins import Fin
-from eel_model.flow.flow import Flow
-from eel_model.initial_state import InitialState
-from eel_model.robot.robot import Robot
-from eel_model.scene import Scene
 
+from eel_dynamics.model.body.body import Body
+from eel_dynamics.model.fins.fins import Fin
+from eel_dynamics.model.flow.flow import Flow
+from eel_dynamics.model.initial_state import InitialState
+from eel_dynamics.model.robot.robot import Robot
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.simulate import simulate
 from eel_dynamics.simulation.simulation import Simulation

@@ -8,10 +8,10 @@ from typing import Any, Generic, NamedTuple, TypeVar
 import numpy as np
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.flow.flow import check_covers
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
+from eel_dynamics.model.flow.flow import check_covers
 from eel_dynamics.runs.companion import stable_step, with_error_estimate
 from eel_dynamics.runs.motions import Motion, law_from
 from eel_dynamics.runs.run_data import RunData

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 from eel_gaits.laws.law import Law
-from eel_model.flow.flow import Flow
 from numpy.typing import NDArray
 
+from eel_dynamics.model.flow.flow import Flow
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.sampled_swimmers import LEFT_OUT, Array

@@ -5,17 +5,17 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from eel_model.body.body import Body
-from eel_model.body.grid import Grid, Panel
-from eel_model.body.panels import panels_of
-from eel_model.fins.fins import Fin
-from eel_model.inertia import check_inertia
-from eel_model.scene import Scene
-from eel_model.section_data import SectionData, check_weight, core_swimmer, nose_of, sections_on, weight_time
 
 import eel_core
 from eel_dynamics.accuracy.grid_settings import GridSettings
 from eel_dynamics.curvature.tabulated_law import Tabulation
+from eel_dynamics.model.body.body import Body
+from eel_dynamics.model.body.grid import Grid, Panel
+from eel_dynamics.model.body.panels import panels_of
+from eel_dynamics.model.fins.fins import Fin
+from eel_dynamics.model.inertia import check_inertia
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.model.section_data import SectionData, check_weight, core_swimmer, nose_of, sections_on, weight_time
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 
 

@@ -27,7 +27,8 @@ from dataclasses import dataclass, fields
 from typing import Annotated, Any
 
 import numpy as np
-from eel_model.equality import EqualByFields
+
+from eel_dynamics.model.equality import EqualByFields
 
 WORKS = "actuator", "wake", "nose", "drag", "flow", "fins", "appendages"  # that have powers and works, as in eel_core
 

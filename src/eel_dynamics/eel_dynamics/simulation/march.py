@@ -12,18 +12,18 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from eel_base.wording import shown
+from eel_common.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.fins.fins import given_angles
-from eel_model.flow.flow import Flow
-from eel_model.initial_state import InitialState, time_scale
-from eel_model.robot.robot import Robot
 
 import eel_core
 from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
 from eel_dynamics.accuracy.step_bounds import step_bounds_of
 from eel_dynamics.curvature.law_follower import LawFollower
+from eel_dynamics.model.fins.fins import given_angles
+from eel_dynamics.model.flow.flow import Flow
+from eel_dynamics.model.initial_state import InitialState, time_scale
+from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.simulation.bending.joint_motion import JointMotion
 from eel_dynamics.simulation.bending.modes_on_grid import ModesOnGrid
 from eel_dynamics.simulation.discretisation import discretise

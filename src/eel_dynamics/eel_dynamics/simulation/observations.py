@@ -10,9 +10,9 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from eel_model.equality import same
 
 import eel_core
+from eel_dynamics.model.equality import same
 from eel_dynamics.simulation.energy import EnergyLedger
 
 

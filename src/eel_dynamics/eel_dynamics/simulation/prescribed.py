@@ -5,16 +5,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import checked_instance, checked_row, is_finite
-from eel_base.wording import shown
+from eel_common.quantity import checked_instance, checked_row, is_finite
+from eel_common.wording import shown
 from eel_gaits.laws.law import Law
-from eel_model.body.body import Body
-from eel_model.scene import Scene
-from eel_model.section_data import core_swimmer, nose_of
 from numpy.typing import ArrayLike
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.model.body.body import Body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.model.section_data import core_swimmer, nose_of
 from eel_dynamics.simulation.simulation import Simulation
 
 FINE = Accuracy(name="prescribed", resolution=100.0)

@@ -4,15 +4,15 @@
 import numpy as np
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.body.grid import Grid
-from eel_model.fins.fins import Fin
-from eel_model.flow.flow import Flow
-from eel_model.initial_state import InitialState
 from numpy.typing import ArrayLike
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate, HeadErrors
+from eel_dynamics.model.body.grid import Grid
+from eel_dynamics.model.fins.fins import Fin
+from eel_dynamics.model.flow.flow import Flow
+from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.simulation.bending.joint_motion import JointMotion
 from eel_dynamics.simulation.discretisation import Discretisation
 from eel_dynamics.simulation.error_meter import ErrorMeter

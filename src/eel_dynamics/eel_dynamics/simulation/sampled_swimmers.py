@@ -5,9 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from eel_base.wording import shown
-from eel_model.flow.flow import Flow, parts_of
-from eel_model.flow.functions import FlowField
+from eel_common.wording import shown
 from numpy.typing import NDArray
 
 import eel_core
@@ -15,6 +13,8 @@ from eel_dynamics.accuracy.grid_settings import ShapeNeeds
 from eel_dynamics.accuracy.step_bounds import step_bounds_of
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
+from eel_dynamics.model.flow.flow import Flow, parts_of
+from eel_dynamics.model.flow.functions import FlowField
 from eel_dynamics.simulation.discretisation import discretise
 from eel_dynamics.simulation.march import MARCHED, SINGULAR, UNFINISHED
 from eel_dynamics.simulation.observations import Snapshot

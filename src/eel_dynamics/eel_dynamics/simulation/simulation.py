@@ -7,24 +7,24 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import checked_instance, checked_row, is_finite, number, positive
-from eel_base.wording import shown
+from eel_common.quantity import checked_instance, checked_row, is_finite, number, positive
+from eel_common.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.body.body import Body
-from eel_model.fins.fins import checked_commands
-from eel_model.flow.flow import Flow
-from eel_model.flow.stream import FASTEST, LATEST, CurrentStream
-from eel_model.initial_state import checked_state
-from eel_model.robot.actuators import Servo
-from eel_model.robot.robot import Robot
-from eel_model.scene import Scene
 from numpy.typing import ArrayLike
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
+from eel_dynamics.model.body.body import Body
+from eel_dynamics.model.fins.fins import checked_commands
+from eel_dynamics.model.flow.flow import Flow
+from eel_dynamics.model.flow.stream import FASTEST, LATEST, CurrentStream
+from eel_dynamics.model.initial_state import checked_state
+from eel_dynamics.model.robot.actuators import Servo
+from eel_dynamics.model.robot.robot import Robot
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.error_meter import ErrorMeter
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Observations

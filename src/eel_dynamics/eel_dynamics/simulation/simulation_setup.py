@@ -5,19 +5,11 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
-from eel_base.cached import cached_property
-from eel_base.quantity import checked_instance, checked_row, positive
-from eel_base.wording import shown
+from eel_common.cached import cached_property
+from eel_common.quantity import checked_instance, checked_row, positive
+from eel_common.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.body.body import Body, checked_body
-from eel_model.equality import EqualByFields
-from eel_model.fins.fins import Fin, checked_fins, edges_of, knots_of, servo_time
-from eel_model.flow.flow import Flow, check_covers, checked_flow, core_flow
-from eel_model.initial_state import InitialState, checked_state, time_scale
-from eel_model.robot.compiled import ModeTable, mode_table
-from eel_model.robot.robot import Robot, checked_robot
-from eel_model.scene import Scene, checked_scene
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
@@ -27,6 +19,14 @@ from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS, check_cost
 from eel_dynamics.accuracy.sudden_changes import UNSEEN, given_torques, sudden_changes
 from eel_dynamics.curvature.curvature_samples import check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
+from eel_dynamics.model.body.body import Body, checked_body
+from eel_dynamics.model.equality import EqualByFields
+from eel_dynamics.model.fins.fins import Fin, checked_fins, edges_of, knots_of, servo_time
+from eel_dynamics.model.flow.flow import Flow, check_covers, checked_flow, core_flow
+from eel_dynamics.model.initial_state import InitialState, checked_state, time_scale
+from eel_dynamics.model.robot.compiled import ModeTable, mode_table
+from eel_dynamics.model.robot.robot import Robot, checked_robot
+from eel_dynamics.model.scene import Scene, checked_scene
 
 FITTING = 1e-6  # part of the body's length by which the rows of a law may be shorter or longer
 

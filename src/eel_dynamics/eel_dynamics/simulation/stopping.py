@@ -12,12 +12,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from eel_base.wording import WorkStopped, shown
-from eel_model.flow.flow import Flow
-from eel_model.robot.compiled import ModeTable
+from eel_common.wording import WorkStopped, shown
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.model.flow.flow import Flow
+from eel_dynamics.model.robot.compiled import ModeTable
 
 OPEN = 0.2  # share of the energy; at twice the longest useful step of the robot's gaits it is 0.03, then grows at once
 

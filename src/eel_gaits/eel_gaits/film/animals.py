@@ -8,7 +8,7 @@ such animals the one that is seen in most frames counts. Tracks that share frame
 from collections.abc import Iterable
 
 import numpy as np
-from eel_base.wording import shown
+from eel_common.wording import shown
 
 from eel_gaits.film.forms import Tracks
 

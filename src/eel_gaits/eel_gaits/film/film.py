@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from eel_base.files.input_file import reading
-from eel_base.quantity import number, positive
-from eel_base.wording import shown
+from eel_common.files.input_file import reading
+from eel_common.quantity import number, positive
+from eel_common.wording import shown
 
 from eel_gaits.film.animals import of_one
 from eel_gaits.film.forms import LENGTHS, SHORT, Tracks, read_tracks

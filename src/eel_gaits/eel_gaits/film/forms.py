@@ -16,11 +16,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from eel_base.files.archive import MOST_NUMBERS
-from eel_base.files.table import LARGEST, LISTED, UNITS, Table, split_name
-from eel_base.files.tables import SUFFIXES, is_table, read_table
-from eel_base.files.times import is_time, time_of
-from eel_base.wording import shown
+from eel_common.files.archive import MOST_NUMBERS
+from eel_common.files.table import LARGEST, LISTED, UNITS, Table, split_name
+from eel_common.files.tables import SUFFIXES, is_table, read_table
+from eel_common.files.times import is_time, time_of
+from eel_common.wording import shown
 
 from eel_gaits.film.hdf5 import Columns, read_hdf5
 from eel_gaits.sources.frames import check_rising, check_steps, frame_starts

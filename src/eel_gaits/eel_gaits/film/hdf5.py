@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from eel_base.files.archive import MOST_NUMBERS
-from eel_base.files.hdf5 import MOST_NAMES, attribute_text, members, names_in, numbers_of, opened_hdf5, texts_of
-from eel_base.files.tables import MOST_BYTES
-from eel_base.wording import shown
+from eel_common.files.archive import MOST_NUMBERS
+from eel_common.files.hdf5 import MOST_NAMES, attribute_text, members, names_in, numbers_of, opened_hdf5, texts_of
+from eel_common.files.tables import MOST_BYTES
+from eel_common.wording import shown
 
 LEVELS = 3, 4  # of the names of columns: scorer, perhaps individuals, bodyparts, coords
 MATLAB = "track", "xy", "node", "frame"  # axes of SLEAP's points, where the file does not say

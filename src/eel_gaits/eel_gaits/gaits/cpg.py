@@ -18,7 +18,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from eel_base.quantity import quantity
+from eel_common.quantity import quantity
 
 from eel_gaits.gaits.numbers import left_quantity, left_turn
 from eel_gaits.gaits.registry import register

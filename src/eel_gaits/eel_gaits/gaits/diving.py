@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from eel_base.quantity import quantity
+from eel_common.quantity import quantity
 
 from eel_gaits.gaits.numbers import (
     Periodic,

@@ -18,7 +18,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from eel_base.quantity import quantity
+from eel_common.quantity import quantity
 
 from eel_gaits.gaits.numbers import PeriodicBody, waves_quantity
 from eel_gaits.gaits.registry import register

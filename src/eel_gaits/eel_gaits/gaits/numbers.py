@@ -7,7 +7,7 @@ A number that has a side is positive to the left.
 import math
 from dataclasses import dataclass
 
-from eel_base.quantity import Quantities, quantity
+from eel_common.quantity import Quantities, quantity
 
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term

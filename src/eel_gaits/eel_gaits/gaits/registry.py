@@ -21,8 +21,8 @@ from dataclasses import dataclass
 from importlib.metadata import entry_points
 from typing import Any
 
-from eel_base.quantity import Quantities, described_fields, quantity
-from eel_base.wording import did_you_mean, one_line, shown
+from eel_common.quantity import Quantities, described_fields, quantity
+from eel_common.wording import did_you_mean, one_line, shown
 
 from eel_gaits.laws.law import Law
 

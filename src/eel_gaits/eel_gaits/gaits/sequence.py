@@ -33,10 +33,10 @@ import os
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from eel_base.files.input_file import Misplaced, reading
-from eel_base.files.yaml_tree import Entries, check_keys, fail, read_yaml, tried
-from eel_base.quantity import checked_instance, checked_path, positive
-from eel_base.wording import shown
+from eel_common.files.input_file import Misplaced, reading
+from eel_common.files.yaml_tree import Entries, check_keys, fail, read_yaml, tried
+from eel_common.quantity import checked_instance, checked_path, positive
+from eel_common.wording import shown
 
 from eel_gaits.gaits.registry import find
 from eel_gaits.laws.law import MAXIMUM_NAME, MAXIMUM_TERMS, Law

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field, fields
 from types import MappingProxyType
 from typing import Any
 
-from eel_base.quantity import Quantities, quantity
-from eel_base.wording import shown
+from eel_common.quantity import Quantities, quantity
+from eel_common.wording import shown
 
 from eel_gaits.gaits.cpg import Oscillation
 from eel_gaits.gaits.registry import GAITS, Transition, find, named_instead

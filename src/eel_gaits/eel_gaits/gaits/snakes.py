@@ -20,7 +20,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from eel_base.quantity import quantity
+from eel_common.quantity import quantity
 
 from eel_gaits.gaits.numbers import TO_THE_LEFT, PeriodicBody, left_quantity, left_turn, waves_quantity
 from eel_gaits.gaits.registry import register

@@ -13,7 +13,7 @@ burst_and_coast: the forward wave comes and goes; between two bursts the straigh
 
 from dataclasses import dataclass, replace
 
-from eel_base.quantity import Quantities, quantity
+from eel_common.quantity import Quantities, quantity
 
 from eel_gaits.gaits.numbers import (
     Periodic,

@@ -19,9 +19,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from eel_base.cell import cell_of
-from eel_base.quantity import checked_choice, number, numbers, positive
-from eel_base.wording import shown
+from eel_common.cell import cell_of
+from eel_common.quantity import checked_choice, number, numbers, positive
+from eel_common.wording import shown
 
 from eel_gaits.laws.law_picture import lines_of_law, picture_of_law
 from eel_gaits.laws.ramp import begun, ended

@@ -4,7 +4,7 @@
 from typing import Any
 
 import numpy as np
-from eel_base.cell import BLUE, ORANGE, figure
+from eel_common.cell import BLUE, ORANGE, figure
 
 INSTANTS = 8  # of a period
 POINTS = 121

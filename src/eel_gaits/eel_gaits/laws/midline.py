@@ -17,7 +17,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import numbers
+from eel_common.quantity import numbers
 
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import number
+from eel_common.quantity import number
 
 MOST_FACTORS = 256
 ALWAYS = -1e6  # s, the time from which a term without ramps counts as begun, once it is to end

@@ -13,8 +13,8 @@ both end knots. Its second derivatives M_i at the knots ("moments") solve the tr
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import numbers
-from eel_base.wording import shown
+from eel_common.quantity import numbers
+from eel_common.wording import shown
 
 
 def natural_spline(knots: Any, values: Any, x: Any) -> np.ndarray:

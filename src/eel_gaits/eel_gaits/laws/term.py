@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import checked_choice, number
-from eel_base.wording import shown
+from eel_common.quantity import checked_choice, number
+from eel_common.wording import shown
 
 from eel_gaits.laws.ramp import Ramp, envelope_at
 from eel_gaits.laws.spline import natural_spline

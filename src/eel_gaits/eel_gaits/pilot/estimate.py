@@ -15,9 +15,8 @@ from collections import deque
 from typing import Any, NamedTuple
 
 import numpy as np
-from eel_base.attitude import world_from_body
-
-from eel_gaits.pilot.head_motion import HeadMotion, wrapped
+from eel_common.attitude import world_from_body
+from eel_common.head_motion import HeadMotion, wrapped
 
 
 class Estimate(NamedTuple):

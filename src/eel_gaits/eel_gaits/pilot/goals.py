@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import number
-from eel_base.wording import shown
+from eel_common.quantity import number
+from eel_common.wording import shown
 
 FARTHEST = 1e5  # m from the origin
 MOST_POINTS = 10_000  # of a path

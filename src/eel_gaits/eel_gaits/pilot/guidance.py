@@ -16,10 +16,10 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+from eel_common.head_motion import wrapped
 
 from eel_gaits.pilot.estimate import Estimate
 from eel_gaits.pilot.goals import Course, Path, Station
-from eel_gaits.pilot.head_motion import wrapped
 from eel_gaits.pilot.settings import PilotSettings
 
 STANDOFF = 2.2  # turning radii: what lies behind and nearer than this is swum away from first

@@ -11,6 +11,7 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
+from eel_common.head_motion import HeadMotion, wrapped
 
 from eel_gaits.gaits.swimming import straight
 from eel_gaits.laws.law import Law
@@ -18,7 +19,6 @@ from eel_gaits.laws.steered_law import SteeredLaw
 from eel_gaits.pilot.estimate import Estimate, Estimator
 from eel_gaits.pilot.goals import Course, Path, Station
 from eel_gaits.pilot.guidance import GUIDANCE, Demand, PathGuidance
-from eel_gaits.pilot.head_motion import HeadMotion, wrapped
 from eel_gaits.pilot.regulator import Gains, Regulator
 from eel_gaits.pilot.settings import PilotSettings
 

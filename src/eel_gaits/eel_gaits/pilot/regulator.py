@@ -11,10 +11,11 @@ internal torque goes with the square of the tempo: where it is too great, the be
 import math
 from dataclasses import dataclass
 
+from eel_common.head_motion import wrapped
+
 from eel_gaits.laws.steered_law import SteeredLaw
 from eel_gaits.pilot.estimate import Estimate
 from eel_gaits.pilot.guidance import Demand
-from eel_gaits.pilot.head_motion import wrapped
 from eel_gaits.pilot.settings import PilotSettings
 
 KEEL = 0.004  # metacentric height by length and by tempo squared, about which the gains of the roll change

@@ -7,7 +7,7 @@
 import math
 from dataclasses import dataclass
 
-from eel_base.quantity import Quantities, documented, quantity
+from eel_common.quantity import Quantities, documented, quantity
 
 from eel_gaits.pilot.goals import Limits
 

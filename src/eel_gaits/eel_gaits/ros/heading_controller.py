@@ -10,13 +10,13 @@ import sys
 from dataclasses import dataclass
 
 import numpy as np
-from eel_base.attitude import heading
-from eel_base.quantity import Quantities, quantity
-from eel_ros.headers import seconds_of
-from eel_ros.parameter_node import ParameterNode
-from eel_ros.parameters import declare_all, help_rows
-from eel_ros.qos import keep_all
-from eel_ros.run_node import run_node
+from eel_common.attitude import heading
+from eel_common.quantity import Quantities, quantity
+from eel_common.ros.headers import seconds_of
+from eel_common.ros.parameter_node import ParameterNode
+from eel_common.ros.parameters import declare_all, help_rows
+from eel_common.ros.qos import keep_all
+from eel_common.ros.run_node import run_node
 from nav_msgs.msg import Odometry
 
 from eel_gaits.gaits.swimming import straight

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 from builtin_interfaces.msg import Time
-from eel_ros.headers import stamp_of
+from eel_common.ros.headers import stamp_of
 from std_msgs.msg import Header
 
 from eel_gaits.laws.law import Law

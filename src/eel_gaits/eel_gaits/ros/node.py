@@ -10,13 +10,13 @@ import sys
 from typing import Any
 
 from builtin_interfaces.msg import Time
-from eel_base.wording import shown
-from eel_ros.headers import frame_in
-from eel_ros.parameter_node import ParameterNode
-from eel_ros.parameters import declare, help_rows, take_overrides, warn_of_unknown
-from eel_ros.qos import latched
-from eel_ros.run_node import run_node
-from eel_ros.serving import PolledGroup
+from eel_common.ros.headers import frame_in
+from eel_common.ros.parameter_node import ParameterNode
+from eel_common.ros.parameters import declare, help_rows, take_overrides, warn_of_unknown
+from eel_common.ros.qos import latched
+from eel_common.ros.run_node import run_node
+from eel_common.ros.serving import PolledGroup
+from eel_common.wording import shown
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration

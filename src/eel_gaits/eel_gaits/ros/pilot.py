@@ -13,12 +13,13 @@ from dataclasses import fields
 from typing import Any
 
 import numpy as np
-from eel_base.wording import shown
-from eel_ros.headers import frame_in, seconds_of
-from eel_ros.parameter_node import ParameterNode
-from eel_ros.parameters import declare_all, help_rows
-from eel_ros.qos import keep_all, latched
-from eel_ros.run_node import run_node
+from eel_common.head_motion import HeadMotion
+from eel_common.ros.headers import frame_in, seconds_of
+from eel_common.ros.parameter_node import ParameterNode
+from eel_common.ros.parameters import declare_all, help_rows
+from eel_common.ros.qos import keep_all, latched
+from eel_common.ros.run_node import run_node
+from eel_common.wording import shown
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry, Path
 from rcl_interfaces.msg import SetParametersResult
@@ -26,7 +27,6 @@ from rclpy.parameter import Parameter
 from rclpy.subscription import Subscription
 
 from eel_gaits.pilot import goals
-from eel_gaits.pilot.head_motion import HeadMotion
 from eel_gaits.pilot.pilot import Pilot
 from eel_gaits.pilot.settings import GROUPS, GoalParameters, TimingParameters
 from eel_gaits.ros.lead import Lead

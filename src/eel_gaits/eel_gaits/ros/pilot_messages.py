@@ -2,16 +2,16 @@
 """What the pilot reads of messages, and the goal as one."""
 
 import numpy as np
-from eel_base.attitude import unit_quaternion
-from eel_base.wording import shown
-from eel_ros.headers import FieldReader
-from eel_ros.serving import read_message
+from eel_common.attitude import unit_quaternion
+from eel_common.head_motion import HeadMotion
+from eel_common.ros.headers import FieldReader
+from eel_common.ros.serving import read_message
+from eel_common.wording import shown
 from geometry_msgs.msg import Point, Pose, PoseStamped
 from nav_msgs.msg import Odometry, Path
 from std_msgs.msg import Header
 
 from eel_gaits.pilot.goals import FARTHEST, check_count
-from eel_gaits.pilot.head_motion import HeadMotion
 
 GREATEST = 10.0 * FARTHEST  # m, m/s, rad/s: farther than any goal, and nothing overflows
 

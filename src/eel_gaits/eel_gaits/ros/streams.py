@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 from builtin_interfaces.msg import Time
-from eel_ros.headers import stamp_of
-from eel_ros.qos import keep_all
+from eel_common.ros.headers import stamp_of
+from eel_common.ros.qos import keep_all
 
 from eel_gaits.gaits.cpg import Oscillation, Oscillators
 from eel_gaits.ros.messages import samples_to_message

@@ -10,9 +10,9 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from eel_base.files.table import Table
-from eel_base.files.times import time_of
-from eel_base.wording import shown
+from eel_common.files.table import Table
+from eel_common.files.times import time_of
+from eel_common.wording import shown
 
 from eel_gaits.sources.period import long_gap
 from eel_gaits.sources.sampled_law import SampledLaw, points_for

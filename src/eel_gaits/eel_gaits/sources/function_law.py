@@ -13,8 +13,8 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import numbers, positive
-from eel_base.wording import shown
+from eel_common.quantity import numbers, positive
+from eel_common.wording import shown
 
 from eel_gaits.laws.spline import natural_spline
 from eel_gaits.sources.refinement import refined

@@ -16,12 +16,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from eel_base.files.input_file import reading
-from eel_base.files.table import UNITS, Table
-from eel_base.files.tables import read_table
-from eel_base.files.times import time_of
-from eel_base.quantity import checked_row, positive
-from eel_base.wording import shown
+from eel_common.files.input_file import reading
+from eel_common.files.table import UNITS, Table
+from eel_common.files.tables import read_table
+from eel_common.files.times import time_of
+from eel_common.quantity import checked_row, positive
+from eel_common.wording import shown
 
 from eel_gaits.sources.period import long_gap
 from eel_gaits.sources.sampled_law import SampledLaw

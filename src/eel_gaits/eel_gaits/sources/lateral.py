@@ -9,8 +9,8 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import numbers
-from eel_base.wording import shown
+from eel_common.quantity import numbers
+from eel_common.wording import shown
 
 from eel_gaits.laws.midline import curvature_of_lateral
 from eel_gaits.sources.sampled_law import crowded

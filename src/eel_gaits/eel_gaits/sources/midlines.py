@@ -11,7 +11,7 @@ rolls: its axis 3 is taken as upright as the tangent allows.
 from functools import partial
 
 import numpy as np
-from eel_base.files.table import Table
+from eel_common.files.table import Table
 
 from eel_gaits.sources.frames import Frames, SmoothedFrames, frames_of, law_of_frames
 from eel_gaits.sources.order import check_order

@@ -24,14 +24,14 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from eel_base.files.archive import read_archive
-from eel_base.files.input_file import reading
-from eel_base.files.output_file import replacing
-from eel_base.files.table import Table, split_name
-from eel_base.files.tables import SUFFIXES, is_table, read_table
-from eel_base.files.times import time_of
-from eel_base.quantity import checked_path, positive
-from eel_base.wording import shown
+from eel_common.files.archive import read_archive
+from eel_common.files.input_file import reading
+from eel_common.files.output_file import replacing
+from eel_common.files.table import Table, split_name
+from eel_common.files.tables import SUFFIXES, is_table, read_table
+from eel_common.files.times import time_of
+from eel_common.quantity import checked_path, positive
+from eel_common.wording import shown
 
 from eel_gaits.sources.frames import Frames, SmoothedFrames, check_rising, check_steps, frames_of, law_of_frames
 from eel_gaits.sources.midlines import Midlines

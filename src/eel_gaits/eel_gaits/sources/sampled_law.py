@@ -11,8 +11,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import number, numbers
-from eel_base.wording import shown
+from eel_common.quantity import number, numbers
+from eel_common.wording import shown
 
 from eel_gaits.laws.law import checked_name
 from eel_gaits.laws.spline import natural_spline

@@ -12,15 +12,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from eel_base.command.command import checked_out, command
-from eel_base.command.command_line import Parser
-from eel_base.command.progress import Progress
-from eel_base.files.output_file import written_as
+from eel_common.command.command import checked_out, command
+from eel_common.command.command_line import Parser
+from eel_common.command.progress import Progress
+from eel_common.files.output_file import written_as
 from eel_dynamics.analysis.measures import MEASURES, measures_of
 from eel_dynamics.commands.options import add_options, scene_of, set_numbers
+from eel_dynamics.model.body.body import Body
+from eel_dynamics.model.body.text import body_of
 from eel_dynamics.runs.settled_duration import until_settled
-from eel_model.body.body import Body
-from eel_model.body.text import body_of
 
 from eel_dynamics import Run, Scene, simulate
 from eel_gaits import gait

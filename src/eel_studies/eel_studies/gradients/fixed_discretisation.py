@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 from eel_dynamics.accuracy.accuracy import FIXED, Accuracy
 from eel_dynamics.accuracy.law_waves import check_law
-from eel_model.initial_state import time_scale
+from eel_dynamics.model.initial_state import time_scale
 
 from eel_dynamics import Swim
 

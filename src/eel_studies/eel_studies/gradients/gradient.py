@@ -20,19 +20,19 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from eel_base.attitude import world_from_body
-from eel_base.command.progress import progress_of
-from eel_base.quantity import checked_choice, checked_instance, number, positive
-from eel_base.wording import shown
+from eel_common.attitude import world_from_body
+from eel_common.command.progress import progress_of
+from eel_common.quantity import checked_choice, checked_instance, number, positive
+from eel_common.wording import shown
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.measures import checked_measures
+from eel_dynamics.model.equality import EqualByFields
+from eel_dynamics.model.robot.actuators import at_limit
+from eel_dynamics.model.section_data import CRITICAL_REYNOLDS
 from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.sampling import default_sample_period
 from eel_dynamics.simulation.simulation_setup import checked_stations
-from eel_model.equality import EqualByFields
-from eel_model.robot.actuators import at_limit
-from eel_model.section_data import CRITICAL_REYNOLDS
 
 from eel_dynamics import Accuracy, Batch, Body, Robot, Run, Scene, Swim
 from eel_studies.gradients.fixed_discretisation import fixed_steps, on_one_grid, step_of

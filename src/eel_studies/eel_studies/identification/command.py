@@ -15,14 +15,14 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from eel_base.command.command import command
-from eel_base.command.command_line import Parser
-from eel_base.command.progress import Progress
-from eel_base.wording import shown
+from eel_common.command.command import command
+from eel_common.command.command_line import Parser
+from eel_common.command.progress import Progress
+from eel_common.wording import shown
 from eel_dynamics.commands.options import add_options, add_repeated, scene_of, set_numbers
+from eel_dynamics.model.body.text import body_of
+from eel_dynamics.model.robot.robot import robot_of
 from eel_dynamics.runs.storage.tables import write_columns
-from eel_model.body.text import body_of
-from eel_model.robot.robot import robot_of
 
 from eel_dynamics import Scene
 from eel_gaits import Law

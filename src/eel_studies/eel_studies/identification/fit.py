@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from eel_model.equality import EqualByFields
+from eel_dynamics.model.equality import EqualByFields
 
 from eel_dynamics import Run
 from eel_studies.identification.measurements import MeasuredPath, MeasuredSpeed, Measurement, count_of

@@ -16,9 +16,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from eel_base.command.progress import progress_of
-from eel_base.quantity import number, positive
-from eel_base.wording import shown
+from eel_common.command.progress import progress_of
+from eel_common.quantity import number, positive
+from eel_common.wording import shown
 
 from eel_dynamics import Body, Robot, Scene
 from eel_studies.gradients.fixed_discretisation import fixed_steps

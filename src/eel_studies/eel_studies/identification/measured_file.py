@@ -14,12 +14,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from eel_base.attitude import heading
-from eel_base.files.input_file import reading
-from eel_base.files.table import Table
-from eel_base.files.tables import is_table, read_table
-from eel_base.files.times import time_of
-from eel_base.wording import shown
+from eel_common.attitude import heading
+from eel_common.files.input_file import reading
+from eel_common.files.table import Table
+from eel_common.files.tables import is_table, read_table
+from eel_common.files.times import time_of
+from eel_common.wording import shown
 from eel_gaits.sources.frames import check_rising
 
 from eel_dynamics import Body, Robot, Run, Scene

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import checked_instance, checked_row, number, positive
-from eel_base.quantity import numbers as real_numbers
-from eel_base.wording import shown
+from eel_common.quantity import checked_instance, checked_row, number, positive
+from eel_common.quantity import numbers as real_numbers
+from eel_common.wording import shown
 
 FEWEST_SAMPLES = 4  # of a path: a coast may have few
 

@@ -17,11 +17,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from eel_base.command.command import command
-from eel_base.command.command_line import Parser
-from eel_base.wording import shown
+from eel_common.command.command import command
+from eel_common.command.command_line import Parser
+from eel_common.wording import shown
 from eel_dynamics.commands.options import add_options, add_repeated, named_texts, scene_of, set_numbers
-from eel_model.robot.robot import robot_of
+from eel_dynamics.model.robot.robot import robot_of
 
 from eel_dynamics import Robot, Run, Swim
 from eel_gaits import Law

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from eel_base.wording import shown
+from eel_common.wording import shown
 from eel_dynamics.batches.simulate_batch import in_threads
-from eel_model.robot.actuators import at_limit
-from eel_model.robot.compiled import mode_table
+from eel_dynamics.model.robot.actuators import at_limit
+from eel_dynamics.model.robot.compiled import mode_table
 
 from eel_dynamics import Robot, Run, Swim
 from eel_gaits import Law

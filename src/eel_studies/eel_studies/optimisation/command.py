@@ -11,10 +11,10 @@ import time
 from contextlib import suppress
 from functools import partial
 
-from eel_base.command.command import command
-from eel_base.command.command_line import Parser
-from eel_base.command.progress import Progress
-from eel_base.wording import shown
+from eel_common.command.command import command
+from eel_common.command.command_line import Parser
+from eel_common.command.progress import Progress
+from eel_common.wording import shown
 from eel_dynamics.analysis.measures import MEASURES
 from eel_dynamics.commands.options import add_changes, add_options, add_repeated, set_numbers, swim_from, varied_values
 from eel_dynamics.runs.scene_file import SUFFIXES as SCENES

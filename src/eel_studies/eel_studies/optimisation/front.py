@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from eel_base.wording import shown
+from eel_common.wording import shown
 from eel_dynamics.analysis.measures import described
-from eel_model.equality import EqualByFields
+from eel_dynamics.model.equality import EqualByFields
 
 from eel_dynamics import Run
 from eel_studies.outputs import Table

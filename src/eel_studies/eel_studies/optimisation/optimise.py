@@ -16,9 +16,9 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from eel_base.command.progress import progress_of
-from eel_base.quantity import checked_choice, checked_instance, checked_row, number
-from eel_base.wording import shown
+from eel_common.command.progress import progress_of
+from eel_common.quantity import checked_choice, checked_instance, checked_row, number
+from eel_common.wording import shown
 from eel_dynamics.analysis.measures import checked_measures, measures_of
 
 from eel_dynamics import Body, Robot, Scene

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from eel_dynamics.model.initial_state import head_motion_of
 from eel_gaits.pilot.pilot import Pilot
-from eel_model.initial_state import head_motion_of
 
 from eel_dynamics import Scene, Simulation
 from eel_studies.points import AccuracyLike

@@ -11,11 +11,11 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from eel_base.command.command import command
-from eel_base.command.command_line import Parser
-from eel_base.files.markdown import table
+from eel_common.command.command import command
+from eel_common.command.command_line import Parser
+from eel_common.files.markdown import table
 from eel_dynamics.commands.options import add_repeated
-from eel_model.fins.text import fins_from_text
+from eel_dynamics.model.fins.text import fins_from_text
 
 from eel_dynamics import Accuracy, Fin, Swim
 from eel_gaits import Law, falling, straight, turning

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from eel_base.attitude import roll
+from eel_common.attitude import roll
 
 from eel_dynamics import Accuracy, Fin, RollHold, Swim
 from eel_gaits import Law

@@ -7,9 +7,9 @@ eel terms straight --set period=0.7 --tolerance 0.05 --out small.yaml
 
 import argparse
 
-from eel_base.command.command import checked_out, command
-from eel_base.command.command_line import Parser
-from eel_base.files.output_file import written_as
+from eel_common.command.command import checked_out, command
+from eel_common.command.command_line import Parser
+from eel_common.files.output_file import written_as
 from eel_dynamics.runs.scene_file import SUFFIXES, save_scene
 
 from eel_studies.options import add_scene_options, chosen

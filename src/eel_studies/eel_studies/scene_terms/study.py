@@ -11,8 +11,8 @@ import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
-from eel_base.quantity import checked_instance, number
-from eel_base.wording import one_line
+from eel_common.quantity import checked_instance, number
+from eel_common.wording import one_line
 from eel_dynamics.accuracy.accuracy import COARSEST, Accuracy
 from eel_dynamics.analysis.measures import measures_of
 from eel_dynamics.runs.companion import relative_errors

@@ -9,8 +9,8 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from eel_dynamics.model.body.hull import BY_SHAPE, EDGE_ON, PLATE
 from eel_dynamics.runs.swim import AT_REST, Swim
-from eel_model.body.hull import BY_SHAPE, EDGE_ON, PLATE
 
 from eel_dynamics import Gust, Joint, Robot, Uniform
 from eel_gaits import Law

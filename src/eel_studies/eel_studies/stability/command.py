@@ -10,10 +10,10 @@ eel stability --page docs/appendix/stability.txt --out docs/images
 import argparse
 from pathlib import Path
 
-from eel_base.command.command import command
-from eel_base.command.command_line import Parser
-from eel_base.command.progress import Progress
-from eel_base.wording import shown
+from eel_common.command.command import command
+from eel_common.command.command_line import Parser
+from eel_common.command.progress import Progress
+from eel_common.wording import shown
 from eel_dynamics.commands.options import add_repeated
 
 from eel_studies.options import add_scene_options, check_least, chosen, ranges_of

@@ -8,9 +8,9 @@ short the step is.
 """
 
 import numpy as np
-from eel_base.files.markdown import table
-from eel_model.inertia import MOST, condition_of, straight_inertia
-from eel_model.section_data import nose_of
+from eel_common.files.markdown import table
+from eel_dynamics.model.inertia import MOST, condition_of, straight_inertia
+from eel_dynamics.model.section_data import nose_of
 
 import eel_core
 from eel_dynamics import Body, Scene, Simulation

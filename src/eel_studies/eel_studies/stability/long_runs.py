@@ -9,7 +9,7 @@ of the model: it depends on no accuracy.
 from typing import Any
 
 import numpy as np
-from eel_base.files.markdown import table
+from eel_common.files.markdown import table
 
 from eel_dynamics import Accuracy, Body, Scene, Simulation
 from eel_gaits import helix, straight

@@ -9,7 +9,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from eel_base.files.markdown import table
+from eel_common.files.markdown import table
 
 from eel_studies.outputs import Outputs, Table
 from eel_studies.pictures import BLACK, ORANGE

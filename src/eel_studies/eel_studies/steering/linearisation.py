@@ -14,11 +14,11 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import checked_instance, checked_row, number, positive
-from eel_base.wording import not_one_of, shown
+from eel_common.quantity import checked_instance, checked_row, number, positive
+from eel_common.wording import not_one_of, shown
+from eel_dynamics.model.body.body import Body, checked_body
+from eel_dynamics.model.scene import checked_scene
 from eel_gaits.laws.steered_law import BENDS
-from eel_model.body.body import Body, checked_body
-from eel_model.scene import checked_scene
 
 from eel_dynamics import Fin, Scene
 from eel_gaits import Law, Ramp, Term

@@ -12,9 +12,9 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from eel_base.wording import shown
+from eel_common.wording import shown
 from eel_dynamics.analysis.averaging_window import common_period
-from eel_model.fins.fins import Fin, RollHold, checked_fins, servos_of
+from eel_dynamics.model.fins.fins import Fin, RollHold, checked_fins, servos_of
 
 from eel_dynamics import Accuracy, Body, Scene, simulate, simulate_batch
 from eel_gaits import Law

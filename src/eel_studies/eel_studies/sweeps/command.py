@@ -12,10 +12,10 @@ import time
 from functools import partial
 
 import numpy as np
-from eel_base.command.command import command
-from eel_base.command.command_line import Parser
-from eel_base.command.progress import Progress
-from eel_base.files.output_file import written_as
+from eel_common.command.command import command
+from eel_common.command.command_line import Parser
+from eel_common.command.progress import Progress
+from eel_common.files.output_file import written_as
 from eel_dynamics.analysis.measures import MEASURES
 from eel_dynamics.commands.options import (
     add_changes,

@@ -18,23 +18,23 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from eel_base.command.progress import progress_of
-from eel_base.quantity import checked_instance, positive
-from eel_base.wording import WorkStopped, one_line, shown
+from eel_common.command.progress import progress_of
+from eel_common.quantity import checked_instance, positive
+from eel_common.wording import WorkStopped, one_line, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import checked_measures, described
 from eel_dynamics.analysis.settling import tell_unsettled
 from eel_dynamics.batches.simulate_batch import available_cores
+from eel_dynamics.model.axes import REP103
+from eel_dynamics.model.body.body import Body
+from eel_dynamics.model.robot.robot import Robot
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.sampling import checked_times, default_sample_period
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, period_of, until_settled
 from eel_dynamics.runs.storage.tables import needed
 from eel_dynamics.runs.swim import Swim
 from eel_dynamics.simulation.stopping import SimulationStopped
-from eel_model.axes import REP103
-from eel_model.body.body import Body
-from eel_model.robot.robot import Robot
-from eel_model.scene import Scene
 
 from eel_studies.points import (
     AccuracyLike,

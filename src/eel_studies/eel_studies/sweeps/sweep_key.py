@@ -7,18 +7,18 @@ import sys
 from typing import Any
 
 import numpy as np
-from eel_base.wording import shown
+from eel_common.wording import shown
+from eel_dynamics.model.body.body import DRAGS, MASSES, PROFILES, Body
+from eel_dynamics.model.body.shapes import NamedHalfAxis
+from eel_dynamics.model.flow.flow import Flow, parts_of
+from eel_dynamics.model.flow.functions import FlowField
+from eel_dynamics.model.flow.plain import plain_of_flow
+from eel_dynamics.model.robot.actuators import Torque
+from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.runs.storage.netcdf import software
 from eel_dynamics.runs.storage.plain import plain_of, plain_robot
 from eel_dynamics.runs.storage.tables import needed
 from eel_dynamics.runs.swim import Swim
-from eel_model.body.body import DRAGS, MASSES, PROFILES, Body
-from eel_model.body.shapes import NamedHalfAxis
-from eel_model.flow.flow import Flow, parts_of
-from eel_model.flow.functions import FlowField
-from eel_model.flow.plain import plain_of_flow
-from eel_model.robot.actuators import Torque
-from eel_model.robot.robot import Robot
 
 from eel_studies.points import SwimSettings
 

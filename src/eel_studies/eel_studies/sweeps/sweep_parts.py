@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from eel_base.files.input_file import InputFile, from_json, reading
-from eel_base.files.output_file import beside, check_output, replacing
-from eel_base.quantity import checked_instance
-from eel_base.wording import one_line, shown
+from eel_common.files.input_file import InputFile, from_json, reading
+from eel_common.files.output_file import beside, check_output, replacing
+from eel_common.quantity import checked_instance
+from eel_common.wording import one_line, shown
 from eel_dynamics.runs.storage.digest import ATTRIBUTE, add_digest, check_digest
 
 Results = dict[int, dict[str, Any]]  # the measures of each point, by its index

@@ -6,8 +6,8 @@ import os
 from pathlib import Path
 from typing import Any
 
-from eel_base.quantity import checked_instance
-from eel_base.wording import shown
+from eel_common.quantity import checked_instance
+from eel_common.wording import shown
 from eel_dynamics.runs.exchange.eel_viz_functions import function_of_eel_viz
 from eel_dynamics.runs.run import Run
 

@@ -12,12 +12,12 @@ import re
 from functools import partial
 from pathlib import Path
 
-from eel_base.command.command import command
-from eel_base.command.command_line import Parser
-from eel_base.command.progress import Progress
-from eel_base.files.input_file import is_number
-from eel_base.files.output_file import written_as
-from eel_base.wording import shown
+from eel_common.command.command import command
+from eel_common.command.command_line import Parser
+from eel_common.command.progress import Progress
+from eel_common.files.input_file import is_number
+from eel_common.files.output_file import written_as
+from eel_common.wording import shown
 
 from eel_studies.options import add_scene_options, check_least, chosen
 from eel_studies.outputs import Outputs, add_output_options

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from typing import Any, Self
 
 import zstandard
-from eel_base.files.input_file import InputFile, reading
-from eel_base.wording import one_line, shown
+from eel_common.files.input_file import InputFile, reading
+from eel_common.wording import one_line, shown
 from rosbags.interfaces import Connection, MessageDefinitionFormat
 from rosbags.rosbag2 import Reader
 from rosbags.serde import SerdeError

@@ -12,10 +12,10 @@ from zlib import crc32
 
 import lz4.frame
 import zstandard
-from eel_base.files.input_file import reading
-from eel_base.files.yaml_tree import MOST_BYTES, from_yaml, read_yaml
-from eel_base.quantity import checked_instance
-from eel_base.wording import shown
+from eel_common.files.input_file import reading
+from eel_common.files.yaml_tree import MOST_BYTES, from_yaml, read_yaml
+from eel_common.quantity import checked_instance
+from eel_common.wording import shown
 from mcap.exceptions import McapError
 from mcap.records import Chunk, Footer
 from mcap.stream_reader import StreamReader, get_chunk_data_stream

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
-from eel_base.wording import shown
+from eel_common.wording import shown
 from rosbags.interfaces import Nodetype
 from rosbags.typesys import get_types_from_msg
 

@@ -14,8 +14,8 @@ import pathlib
 from typing import IO, Any, Literal, cast
 
 import mcap.writer
-from eel_base.files.output_file import beside
-from eel_base.wording import shown
+from eel_common.files.output_file import beside
+from eel_common.wording import shown
 from rosbags.interfaces import Connection
 from rosbags.rosbag2 import StoragePlugin, Writer, WriterError
 from rosbags.rosbag2.enums import CompressionMode

@@ -17,11 +17,11 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from eel_base.command.command import command
-from eel_base.command.command_line import Parser, print_to_stderr
-from eel_base.command.progress import Progress
-from eel_base.files.output_file import beside
-from eel_base.quantity import limits
+from eel_common.command.command import command
+from eel_common.command.command_line import Parser, print_to_stderr
+from eel_common.command.progress import Progress
+from eel_common.files.output_file import beside
+from eel_common.quantity import limits
 
 from eel_viz.bags.bag import Bag
 from eel_viz.bags.swimmer_messages import SwimmerMessages

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from eel_base.topics import DIAGNOSTICS, GLOBAL, OWN, SAMPLED
-from eel_base.wording import shown
+from eel_common.topics import DIAGNOSTICS, GLOBAL, OWN, SAMPLED
+from eel_common.wording import shown
 
 from eel_viz.bags.bag import Bag
 from eel_viz.recording.destination import LogFunction

@@ -15,7 +15,7 @@ import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from eel_base.wording import shown
+from eel_common.wording import shown
 from PIL import Image
 
 from eel_viz.entities import TIMELINE

@@ -7,8 +7,8 @@ import pathlib
 import shutil
 import subprocess
 
-from eel_base.files.output_file import replacing
-from eel_base.wording import shown
+from eel_common.files.output_file import replacing
+from eel_common.wording import shown
 from PIL import Image
 
 ANIMATIONS = (".gif", ".webp")

@@ -16,11 +16,11 @@ import pathlib
 import tempfile
 from collections.abc import Callable, Sequence
 
-from eel_base.command.command import command
-from eel_base.command.command_line import Parser, print_to_stderr
-from eel_base.command.progress import Progress
-from eel_base.files.output_file import NotWritten, check_output, replacing, written_as
-from eel_base.wording import shown
+from eel_common.command.command import command
+from eel_common.command.command_line import Parser, print_to_stderr
+from eel_common.command.progress import Progress
+from eel_common.files.output_file import NotWritten, check_output, replacing, written_as
+from eel_common.wording import shown
 
 from eel_viz.pictures.drawing import SIZE, Drawing, SideBySide, check_recording, drawn_beside
 from eel_viz.pictures.film import FILMS, PICTURE_NAME, QUALITY, check_film, check_quality, ffmpeg, film

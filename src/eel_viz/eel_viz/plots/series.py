@@ -5,7 +5,7 @@ Paths are those of entities.py.
 """
 
 import numpy as np
-from eel_base.attitude import attitude
+from eel_common.attitude import attitude
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream

@@ -14,7 +14,7 @@ from collections.abc import Callable, Hashable
 from operator import attrgetter
 from typing import Any
 
-from eel_base.topics import SAMPLED
+from eel_common.topics import SAMPLED
 
 from eel_viz import message_readers as readers
 from eel_viz.messages import BadMessage

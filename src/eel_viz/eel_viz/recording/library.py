@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import rerun as rr
-from eel_base.files.output_file import appeared, written_as
-from eel_base.quantity import checked_path
+from eel_common.files.output_file import appeared, written_as
+from eel_common.quantity import checked_path
 
 from eel_viz.batched_stream import Rates
 from eel_viz.recording.destination import Delivery, Destination, LogFunction

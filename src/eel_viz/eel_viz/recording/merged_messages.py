@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from operator import itemgetter
 from typing import Any
 
-from eel_base.topics import SAMPLED
+from eel_common.topics import SAMPLED
 
 from eel_viz.message_readers import stamp_of
 from eel_viz.recording.destination import Destination, LogFunction

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from eel_base.files.input_file import reading
-from eel_base.wording import shown
+from eel_common.files.input_file import reading
+from eel_common.wording import shown
 
 from eel_viz.entities import TIMELINE
 from eel_viz.recording.rrd_frames import HEADER_SIZE, complete_file

@@ -7,8 +7,8 @@ import pathlib
 import time
 
 import rerun as rr
-from eel_base.files.output_file import Draft, NotWritten, appeared, numbered
-from eel_base.wording import shown
+from eel_common.files.output_file import Draft, NotWritten, appeared, numbered
+from eel_common.wording import shown
 
 from eel_viz.batched_stream import Rates
 from eel_viz.recording.destination import (

@@ -12,7 +12,7 @@ import struct
 import tempfile
 from collections.abc import Iterator
 
-from eel_base.files.input_file import InputFile
+from eel_common.files.input_file import InputFile
 
 HEADER_SIZE, MESSAGE_HEADER = 12, struct.Struct("<QQ")  # bytes
 BLOCK = 2**20  # bytes copied at once

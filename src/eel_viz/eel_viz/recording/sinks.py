@@ -14,7 +14,7 @@ from functools import partial
 from urllib.parse import urlsplit
 
 import rerun as rr
-from eel_base.wording import shown
+from eel_common.wording import shown
 
 from eel_viz.batched_stream import Rates
 from eel_viz.recording.destination import (

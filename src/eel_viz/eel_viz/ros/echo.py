@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 import yaml
-from eel_base.command.command_line import Parser, check_seconds
-from eel_base.wording import shown
-from eel_ros.qos import fitting
-from eel_ros.run_node import run_node
-from eel_ros.serving import ServedNode
+from eel_common.command.command_line import Parser, check_seconds
+from eel_common.ros.qos import fitting
+from eel_common.ros.run_node import run_node
+from eel_common.ros.serving import ServedNode
+from eel_common.wording import shown
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 from rclpy.utilities import remove_ros_args
 

@@ -10,10 +10,10 @@ import time
 from collections import OrderedDict
 from typing import Any
 
-from eel_ros.parameter_node import ParameterNode
-from eel_ros.parameters import declare_all, help_rows
-from eel_ros.qos import latched
-from eel_ros.run_node import run_node
+from eel_common.ros.parameter_node import ParameterNode
+from eel_common.ros.parameters import declare_all, help_rows
+from eel_common.ros.qos import latched
+from eel_common.ros.run_node import run_node
 from nav_msgs.msg import Path
 from sensor_msgs.msg import JointState
 from visualization_msgs.msg import MarkerArray

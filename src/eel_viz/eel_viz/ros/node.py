@@ -10,13 +10,13 @@ import sys
 import time
 from typing import Any
 
-from eel_base.topics import DIAGNOSTICS, GLOBAL, LATCHED, OWN
-from eel_base.wording import shown
-from eel_ros.parameter_node import ParameterNode
-from eel_ros.parameters import declare_all, help_rows
-from eel_ros.process_end import exit_immediately
-from eel_ros.qos import keep_all
-from eel_ros.run_node import run_node
+from eel_common.ros.parameter_node import ParameterNode
+from eel_common.ros.parameters import declare_all, help_rows
+from eel_common.ros.process_end import exit_immediately
+from eel_common.ros.qos import keep_all
+from eel_common.ros.run_node import run_node
+from eel_common.topics import DIAGNOSTICS, GLOBAL, LATCHED, OWN
+from eel_common.wording import shown
 
 from eel_viz.bags.definitions import message_class
 from eel_viz.recording.dispatcher import READERS, Dispatcher

@@ -10,10 +10,10 @@ from collections.abc import Callable, Hashable, Mapping
 from functools import partial
 from typing import Any
 
-from eel_base.topics import SWIMMER
-from eel_ros.qos import Deliveries
-from eel_ros.run_node import is_from_before
-from eel_ros.serving import PolledGroup, log_dropped, read_message
+from eel_common.ros.qos import Deliveries
+from eel_common.ros.run_node import is_from_before
+from eel_common.ros.serving import PolledGroup, log_dropped, read_message
+from eel_common.topics import SWIMMER
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription

@@ -15,10 +15,10 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
-from eel_base.command.command_line import Parser, check_seconds
-from eel_base.topics import GLOBAL, LATCHED, OWN, SAMPLED
-from eel_ros.qos import fitting, keep_all, matches
-from eel_ros.run_node import run_node
+from eel_common.command.command_line import Parser, check_seconds
+from eel_common.ros.qos import fitting, keep_all, matches
+from eel_common.ros.run_node import run_node
+from eel_common.topics import GLOBAL, LATCHED, OWN, SAMPLED
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import QoSProfile

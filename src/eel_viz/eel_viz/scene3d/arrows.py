@@ -6,7 +6,7 @@ A load is in section axes, so it needs the backbone of the same stamp.
 
 import numpy as np
 import rerun as rr
-from eel_base.attitude import world_from_section
+from eel_common.attitude import world_from_section
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream

@@ -5,7 +5,7 @@ So the skin has its own abscissae, finer at the nose, and keeps its mesh when th
 """
 
 import numpy as np
-from eel_base.attitude import section_axes, world_from_section
+from eel_common.attitude import section_axes, world_from_section
 
 from eel_viz.messages import Backbone, Load, same
 

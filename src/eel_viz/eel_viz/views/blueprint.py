@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import rerun as rr
 import rerun.blueprint as rrb
-from eel_base.quantity import checked_choice
+from eel_common.quantity import checked_choice
 from rerun.blueprint.components import AbsoluteTimeRange
 
 from eel_viz import entities

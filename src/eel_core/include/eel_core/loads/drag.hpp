@@ -7,7 +7,7 @@
 // not the paper's. |V| V1 has no kink where a component of V changes its sign alone, so it goes with the laminar part
 // of the friction. Another law of cross flow (k2, k3) or of roll (k4) is a change of
 // `resistive_load` here, of its kinks (drag_kinks.hpp), and of `sections_of` in
-// eel_model/section_data.py. Where a speed changes its sign within a panel, the load has a kink there; `drag_kinks`
+// eel_dynamics/model/section_data.py. Where a speed changes its sign within a panel, the load has a kink there; `drag_kinks`
 // integrates it exactly. The nose's drag stands in tail_and_nose.hpp, that of fins in fins.hpp; march/missed.hpp knows
 // which coefficient each part of the drag goes with.
 #pragma once

@@ -2,8 +2,8 @@
 // The laws of the axial friction c_f(Re), section 7.2.1.
 //
 // A new law is an entry of `Friction` and `friction_names`, and a case of `axial_friction`; `Scene.friction` takes its
-// name. Its coefficients come from `sections_of` in eel_model/section_data.py. One that is not analytic along the body
-// is named in `ROUGH_FRICTION` (eel_model/scene.py), which asks for more points. One that is no sum of a laminar and a
+// name. Its coefficients come from `sections_of` in eel_dynamics/model/section_data.py. One that is not analytic along the body
+// is named in `ROUGH_FRICTION` (eel_dynamics/model/scene.py), which asks for more points. One that is no sum of a laminar and a
 // turbulent part, as `taylor`, has a case in `set_drag_units` (march/missed.hpp) too.
 //
 // `taylor`: flow across a cylinder keeps its boundary layer thin, so that the friction along it is

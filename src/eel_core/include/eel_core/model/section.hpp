@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Data of the elliptic sections of body and water, and what they say of momentum and energy: eq. (37), section 7.2.1.
 //
-// They come from half-axes a along axis 3, b along axis 2, by the formulae in eel_model/section_data.py.
+// They come from half-axes a along axis 3, b along axis 2, by the formulae in eel_dynamics/model/section_data.py.
 #pragma once
 
 #include "eel_core/algebra/field.hpp"

@@ -17,9 +17,9 @@ from collections import deque
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 
-from eel_base.quantity import is_finite
-from eel_base.wording import not_one_of, shown
-from eel_ros.loop.diagnostics import Report
+from eel_common.quantity import is_finite
+from eel_common.ros.loop.diagnostics import Report
+from eel_common.wording import not_one_of, shown
 
 LAW, SAMPLES, JOINTS, FINS, CURRENT = "curvature_law", "curvature_samples", "joint_commands", "fin_command", "current"
 INPUTS = (LAW, SAMPLES, JOINTS, FINS, CURRENT)

@@ -14,12 +14,12 @@ from itertools import pairwise
 from operator import itemgetter
 from typing import Any
 
-from eel_base.wording import shown
+from eel_common.ros.loop.diagnostics import ERROR, Report
+from eel_common.wording import shown
 from eel_gaits.laws.law import Law
-from eel_model.fins.fins import checked_commands, commanded_names
-from eel_model.robot.robot import Robot
-from eel_ros.loop.diagnostics import ERROR, Report
 
+from eel_dynamics.model.fins.fins import checked_commands, commanded_names
+from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.ros.command_messages import Values, fin_command_from_message, joint_command_from_message
 from eel_dynamics.ros.loop.awaited import FINS, JOINTS, MESSAGES, Awaited
 from eel_dynamics.simulation.simulation import Simulation

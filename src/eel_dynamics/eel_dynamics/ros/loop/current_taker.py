@@ -4,7 +4,7 @@
 from typing import Any
 
 import numpy as np
-from eel_ros.loop.diagnostics import Report
+from eel_common.ros.loop.diagnostics import Report
 
 from eel_dynamics.ros.command_messages import Values
 from eel_dynamics.ros.loop.awaited import ALL, CURRENT, Awaited

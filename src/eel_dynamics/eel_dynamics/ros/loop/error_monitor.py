@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tells when the error of a run exceeds its target: each time once in the log, and in /diagnostics until a reset."""
 
-from eel_ros.loop.diagnostics import Report
+from eel_common.ros.loop.diagnostics import Report
 
 from eel_dynamics.simulation.simulation import Simulation
 

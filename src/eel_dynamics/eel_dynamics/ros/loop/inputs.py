@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What comes to a swimmer besides laws: commands of joints and fins, and currents; and what of all a run waits for."""
 
-from eel_model.fins.fins import commanded_names
-from eel_ros.loop.diagnostics import Report
+from eel_common.ros.loop.diagnostics import Report
 
+from eel_dynamics.model.fins.fins import commanded_names
 from eel_dynamics.ros.command_messages import interfaces_of
 from eel_dynamics.ros.loop.awaited import FINS, JOINTS, Awaited, wanted_inputs
 from eel_dynamics.ros.loop.command_queue import STAND_IN, FinCommands, JointCommands

@@ -4,9 +4,9 @@
 from typing import Any
 
 import numpy as np
-from eel_base.wording import shown
+from eel_common.ros.loop.diagnostics import ERROR, WARN, Report
+from eel_common.wording import shown
 from eel_gaits.laws.law import Law
-from eel_ros.loop.diagnostics import ERROR, WARN, Report
 
 from eel_dynamics.curvature.curvature_samples import LateSample
 from eel_dynamics.ros.loop.awaited import LAW, SAMPLES, Awaited

@@ -9,9 +9,9 @@ import math
 from time import monotonic
 
 import numpy as np
+from eel_common.ros.loop.diagnostics import REPEAT, Report
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_ros.loop.diagnostics import REPEAT, Report
 
 from eel_dynamics.analysis.model_limits import ModelLimits
 from eel_dynamics.simulation.observations import Snapshot

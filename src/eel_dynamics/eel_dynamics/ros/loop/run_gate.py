@@ -4,7 +4,7 @@
 import time
 from collections.abc import Callable
 
-from eel_ros.loop.requests import Answer
+from eel_common.ros.loop.requests import Answer
 
 from eel_dynamics.ros.loop.awaited import JOINTS, LAW, SAMPLES
 from eel_dynamics.ros.publishers import Publishers

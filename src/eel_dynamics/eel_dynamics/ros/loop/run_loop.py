@@ -16,14 +16,14 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from eel_base.wording import one_line
+from eel_common.ros.loop.clock_ticks import TICK
+from eel_common.ros.loop.diagnostics import ERROR, Report
+from eel_common.ros.loop.followed_clock import FollowedClock
+from eel_common.ros.loop.lateness import Lateness
+from eel_common.ros.loop.pacing import Pace
+from eel_common.ros.loop.requests import Answer, RequestQueue
+from eel_common.wording import one_line
 from eel_gaits.laws.law import Law
-from eel_ros.loop.clock_ticks import TICK
-from eel_ros.loop.diagnostics import ERROR, Report
-from eel_ros.loop.followed_clock import FollowedClock
-from eel_ros.loop.lateness import Lateness
-from eel_ros.loop.pacing import Pace
-from eel_ros.loop.requests import Answer, RequestQueue
 
 from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration

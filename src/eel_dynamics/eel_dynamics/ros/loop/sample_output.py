@@ -6,8 +6,8 @@ While a run stands at its start, sample 0 is repeated. It is not published once 
 
 import math
 
-from eel_ros.loop.clock_ticks import ClockTicks
-from eel_ros.loop.diagnostics import Report
+from eel_common.ros.loop.clock_ticks import ClockTicks
+from eel_common.ros.loop.diagnostics import Report
 
 from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.loop.error_monitor import ErrorMonitor

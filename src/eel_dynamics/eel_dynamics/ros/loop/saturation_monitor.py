@@ -8,9 +8,9 @@ second once.
 from typing import Any
 
 import numpy as np
-from eel_model.robot.actuators import at_limit
-from eel_ros.loop.diagnostics import Report
+from eel_common.ros.loop.diagnostics import Report
 
+from eel_dynamics.model.robot.actuators import at_limit
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
 

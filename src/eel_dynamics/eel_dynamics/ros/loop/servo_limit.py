@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Passes the parameter servo_torque_limit to the simulation, between two samples, in place of servos' own limits."""
 
-from eel_ros.loop.diagnostics import Report
+from eel_common.ros.loop.diagnostics import Report
 
 from eel_dynamics.ros.simulation_from_parameters import has_servos
 from eel_dynamics.simulation.simulation import Simulation

@@ -6,14 +6,14 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-from eel_base.topics import ENERGY_FIELDS
-from eel_model.body.body import Body
-from eel_model.fins.fins import SIDES, Fin
-from eel_model.flow.flow import lattice_around, velocities_at
-from eel_model.robot.actuators import most_torque
-from eel_model.robot.part import AXES
-from eel_model.robot.robot import Robot
+from eel_common.topics import ENERGY_FIELDS
 
+from eel_dynamics.model.body.body import Body
+from eel_dynamics.model.fins.fins import SIDES, Fin
+from eel_dynamics.model.flow.flow import lattice_around, velocities_at
+from eel_dynamics.model.robot.actuators import most_torque
+from eel_dynamics.model.robot.part import AXES
+from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.runs.exchange.message_fields import FIELDS, OF_JOINTS, PROFILES
 from eel_dynamics.runs.run_data import RunData
 

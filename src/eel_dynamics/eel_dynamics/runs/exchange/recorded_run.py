@@ -13,20 +13,20 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-from eel_base.files.input_file import reading
-from eel_base.quantity import checked_instance, is_finite
-from eel_base.topics import ENERGY_FIELDS, LATER_ENERGY_FIELDS
-from eel_base.wording import one_line, shown
+from eel_common.files.input_file import reading
+from eel_common.quantity import checked_instance, is_finite
+from eel_common.topics import ENERGY_FIELDS, LATER_ENERGY_FIELDS
+from eel_common.wording import one_line, shown
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.law_message import law_from_message
-from eel_model.body.body import Body, checked_body
-from eel_model.body.grid import Grid
-from eel_model.body.moments import with_moments
-from eel_model.body.panels import panels_of
-from eel_model.robot.robot import Robot, checked_robot, robot_of
-from eel_model.scene import Scene
 
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.model.body.body import Body, checked_body
+from eel_dynamics.model.body.grid import Grid
+from eel_dynamics.model.body.moments import with_moments
+from eel_dynamics.model.body.panels import panels_of
+from eel_dynamics.model.robot.robot import Robot, checked_robot, robot_of
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.exchange.eel_viz_functions import function_of_eel_viz
 from eel_dynamics.runs.exchange.message_fields import FIELDS, OF_JOINTS, quantities_of
 from eel_dynamics.simulation.energy import WORKS, EnergyLedger

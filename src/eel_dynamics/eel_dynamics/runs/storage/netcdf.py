@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from eel_base.files.input_file import InputFile, from_json, reading
-from eel_base.files.output_file import check_output, replacing
-from eel_base.wording import shown
-from eel_model.axes import CONVENTIONS, PAPER, REP103
+from eel_common.files.input_file import InputFile, from_json, reading
+from eel_common.files.output_file import check_output, replacing
+from eel_common.wording import shown
 
+from eel_dynamics.model.axes import CONVENTIONS, PAPER, REP103
 from eel_dynamics.runs.storage.digest import add_digest, check_digest
 from eel_dynamics.runs.storage.run_contents import in_rep103_axes
 from eel_dynamics.runs.storage.variables import LABELS, OF_SWIMMERS, VARIABLES, Contents, variable_of

@@ -16,25 +16,25 @@ from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.body.appendages import Appendage, plain_appendages
-from eel_model.body.body import MASSES, PROFILES, Body
-from eel_model.body.links import LinkHalfAxis
-from eel_model.body.shapes import (
+
+from eel_dynamics.accuracy.accuracy import ANY, Accuracy
+from eel_dynamics.accuracy.error_estimate import ErrorEstimate
+from eel_dynamics.model.body.appendages import Appendage, plain_appendages
+from eel_dynamics.model.body.body import MASSES, PROFILES, Body
+from eel_dynamics.model.body.links import LinkHalfAxis
+from eel_dynamics.model.body.shapes import (
     NamedHalfAxis,
     PolynomialAlong,
     PolynomialHalfAxis,
     coefficients_of,
     polynomials_through,
 )
-from eel_model.fins.fins import Fin, RollHold
-from eel_model.flow.flow import Flow
-from eel_model.flow.plain import flow_of, plain_of_flow
-from eel_model.robot.robot import Robot
-from eel_model.robot.robot_file import plain_of_robot, robot_arguments
-from eel_model.scene import Scene
-
-from eel_dynamics.accuracy.accuracy import ANY, Accuracy
-from eel_dynamics.accuracy.error_estimate import ErrorEstimate
+from eel_dynamics.model.fins.fins import Fin, RollHold
+from eel_dynamics.model.flow.flow import Flow
+from eel_dynamics.model.flow.plain import flow_of, plain_of_flow
+from eel_dynamics.model.robot.robot import Robot
+from eel_dynamics.model.robot.robot_file import plain_of_robot, robot_arguments
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 HALF_AXES = ("half_width", "half_height")

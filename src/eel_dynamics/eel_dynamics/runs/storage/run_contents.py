@@ -4,9 +4,9 @@
 from typing import Any
 
 import numpy as np
-from eel_base.wording import shown
-from eel_model.axes import REP103, turn_vector, turned
+from eel_common.wording import shown
 
+from eel_dynamics.model.axes import REP103, turn_vector, turned
 from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.storage.variables import COUNTS, ENERGY, OWN, Contents, fields_of_arrays
 from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from eel_base.files.output_file import replacing
+from eel_common.files.output_file import replacing
 
 from eel_dynamics.runs.storage.netcdf import attributes_of
 from eel_dynamics.runs.storage.variables import LABELS, LEDGER, Contents, variable_of

@@ -10,8 +10,8 @@ from dataclasses import fields
 from typing import Any, NamedTuple, TypeVar, get_type_hints
 
 import numpy as np
-from eel_model.axes import REP103
 
+from eel_dynamics.model.axes import REP103
 from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS, OF_LEDGER, JointMotion
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import FINS, LOAD, OBSERVED, WRENCH, Observations, Variable

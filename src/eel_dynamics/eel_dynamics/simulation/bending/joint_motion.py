@@ -9,8 +9,8 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from eel_model.robot.compiled import ModeTable, mode_table
 
+from eel_dynamics.model.robot.compiled import ModeTable, mode_table
 from eel_dynamics.simulation.observations import Variable
 
 JOINT = ("time", "joint")

@@ -8,13 +8,13 @@ mode, whose factor is its coordinate. The coordinates are those of the modes and
 from typing import Any
 
 import numpy as np
-from eel_model.body.grid import Grid
-from eel_model.robot.actuators import Torque
-from eel_model.robot.compiled import ModeTable
 
 import eel_core
 from eel_dynamics.curvature.law_follower import LawFollower
 from eel_dynamics.curvature.tabulated_law import TabulatedLaw, Tabulation
+from eel_dynamics.model.body.grid import Grid
+from eel_dynamics.model.robot.actuators import Torque
+from eel_dynamics.model.robot.compiled import ModeTable
 
 
 class ModesOnGrid:

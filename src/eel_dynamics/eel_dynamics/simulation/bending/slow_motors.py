@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_model.robot.compiled import ModeTable
+
+from eel_dynamics.model.robot.compiled import ModeTable
 
 LOOKS = 24  # instants at which the law is looked at
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)  # its multiples fall on all phases of any period alike

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: Apache-2.0
+"""An orientation as angles and as a matrix, in REP-103 axes: x forward, y left, z up.
+
+Heading, climb and roll are the Z-Y-X angles, but the climb has the sign of the pitch turned. They take a quaternion
+(4,) x y z w, world from head, of any norm but 0; or the quaternions (4, N) of N heads, and give (N,).
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from eel_common.wording import shown
+
+ROUNDED = 1e-3  # of a norm: a quaternion of few digits is a unit quaternion, and is normalised
+
+
+def unit_quaternion(name: str, values: Sequence[float]) -> tuple[float, ...]:
+    """`values` (x, y, z, w) of norm 1; `ValueError` with the `name` where the norm differs by more than `ROUNDED`."""
+    norm = math.hypot(*values)
+    if not abs(norm - 1.0) <= ROUNDED:
+        raise ValueError(f"{name} must be a unit quaternion, got {shown(list(values))} of norm {norm:.6g}")
+    return tuple(value / norm for value in values)
+
+
+def heading(orientation: Sequence[float] | np.ndarray) -> Any:
+    """Angle [rad] from the world's x to the horizontal direction of the head's x, positive to the left, -pi to pi."""
+    x, y, z, w = components(orientation)
+    return _plain(np.arctan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z))
+
+
+def climb(orientation: Sequence[float] | np.ndarray) -> Any:
+    """Angle [rad] of the head's x above the horizontal, -pi/2 to pi/2."""
+    x, y, z, w = components(orientation)
+    sine = 2.0 * (x * z - w * y) / (x * x + y * y + z * z + w * w)
+    return _plain(np.arcsin(np.maximum(-1.0, np.minimum(1.0, sine))))
+
+
+def roll(orientation: Sequence[float] | np.ndarray) -> Any:
+    """Angle [rad] about the head's x, positive where the right side is down, -pi to pi."""
+    x, y, z, w = components(orientation)
+    return _plain(np.arctan2(2.0 * (y * z + w * x), w * w - x * x - y * y + z * z))
+
+
+def components(orientation: Sequence[float] | np.ndarray) -> Any:
+    """Of one quaternion, or another vector, as floats, which are faster; of N as rows (N,)."""
+    if isinstance(orientation, np.ndarray) and orientation.ndim == 1:
+        return orientation.tolist()
+    return orientation
+
+
+def _plain(angle: Any) -> Any:
+    """A float in place of a number of NumPy."""
+    return angle if isinstance(angle, np.ndarray) else float(angle)
+
+
+def attitude(orientation: Sequence[float]) -> tuple[float, float, float]:
+    """Heading, climb and roll [rad]."""
+    return heading(orientation), climb(orientation), roll(orientation)
+
+
+def world_from_body(orientation: np.ndarray) -> np.ndarray:
+    """Rotation matrices of unit quaternions `orientation`, shape (..., 4); returns (..., 3, 3), columns = body axes."""
+    x, y, z, w = np.moveaxis(np.asarray(orientation, dtype=float), -1, 0)
+    rows = (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
+        (2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
+        (2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)),
+    )
+    return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
+
+
+def section_axes(orientation: np.ndarray) -> np.ndarray:
+    """The section axes 1, 2, 3 in the world, columns of (..., 3, 3), of sections turned by `orientation` (..., 4).
+
+    They are -x (towards the tail), -y and +z of the section turned as the head.
+    """
+    return world_from_body(orientation) * (-1.0, -1.0, 1.0)
+
+
+def world_from_section(orientation: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """`vectors` (..., 3), given in section axes, in the world, for the `orientation` (..., 4) of their sections."""
+    return np.asarray((section_axes(orientation) @ np.asarray(vectors)[..., None])[..., 0])

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The command line of every command and node: one line per error, and output that any terminal can show."""
+
+import argparse
+import contextlib
+import os
+import shutil
+import signal
+import sys
+import textwrap
+import warnings
+from collections.abc import Iterable, Iterator
+from typing import Any, NoReturn
+
+from eel_common.wording import did_you_mean, not_one_of, one_line, shown
+
+COMPLETING = "_ARGCOMPLETE"  # in the environment where a shell asks for completions
+
+
+class Parser(argparse.ArgumentParser):
+    """An argument parser that reports an error in one line, and wraps each line of its texts."""
+
+    def __init__(self, *, description: str, epilog: str = "", **options: Any) -> None:
+        super().__init__(
+            description=_wrapped(description),
+            epilog=_wrapped(epilog),
+            formatter_class=_formatter(),
+            conflict_handler="resolve",
+            **options,
+        )
+
+    def parse_args(self, args: Iterable[str] | None = None, namespace: Any = None) -> Any:
+        if hasattr(sys.stdout, "reconfigure"):  # an escape for what its encoding lacks, as on stderr, and no failure
+            sys.stdout.reconfigure(errors="backslashreplace")
+        if COMPLETING in os.environ:
+            import argcomplete
+
+            argcomplete.autocomplete(self)
+        words = sys.argv[1:] if args is None else list(args)
+        self._check_options(words)
+        return super().parse_args(words, namespace)
+
+    def _check_options(self, words: list[str]) -> None:
+        """Refuse an option that there is not before one is missed that must be given."""
+        for word in words:
+            name = word.partition("=")[0]
+            if name == "--":
+                return
+            if (
+                name.startswith("--")
+                and not name.count(" ")
+                and not any(known.startswith(name) for known in self._option_string_actions)
+            ):
+                self.error(f"no option {shown(name)}{did_you_mean(name, self._option_string_actions)}")
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Refuse a choice that there is not, in the words of all commands."""
+        if action.choices is not None and value not in action.choices:
+            raise argparse.ArgumentError(
+                None, not_one_of("/".join(action.option_strings) or action.dest, value, map(str, action.choices))
+            )
+
+    def error(self, message: str) -> NoReturn:
+        print_to_stderr(self.prog, f"{message} (see {self.prog} --help)")
+        sys.exit(2)
+
+
+def _formatter() -> type[argparse.HelpFormatter]:
+    """Colours where the output is a terminal and rich-argparse is installed."""
+    if sys.stdout is not None and sys.stdout.isatty():
+        with contextlib.suppress(ImportError):
+            from rich_argparse import RawDescriptionRichHelpFormatter
+
+            class Coloured(RawDescriptionRichHelpFormatter):
+                """Brackets are units, not marks of a style."""
+
+                text_markup = help_markup = False
+
+            return Coloured
+    return argparse.RawDescriptionHelpFormatter
+
+
+def _wrapped(text: str) -> str:
+    """The text with each line wrapped to the terminal's width; what follows is indented as the line, and by 4."""
+    width = shutil.get_terminal_size().columns - 2
+    lines = text.splitlines()
+    if len(lines) == 1:
+        return textwrap.fill(text, width)
+    return "\n".join(
+        textwrap.fill(line, width, subsequent_indent=" " * (len(line) - len(line.lstrip()) + 4)) for line in lines
+    )
+
+
+def print_to_stderr(program: str, message: object) -> None:
+    """Write one line: the program's name and the text of `message`."""
+    sys.stderr.write(f"{program}: {one_line(message)}\n")
+
+
+@contextlib.contextmanager
+def one_line_warnings(program: str) -> Iterator[None]:
+    """Print each warning as "PROGRAM: warning: ...", without its place in the sources."""
+
+    def show(message: Warning | str, category: type[Warning], *place: Any, **written: Any) -> None:
+        print_to_stderr(program, f"warning: {message}")
+
+    with warnings.catch_warnings():
+        warnings.showwarning = show
+        yield
+
+
+@contextlib.contextmanager
+def interruptible() -> Iterator[None]:
+    """Let Ctrl-C raise KeyboardInterrupt in here, for work that leaves something whole; before and after, `eel_command`
+    lets it end a command at once."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def check_seconds(argument: str, value: float | None) -> None:
+    """`ValueError` that names the `argument`, unless its `value` [s] is positive or None."""
+    if value is not None and not value > 0.0:
+        raise ValueError(f"{argument} must be > 0 s, got {value:g}")

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The command `eel`: lists the commands of all packages that are installed, and runs one.
+
+A package declares its commands as entry points of one of the groups below:
+`simulate = eel_dynamics.commands.simulate`. The module has `main(arguments)`, which returns the exit status. The first
+line of its docstring says what the command does, after a colon. The list reads that line without importing the module.
+"""
+
+import importlib
+import os
+import sys
+from importlib.metadata import EntryPoint, entry_points
+from importlib.util import find_spec
+from pathlib import Path
+
+import eel_command
+
+from eel_common.command.command_line import COMPLETING, Parser
+from eel_common.wording import did_you_mean, shown
+
+GROUPS = {  # of entry points: heading in the list
+    "eel.commands.swim": "swim",
+    "eel.commands.study": "study",
+    "eel.commands.look": "record and look",
+    "eel.commands.shell": "shell",
+}
+
+
+def commands() -> dict[str, EntryPoint]:
+    """The commands that are installed, by name, in the order of `GROUPS`."""
+    found = entry_points()
+    return {entry.name: entry for group in GROUPS for entry in found.select(group=group)}
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit status of the command; 0 for the list; 2 for a command that there is not."""
+    words = sys.argv[1:] if arguments is None else arguments
+    if COMPLETING in os.environ:
+        words = _typed_before_the_cursor()
+    known = commands()
+    if words and words[0] in known:
+        module = known[words[0]].value
+        eel_command.begin(module, f"eel {words[0]}")
+        status: int = importlib.import_module(module).main(words[1:])
+        return status
+    parser = _parser(known)
+    if words and not words[0].startswith("-"):
+        parser.error(f"no command {shown(words[0])}{did_you_mean(words[0], known)}")
+    parser.parse_args(words)
+    parser.print_help()
+    return 0
+
+
+def summary_of(module: str) -> str:
+    """What the docstring of a command's `module` says after the colon of its first line, without importing it."""
+    package, *parts = module.split(".")
+    spec = find_spec(package)
+    path = Path(spec.submodule_search_locations[0], *parts) if spec and spec.submodule_search_locations else Path()
+    with path.with_suffix(".py").open(encoding="utf-8") as lines:
+        line = next(line for line in lines if line.startswith('"""'))
+    return line.strip().strip('"').partition(": ")[2].rstrip(".")
+
+
+def _parser(known: dict[str, EntryPoint]) -> Parser:
+    rows = []
+    for group, heading in GROUPS.items():
+        own = [entry for entry in known.values() if entry.group == group]
+        rows += [f"{heading}:", *(f"  {each.name:<11s} {summary_of(each.value)}" for each in own), ""] if own else []
+    parser = Parser(
+        prog="eel",
+        usage="eel COMMAND ...",
+        description="The simulator of elongated swimmers.",
+        epilog="\n".join([*rows, "eel COMMAND --help: its options. Nodes start by their names, or by ros2 run."]),
+    )
+    parser.add_argument("command", nargs="?", choices=known, metavar="COMMAND", help="one of the list")
+    return parser
+
+
+def _typed_before_the_cursor() -> list[str]:
+    """The command that a line to be completed names; its own parser completes the rest. Empty while it is typed."""
+    words = os.environ["COMP_LINE"].split()
+    if len(words) < 2 or (len(words) == 2 and not os.environ["COMP_LINE"][-1].isspace()):
+        return []
+    os.environ[COMPLETING] = "2"  # argcomplete: the number of the word that is the command's name
+    return words[1:2]

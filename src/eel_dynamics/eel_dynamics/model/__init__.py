@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a run is told: body, fins, robot, scene and flow. Set-up in NumPy; `eel_dynamics` marches it in time."""
+
+from eel_dynamics.model.body.appendages import Appendage
+from eel_dynamics.model.body.body import Body
+from eel_dynamics.model.fins.fins import Fin, RollHold
+from eel_dynamics.model.flow.flow import Flow, FlowSample
+from eel_dynamics.model.flow.functions import FlowField
+from eel_dynamics.model.flow.gridded import GriddedFlow
+from eel_dynamics.model.flow.sources import Gust, Shear, Uniform, Vortex, VortexStreet, Wave
+from eel_dynamics.model.robot.actuators import Servo, Torque
+from eel_dynamics.model.robot.continuous import Muscle, PassiveTail
+from eel_dynamics.model.robot.joint import Joint
+from eel_dynamics.model.robot.robot import Robot
+from eel_dynamics.model.scene import Scene
+
+__all__ = [
+    "Appendage",
+    "Body",
+    "Fin",
+    "Flow",
+    "FlowField",
+    "FlowSample",
+    "GriddedFlow",
+    "Gust",
+    "Joint",
+    "Muscle",
+    "PassiveTail",
+    "Robot",
+    "RollHold",
+    "Scene",
+    "Servo",
+    "Shear",
+    "Torque",
+    "Uniform",
+    "Vortex",
+    "VortexStreet",
+    "Wave",
+]
