@@ -157,10 +157,10 @@ class Modes(_Shared):
     def __init__(
         self, table: Any, x: Buffer, torques: list[tuple[Any, ...]], drive: LawOnGrid | None, push: Buffer
     ) -> None:
-        """table: with the attributes of `ModeTable` (eel_dynamics/model/robot/compiled.py), of M modes and C coordinates. x:
-        of the nodes [m]. torques: (coordinate, function of the time [s]), or (coordinate, knots [s], cubics). drive, push:
-        the law of the muscles' moments, and (C, its rows) what it does to the coordinates. `ValueError` for arrays that
-        do not fit together."""
+        """table: with the attributes of `ModeTable` (eel_dynamics/model/robot/compiled.py), of M modes and C
+        coordinates. x: of the nodes [m]. torques: (coordinate, function of the time [s]), or (coordinate, knots [s],
+        cubics). drive, push: the law of the muscles' moments, and (C, its rows) what it does to the coordinates.
+        `ValueError` for arrays that do not fit together."""
 
 class March:
     """A swimmer on its way. Its law comes first (`follow`), then the start; one thread at a time may call it.
