@@ -88,7 +88,7 @@ def build(numpy1) -> dict[str, str]:
     done = subprocess.run(
         [python, Path(sys.prefix) / "bin/colcon", "--log-base", folder / "log", "build",
          "--build-base", folder / "build", "--install-base", folder / "install",
-         "--base-paths", *(ROOT / "src" / f"eel_{name}" for name in ("msgs", "ros", "gaits", "model", "dynamics")),
+         "--base-paths", *(ROOT / "src" / f"eel_{name}" for name in ("msgs", "common", "gaits", "dynamics")),
          "--cmake-args", f"-DPython3_EXECUTABLE={python}"],
         env=environment, cwd=folder, capture_output=True, text=True, timeout=300,
     )  # fmt: skip

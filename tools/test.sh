@@ -23,7 +23,7 @@ beside[core]=$!
 [ -d test/__pycache__ ] || "${pytest[@]}" --collect-only > /dev/null
 # a job in the background would ignore SIGINT, and so would pytest
 env --default-signal=INT "${pytest[@]}" --numprocesses=4 --dist=loadfile --no-loadscope-reorder "${measuring[@]/#/--ignore=}" \
-    test src/eel_{viz,dynamics,studies,gaits,gym,model,ros,core,base}/test > out/test-others.log 2>&1 &
+    test src/eel_{viz,dynamics,studies,gaits,gym,core,common}/test > out/test-others.log 2>&1 &
 beside[others]=$!
 echo "[test] what is measured, here; beside, shown when done: all other tests, and the C++ tests"
 "${pytest[@]}" "${measuring[@]}"
