@@ -123,8 +123,12 @@ class SwimClient:
         """Spins until the condition holds; AssertionError, with what was awaited, after `limit`."""
         deadline = time.monotonic() + limit
         while not condition():
-            assert time.monotonic() < deadline, f"no {what} within {limit} s"
+            assert time.monotonic() < deadline, f"no {what} within {limit} s; last /diagnostics: {self._last_status()}"
             self.turn()
+
+    def _last_status(self):
+        """What /diagnostics told last, for a test that fails."""
+        return self.diagnosis(self.received["/diagnostics"][-1]) if self.received["/diagnostics"] else "none"
 
     def latest(self, topic):
         self.until(lambda: self.received[topic], f"message on {topic}")
