@@ -28,7 +28,7 @@ class HeadingAndDepth:
         self.time = self.dive = 0.0  # s; rad: the nose that holds the depth
 
     def angles(self, time, position, orientation):
-        """Angles [rad] by joints at `time` [s]. position: of the head (3,) [m]; orientation: x y z w."""
+        """Angles [rad] by joints at `time` [s]; yaw: left. position: of the head (3,) [m]; orientation: x y z w."""
         step, self.time = time - self.time, time
         if step < 0.0:  # the run has begun again
             self.dive = step = 0.0
@@ -62,7 +62,8 @@ class JointController(Node):
     def answer(self, odom):
         place, turn = odom.pose.pose.position, odom.pose.pose.orientation
         time = odom.header.stamp.sec + 1e-9 * odom.header.stamp.nanosec
-        angles = self.control.angles(time, (place.x, place.y, place.z), (turn.x, turn.y, turn.z, turn.w))
+        found = self.control.angles(time, (place.x, place.y, place.z), (turn.x, turn.y, turn.z, turn.w))
+        angles = {name: -angle if "yaw" in name else angle for name, angle in found.items()}  # in topics about +z
         self.commands.publish(JointState(header=odom.header, name=[*angles], position=[*angles.values()]))
 
 

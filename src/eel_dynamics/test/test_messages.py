@@ -180,7 +180,7 @@ def test_joint_states_are_the_actuators_of_the_library():
     assert message.name == [*(f"yaw_{k}" for k in range(1, 6)), *(f"pitch_{k}" for k in range(1, 4))]
     yaw, pitch = run.actuators(5).yaw, run.actuators(3).pitch
     for field, name in (("position", "angle"), ("velocity", "speed"), ("effort", "torque")):
-        expected = np.concatenate((getattr(yaw, name)[-1], getattr(pitch, name)[-1]))
+        expected = np.concatenate((getattr(yaw, name)[-1], -getattr(pitch, name)[-1]))  # about +z and +y
         assert np.allclose(getattr(message, field), expected, rtol=1e-6, atol=1e-9) and np.any(expected), field
     without = SampleMessages(Simulation(scene=Scene(internal_wrench=False)), DynamicsParameters(yaw_joints=1))
     assert not filled(without, "joint_states", snapshot).effort
@@ -203,14 +203,18 @@ def test_parts_of_a_robot_are_told_alike_by_node_and_library():
         messages = dict(messages_of_run(run))
         for field in fields:
             assert np.allclose(getattr(told, field), getattr(messages[topic], field), rtol=1e-9, atol=1e-12), field
+        assert list(told.name) == list(messages[topic].name) and len(told.name) == len(getattr(told, fields[0]))
         body = body_message(simulation, "section")
         for kind, names in (
             ("fins", ("name", "station", "side", "area", "span", "dihedral")),
-            ("joints", ("station",)),
+            ("joints", ("name", "station", "axis", "sense")),
         ):
             for one, other in zip(getattr(body, kind), getattr(messages["body"], kind), strict=True):
                 assert [getattr(one, name) for name in names] == [getattr(other, name) for name in names]
         assert (len(body.fins), len(body.joints)) == ((0, 8) if "robot" in parts else (2, 0))
+        if topic == "fin_states":
+            load = filled(SampleMessages(simulation, DynamicsParameters()), "hydrodynamic_load", simulation.observe())
+            assert load.fin_name == told.name and len(load.fin_force) == 6 and any(load.fin_force)
         if topic == "motor_states":
             assert np.max(told.limit) == 0.3 and np.isclose(np.abs(told.torque), told.limit, rtol=1e-9).any()
 

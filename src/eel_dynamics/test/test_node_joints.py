@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A robot in the node, over DDS: its servos follow laws, its joints are measured, and commanded by a controller."""
+"""A robot in the node, over DDS: its servos follow laws, its joints are measured, and commanded by a controller.
+
+All its joints are in yaw: in messages their values have the opposite of the library's sign (test_joint_signs.py).
+"""
 
 import hashlib
 import math
@@ -47,9 +50,9 @@ def test_joint_states_are_those_of_the_library(start, client):
         simulation.advance(stamp * 1e-9)
         joints = simulation.observe().joints
         assert message.name == JOINTS
-        assert message.position == pytest.approx(joints["joint_angle"], abs=1e-12)
-        assert message.velocity == pytest.approx(joints["joint_rate"], abs=1e-11)
-        assert message.effort == pytest.approx(joints["joint_torque"], abs=1e-10)
+        assert message.position == pytest.approx(-joints["joint_angle"], abs=1e-12)
+        assert message.velocity == pytest.approx(-joints["joint_rate"], abs=1e-11)
+        assert message.effort == pytest.approx(-joints["joint_torque"], abs=1e-10)
     assert max(map(abs, message.effort)) > 0.1
 
 
@@ -119,9 +122,9 @@ def test_a_command_takes_effect_at_its_stamp_and_holds_with_a_warning(start, cli
     for stamp in sorted(states):
         if stamp == 120_000_000:
             simulation.advance(0.11)
-            simulation.command("joint_4", position=0.3)
+            simulation.command("joint_4", position=-0.3)
         simulation.advance(stamp * 1e-9)
-        assert states[stamp].position == pytest.approx(simulation.observe().joints["joint_angle"], abs=1e-12)
+        assert states[stamp].position == pytest.approx(-simulation.observe().joints["joint_angle"], abs=1e-12)
     assert states[1_200_000_000].position[3] == pytest.approx(0.3, abs=0.02)
     assert "no joint command for joint_1" in node.output() and "it holds" in node.output(), node.output()
 
@@ -219,7 +222,7 @@ def test_a_torque_limit_is_lowered_in_mid_run_until_the_robot_cannot_follow(star
         if stamp * 1e-9 > times[-1] + 2.0:
             break
         simulation.advance(stamp * 1e-9)
-        assert message.position == pytest.approx(simulation.observe().joints["joint_angle"], abs=1e-11)
+        assert message.position == pytest.approx(-simulation.observe().joints["joint_angle"], abs=1e-11)
         for time, limit in zip(times, limits, strict=True):
             if abs(stamp * 1e-9 - time) < 1e-6:
                 simulation.change_robot(robot.changed(torque_limit=limit))

@@ -37,7 +37,7 @@ def servo(**fields):
         (lambda: Joint(0.3, width=0.0), "joint width must be > 0 m, got 0.0"),
         (lambda: Joint(0.3, width=-INF), "joint width must be finite, got -inf"),
         (lambda: Joint("0.3"), "joint position must be a number, got '0.3'"),
-        (lambda: Joint(0.3, "roll"), "joint axis must be one of yaw, -yaw, pitch, -pitch, got 'roll'"),
+        (lambda: Joint(0.3, "roll"), "joint axis must be one of yaw, -yaw, pitch, -pitch, z, -z, y, -y, got 'roll'"),
         (lambda: Joint(0.3, limits=(0.4, -0.4)), "joint limits must be two numbers that rise, got [0.4, -0.4]"),
         (lambda: Joint(0.3, limits=0.4), "joint limits must be two numbers that rise, got 0.4"),
         (lambda: Joint(0.3, limits=(0.0, NAN)), "joint limits must be finite, got nan"),

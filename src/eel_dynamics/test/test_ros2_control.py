@@ -17,6 +17,7 @@ from eel_common.ros.loop.diagnostics import Report
 from eel_common.ros.testing.log import Log
 from eel_dynamics.model.robot.ready import READY
 from eel_dynamics.ros.command_messages import interfaces_of, joint_command_from_message
+from eel_dynamics.runs.exchange.joint_signs import sense_of
 from fake_publishers import fake_publishers, run_loop
 from sensor_msgs.msg import JointState
 
@@ -27,7 +28,7 @@ NAN = math.nan
 SERVO = Servo(kp=14.0, kd=0.4, torque_limit=3.0, speed_limit=8.0)
 MIXED = Robot(
     [
-        Joint(0.15, name="neck", actuator=SERVO, limits=(-1.0, 1.0)),
+        Joint(0.15, name="neck", actuator=SERVO, limits=(-1.0, 0.8)),  # -0.8 to 1 in messages
         Joint(0.3, name="chest", actuator=SERVO),
         Joint(0.45, name="belly", stiffness=1.0, damping=0.05),
         Joint(0.6, name="hip", actuator=SERVO),
@@ -179,7 +180,7 @@ def test_a_controller_manager_drives_the_swimmer_in_lockstep_as_the_library_does
             {} if message is None else joint_command_from_message(message, interfaces, 9.0)[1]
         ).items():
             if values:
-                library.command(name, **values)
+                library.command(name, **{each: -value for each, value in values.items()})  # all are in yaw
         library.advance(round(library.time + 0.02, 9))
         assert np.array_equal(row, library.observe().joints["joint_angle"])
     assert np.abs(angles[-1]).min() > 0.01 and np.array_equal(angles, managed(-1.0, active_at=0.2)[1])
@@ -208,7 +209,7 @@ def test_what_is_beyond_a_limit_is_clipped_and_told_once_with_joint_limit_and_va
         run.take_command(run.inputs.joints, message)
     run.run()
     neck = [values["position"] for joint, values in given if joint == "neck"]
-    assert neck == [1.0, 0.5, -1.0] and all(abs(values["velocity"]) <= 8.0 for _, values in given)
+    assert neck == [-1.0, -0.5, 0.8] and all(abs(values["velocity"]) <= 8.0 for _, values in given)
     assert [text for level, text in log.lines if level == "warning"] == [
         "position 50 rad of joint 'neck' is beyond its limit 1 rad: clipped",
         "effort -9 N m of joint 'neck' is beyond its limit -3 N m: clipped",
@@ -254,7 +255,7 @@ def test_the_urdf_and_the_controllers_of_the_page_have_the_robot_s_joints(pages)
     text = (pages / "examples" / "eight_servos.urdf").read_text()
     robot, read = Robot.named("eight_servos"), Robot.from_file(pages / "examples" / "eight_servos.urdf", joints="flush")
     for joint, other in zip(robot.joints, read.joints, strict=True):
-        assert (joint.name, joint.axis) == (other.name, other.axis)
+        assert (joint.name, sense_of(joint.axis)) == (other.name, sense_of(other.axis))
         assert other.position == pytest.approx(joint.position, abs=3e-3)  # a visual box begins behind the nose
         assert other.limits == pytest.approx(joint.limits, abs=1e-6)
         assert other.actuator.speed_limit == pytest.approx(joint.actuator.speed_limit, abs=1e-4)

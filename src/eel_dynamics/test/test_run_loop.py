@@ -348,9 +348,9 @@ def test_of_the_commands_of_a_pause_the_last_of_each_joint_acts():
         run.take_command(run.inputs.joints, joint_command(0.015, joint_1=0.2, joint_2=0.01 * k))
     run.run()
     assert given == [
-        ("joint_1", {"position": 0.13999}),
-        ("joint_1", {"position": 0.2}),
-        ("joint_2", {"position": 0.99}),
+        ("joint_1", {"position": -0.13999}),  # the library's sign of yaw
+        ("joint_1", {"position": -0.2}),
+        ("joint_2", {"position": -0.99}),
     ]
     for k in range(20_000):
         run.take_command(run.inputs.joints, joint_command(run.time + 1e-4 + 2e-4 * k, joint_1=0.0))
@@ -446,7 +446,7 @@ def test_of_commands_in_disorder_the_newest_acts_and_it_is_told_once():
 
     run = run_loop(simulation, fake_publishers(publish), Report(log), real_time_factor=1000.0, duration=0.1)
     run.run()
-    assert given == [(0.05, 0.6), (0.06, 0.5)]
+    assert given == [(0.05, -0.6), (0.06, -0.5)]  # the library's sign of yaw
     assert [text for level, text in log.lines if level == "warning" and "joint command" in text] == [
         "a joint command of t = 0.05 s for joint_1 came with another value: the newest is taken",
         "a joint command of t = 0.04 s is older than that of t = 0.06 s for joint_1: left out, as are further ones",

@@ -50,7 +50,7 @@ def test_a_chain_of_boxes_becomes_joints_and_a_body(tmp_path):
     robot = robot_of(tmp_path, chain(), servo=Servo(kp=20.0))
     assert [part.position for part in robot.joints] == pytest.approx([0.1, 0.2, 0.3, 0.4])
     first = robot.joints[0]
-    assert (first.name, first.axis, first.limits, first.damping) == ("j1", "-yaw", (-0.8, 0.6), 0.02)
+    assert (first.name, first.axis, first.limits, first.damping) == ("j1", "z", (-0.8, 0.6), 0.02)
     assert (first.actuator.kp, first.actuator.torque_limit, first.actuator.speed_limit) == (20.0, 3.0, 8.0)
     body = robot.body
     assert body.length == pytest.approx(0.5) and body.mass == pytest.approx(5 * MASS)
@@ -63,7 +63,7 @@ def test_a_base_at_the_tail_keeps_the_sign_of_its_angles(tmp_path):
     """A positive turn about z of the part ahead bends the robot to the left, as one of the part behind to the right."""
     from_nose, from_tail = robot_of(tmp_path, chain()), robot_of(tmp_path, chain(sign=1))
     assert [part.name for part in from_tail.joints] == ["j4", "j3", "j2", "j1"]
-    assert {part.axis for part in from_nose.joints} == {"-yaw"} and {part.axis for part in from_tail.joints} == {"yaw"}
+    assert {part.axis for part in from_nose.joints} == {"z"} and {part.axis for part in from_tail.joints} == {"-z"}
     assert [part.position for part in from_tail.joints] == pytest.approx([0.1, 0.2, 0.3, 0.4])
     assert any("the base link is the tail" in note for note in from_tail.notes)
 
@@ -72,7 +72,7 @@ def test_axes_become_yaw_and_pitch_with_their_signs(tmp_path):
     axes = ("0 0 1", "0 0 -1", "0 1 0", "0 -1 0")
     robot = robot_of(tmp_path, chain(axes=axes))
     # behind the base at -x a positive turn about y lifts the tail
-    assert [part.axis for part in robot.joints] == ["-yaw", "yaw", "pitch", "-pitch"]
+    assert [part.axis for part in robot.joints] == ["z", "-z", "y", "-y"]
 
 
 def turned(axis, angle):
@@ -142,7 +142,7 @@ def test_frames_that_turn_along_the_chain_are_followed(tmp_path):
     text += joint("j1", "a", "b", -0.1, axis="0 1 0", rpy="1.5707963267948966 0 0")
     text += joint("j2", "b", "c", -0.1, axis="0 0 1")
     robot = robot_of(tmp_path, f"<robot name='turned'>{text}</robot>")
-    assert [part.axis for part in robot.joints] == ["-yaw", "-pitch"]  # y becomes z; z becomes -y
+    assert [part.axis for part in robot.joints] == ["z", "-y"]  # y becomes z; z becomes -y
     assert robot.body.half_height(0.2) == pytest.approx(0.03)
 
 

@@ -131,13 +131,16 @@ def read_joints(message: Any) -> messages.JointStates:
 
 
 def read_motors(message: Any) -> messages.Motors:
-    """From eel_msgs/MotorStates."""
+    """From eel_msgs/MotorStates; an older bag has no names."""
     count = len(_few("torque", message.torque))
     torque, power = (_row(message, name, count, "torque") for name in ("torque", "power"))
     limit = _sized(message, "limit", count, "torque")
     if not (limit >= 0.0).all():  # NaN too
         raise BadMessage("limit", f"must be >= 0 N m, the least is {limit.min():g} N m")
-    return messages.Motors(torque=torque, limit=limit, power=power)
+    names = tuple(_few("name", getattr(message, "name", ())))
+    if len(names) not in (0, count):
+        raise BadMessage("name", f"must have as many values as torque, {count}, got {len(names)}")
+    return messages.Motors(names=names, torque=torque, limit=limit, power=power)
 
 
 def read_diagnostics(message: Any) -> list[messages.Status]:

@@ -126,8 +126,12 @@ class JointStates:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Motors:
-    """Torque, greatest torque at the present speed (infinite without a limit) [N m], and power [W] of J motors."""
+    """Torque, greatest torque at the present speed (infinite without a limit) [N m], and power [W] of J motors.
 
+    names: of their joints; of an older bag none.
+    """
+
+    names: tuple[str, ...] = ()
     torque: np.ndarray
     limit: np.ndarray
     power: np.ndarray

@@ -2,7 +2,7 @@
 """Converts between snapshots and messages: fills serialised sample messages, and reads laws and samples of laws.
 
 Poses, twists and the backbone are in REP-103 axes; section quantities have the paper's section axes: 1 = -x, 2 = -y,
-3 = +z of the section, turned as base_link. The library has the same axes.
+3 = +z of the section, turned as base_link. The library has the same axes. `joint_signs` has the signs of joints.
 """
 
 import array
@@ -33,7 +33,8 @@ from eel_dynamics.model.axes import with_section_axes
 from eel_dynamics.model.flow.flow import lattice_around, velocities_at
 from eel_dynamics.model.robot.actuators import most_torque
 from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
-from eel_dynamics.runs.exchange.message_fields import FIELDS, LINEAR, OF_JOINTS
+from eel_dynamics.runs.exchange.joint_signs import OF_SECTIONS, message_signs
+from eel_dynamics.runs.exchange.message_fields import FIELDS, LINEAR, OF_JOINTS, SIGNED
 from eel_dynamics.runs.exchange.messages_of_run import fields_of_fins, fields_of_joints, numbers_of_appendages, outline
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
@@ -66,7 +67,7 @@ class SampleMessages:
             "backbone": (msg.Backbone(), world),
             "curvature": (msg.Curvature(), section),
             "internal_wrench": (msg.InternalWrench(), section),
-            "hydrodynamic_load": (msg.HydrodynamicLoad(), section),
+            "hydrodynamic_load": (msg.HydrodynamicLoad(fin_name=[fin.name for fin in simulation.fins]), section),
             "energy": (msg.EnergyLedger(), world),
             "swim_state": (msg.SwimState(), world),
             "flow_at_head": (Vector3Stamped(), world),
@@ -103,7 +104,7 @@ class SampleMessages:
             joint_state = JointState(name=names, position=zeros, velocity=zeros, effort=effort)
             topics["joint_states"] = joint_state, ""
             if robot is not None and robot.joints:
-                motors = msg.MotorStates(torque=zeros, limit=zeros, power=zeros)
+                motors = msg.MotorStates(name=names, torque=zeros, limit=zeros, power=zeros)
                 topics["motor_states"] = motors, ""
         if simulation.fins:
             from sensor_msgs.msg import JointState
@@ -125,6 +126,9 @@ class SampleMessages:
         own = dict(FIELDS)
         if robot is None:
             self._further["joint_states"], own["joint_states"] = self._fill_joints, {}
+        signs = message_signs(robot)
+        self._signs = signs if (signs < 0.0).any() else None
+        self._signed: dict[str, list[np.ndarray]] = {}  # topic: what of its numbers has the signs of joints
         self._topics: dict[str, tuple[SerialisedMessage, list[tuple[str, list[tuple[np.ndarray, Any]]]]]] = {}
         for name, (message, _) in topics.items():
             numbers = (serialised := SerialisedMessage(message)).numbers
@@ -132,6 +136,8 @@ class SampleMessages:
             places: dict[str, list[tuple[np.ndarray, Any]]] = {each.quantity: [] for _, each in fields}
             for path, each in fields:
                 places[each.quantity].append((numbers[path], (..., each.components)))
+            if name in OF_JOINTS and self._signs is not None:
+                self._signed[name] = [numbers[path] for path, each in fields if each.quantity in SIGNED]
             self._topics[name] = serialised, list(places.items())
         self._clock = SerialisedMessage(Clock())
 
@@ -151,6 +157,9 @@ class SampleMessages:
             values = quantity(each)
             for place, components in places:
                 place[:] = values[components].ravel()
+        for place in self._signed.get(name, ()):
+            place *= self._signs
+            place += 0.0  # no minus zeros
         if name in self._further:
             self._further[name](message.numbers, snapshot)
         return self._sealed(message)
@@ -208,10 +217,11 @@ class SampleMessages:
 
     def _fill_joints(self, numbers: Numbers, snapshot: Snapshot) -> None:
         for axis, place, joints in self._joints:
-            numbers["position"][place] = joints.angle(snapshot.curvature)[:, axis]
-            numbers["velocity"][place] = joints.angle(snapshot.curvature_rate)[:, axis]
+            sign = OF_SECTIONS[axis]
+            numbers["position"][place] = sign * joints.angle(snapshot.curvature)[:, axis] + 0.0
+            numbers["velocity"][place] = sign * joints.angle(snapshot.curvature_rate)[:, axis] + 0.0
             if "effort" in numbers:
-                numbers["effort"][place] = joints.motor_torque(snapshot.torque)[:, axis]
+                numbers["effort"][place] = sign * joints.motor_torque(snapshot.torque)[:, axis] + 0.0
 
     def _fill_limits(self, numbers: Numbers, snapshot: Snapshot) -> None:
         assert self._simulation.robot is not None

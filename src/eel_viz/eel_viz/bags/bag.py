@@ -98,6 +98,11 @@ class Bag:
                 continue
             yield connection.topic, stamp, message
 
+    def has_field(self, topic: str, kind: str, field: str) -> bool:
+        """Whether messages of type `kind`, of a `topic` or within its messages, have a `field` in this bag."""
+        self._learn(self.topics[topic])
+        return any(name == field for name, _ in self._store.fielddefs.get(kind, ((), ()))[1])
+
     def _deserialised(self, raw: Any, kind: str) -> object:
         """The message; empty sequences of doubles at its end may have some bytes behind them."""
         try:

@@ -3,7 +3,7 @@
 
 import os
 import warnings
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from eel_common.topics import DIAGNOSTICS, GLOBAL, OWN, SAMPLED
 from eel_common.wording import shown
 
 from eel_viz.bags.bag import Bag
+from eel_viz.bags.joint_signs import JointSigns
 from eel_viz.recording.destination import LogFunction
 from eel_viz.recording.dispatcher import READERS
 
@@ -20,12 +21,17 @@ JOINTS = "sensor_msgs/msg/JointState"
 class SwimmerMessages:
     """The messages of one swimmer in `bag`, as pairs of topic (without namespace) and message.
 
-    namespace: the swimmer's; None: that of the only swimmer. further: topics besides those that are shown.
-    `ValueError` if there is no swimmer, or several.
+    namespace: the swimmer's; None: that of the only swimmer. further: topics besides those that are shown. turned: of
+    an older bag, as of `JointSigns`. `ValueError` if there is no swimmer, or several.
     """
 
     def __init__(
-        self, bag: Bag, namespace: str | None, log_warning: LogFunction, further: tuple[str, ...] = ()
+        self,
+        bag: Bag,
+        namespace: str | None,
+        log_warning: LogFunction,
+        further: tuple[str, ...] = (),
+        turned: Collection[str] | None = None,
     ) -> None:
         self._bag, self._log_warning = bag, log_warning
         self._reported: set[str] = set()  # topics with messages that cannot be read
@@ -38,6 +44,7 @@ class SwimmerMessages:
                 self._topics[topic] = name
             elif there is not None:
                 log_warning(f"{topic} is left out: it is {there.type}, not {kind}")
+        self._signs = JointSigns(bag, self.namespace, log_warning, turned)
 
     def has_several_publishers(self, name: str) -> bool:
         """Whether the topic `name` has several publishers in the bag."""
@@ -53,7 +60,7 @@ class SwimmerMessages:
             if topic == body and first is not None:
                 first = None
             else:
-                yield self._topics[topic], message
+                yield self._topics[topic], self._signs.turn(self._topics[topic], message)
 
     def _leave_out(self, topic: str, why: str) -> None:
         if topic not in self._reported:
@@ -83,17 +90,19 @@ class SwimmerMessages:
         return spaces[0]
 
 
-def swimmer_messages(path: str | os.PathLike[str], namespace: str | None = None) -> Iterator[tuple[str, Any]]:
+def swimmer_messages(
+    path: str | os.PathLike[str], namespace: str | None = None, turned: Collection[str] | None = None
+) -> Iterator[tuple[str, Any]]:
     """Yield topic and message of the swimmer in the bag at `path`, as of `SwimmerMessages`.
 
     `ValueError` in one line if it cannot be read.
     """
-
-    def log_warning(text: str) -> None:
-        warnings.warn(text, stacklevel=3)
-
     with Bag(path) as bag:
-        yield from SwimmerMessages(bag, namespace, log_warning, ("fin_states",))
+        yield from SwimmerMessages(bag, namespace, _warn, ("fin_states",), turned)
+
+
+def _warn(text: str) -> None:
+    warnings.warn(text, stacklevel=4)
 
 
 def joint_states(path: str | os.PathLike[str], topic: str | None = None) -> tuple[np.ndarray, np.ndarray, list[str]]:
@@ -110,9 +119,12 @@ def joint_states(path: str | os.PathLike[str], topic: str | None = None) -> tupl
             what = "several topics, choose one" if len(chosen) > 1 else "no such topic"
             raise ValueError(f"bag {shown(str(path))} has {what} of {JOINTS}; it has: {', '.join(there) or 'none'}")
         names: list[str] = []
+        namespace, _, last = chosen[0].rpartition("/")
+        signs = JointSigns(bag, namespace, _warn) if last == "joint_states" else None
         stamps, received, rows = [], [], []
         message: Any
         for _, at, message in bag.messages(*chosen):
+            message = message if signs is None else signs.turn(last, message)
             angles = dict(zip(message.name, message.position, strict=False))
             names = names or list(angles)
             if set(names) <= set(angles):

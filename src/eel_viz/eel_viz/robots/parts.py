@@ -70,6 +70,7 @@ class Parts:
     def motor_states(self, stamp: int, motors: Motors) -> None:
         """Log and draw torques, limits and powers of the motors, if there are any."""
         if len(motors.torque) and self._stream.number_due(entities.MOTOR_NUMBERS, stamp):
+            self._log_names(stamp, entities.MOTOR_NUMBERS, "MotorStates", motors.names)
             values = {name: getattr(motors, name) for name in ("torque", "limit", "power")}
             self._stream.add_arrays(stamp, entities.MOTOR_NUMBERS, "MotorStates", values)
         if self._motors is not None and len(motors.torque) == self._joints:
@@ -79,14 +80,16 @@ class Parts:
     def _log_states(self, stamp: int, path: str, states: JointStates) -> None:
         if not states.names:
             return
-        if self._names.get(path) != states.names:
-            self._names[path] = states.names
-            names = rr.DynamicArchetype("JointState", components={"name": list(states.names)})
-            self._stream.log(stamp, path, names)
+        self._log_names(stamp, path, "JointState", states.names)
         if self._stream.number_due(path, stamp):
             rows = {"position": states.angle, "velocity": states.rate, "effort": states.torque}
             known = {name: row for name, row in rows.items() if row is not None}
             self._stream.add_arrays(stamp, path, "JointState", known)
+
+    def _log_names(self, stamp: int, path: str, kind: str, names: tuple[str, ...]) -> None:
+        if names and self._names.get(path) != names:
+            self._names[path] = names
+            self._stream.log(stamp, path, rr.DynamicArchetype(kind, components={"name": list(names)}))
 
     def _draw_fins(self, stamp: int, backbone: Backbone, states: JointStates) -> None:
         assert self._plates is not None

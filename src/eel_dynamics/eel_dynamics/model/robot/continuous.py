@@ -53,7 +53,7 @@ class ContinuousPart(Part):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.axis.startswith("-"):
+        if self.axis not in ("yaw", "pitch"):
             raise ValueError(f"{self.what} axis must be yaw or pitch, got {shown(self.axis)}")
         if self.end is not None and self.end <= self.start:
             raise ValueError(f"{self.what} end must be > start ({self.start:g} m), got {self.end:g}")

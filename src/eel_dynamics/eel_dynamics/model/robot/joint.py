@@ -12,8 +12,8 @@ tau of the motor, and at a depth > 0 beyond a limit also that of the stop, again
 
 It starts from zero at contact, as of Hunt and Crossley (J. Appl. Mech. 42 (1975)), so that no torque jumps; and a stop
 never pulls. All angles are positive where the body bends to the left (yaw) or up (pitch), as the gaits' `left_bend`;
-with the axis "-yaw" or "-pitch" to the right or down. A positive turn of the part behind about z is "-yaw", one about y
-is "pitch".
+with the axis "-yaw" or "-pitch" to the right or down. With "z" or "y", as of a URDF, a positive angle turns the part
+behind the joint about +z or +y (REP-103) of the part ahead: its tail end goes to the right, or up.
 """
 
 from dataclasses import dataclass
@@ -37,7 +37,12 @@ class Joint(Part):
     what: ClassVar[str] = "joint"
 
     position: float = required("m", "X of its middle, from the nose", 0.0, exclusive=True)
-    axis: str = quantity("yaw", "", "yaw (positive: left), pitch (up), -yaw (right), or -pitch (down)", plain=True)
+    axis: str = quantity(
+        "yaw",
+        "",
+        "yaw (positive: left), pitch (up), -yaw (right), -pitch (down); or z, y, -z, -y, as of a URDF",
+        plain=True,
+    )
     width: float | None = quantity(
         None, "m", "length that bends; None: half of the distance to the next joint", 0.0, exclusive=True
     )

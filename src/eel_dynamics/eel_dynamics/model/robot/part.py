@@ -7,7 +7,11 @@ from eel_common.quantity import Quantities, checked_choice, number
 from eel_common.wording import shown
 
 AXES = {"yaw": (2, -1), "-yaw": (2, 1), "pitch": (1, -1), "-pitch": (1, 1)}
-"""Axis of a part: the curvature's component in section axes, and the sign of that component for a positive angle."""
+AXES |= {"z": (2, 1), "-z": (2, -1), "y": (1, -1), "-y": (1, 1)}
+"""Axis of a part: the curvature's component in section axes, and the sign of that component for a positive angle.
+
+"z" and "y" are those of a URDF: a positive angle turns the part behind about +z or +y (REP-103) of the part ahead.
+"""
 
 MOST_MODES = 12  # of a continuous part
 

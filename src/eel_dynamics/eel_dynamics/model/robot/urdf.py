@@ -163,8 +163,8 @@ class UrdfReader:
         if component == 0 or 1.0 - abs(parts[component]) > 0.5 * ALIGNED**2:
             rule = "must point up (yaw) or to the side (pitch), across the line of joints"
             fail(element, "axis", f"{rule}, got {shown([round(each, 4) for each in axis.tolist()])}")
-        # a turn of the part behind about E2 or E3 bends along them
-        to_left = (parts[component] < 0.0) != self._from_tail
+        # E2 is -y, E3 is z; where the base link is the tail, what turns about the axis is the part ahead
+        right_handed = ((parts[component] > 0.0) == (component == 2)) != self._from_tail
         servo, limits = self._motor(element, name)
         dynamics = element.first("dynamics")
         damping = number_of(element, "dynamics", "damping", 0.0) if dynamics is not None else 0.0
@@ -175,7 +175,7 @@ class UrdfReader:
         try:
             return Joint(
                 place,
-                f"{'' if to_left else '-'}{'pitch' if component == 1 else 'yaw'}",
+                f"{'' if right_handed else '-'}{'y' if component == 1 else 'z'}",
                 damping=damping,
                 limits=limits,
                 actuator=servo,

@@ -22,6 +22,7 @@ from eel_dynamics.model.fins.fins import checked_commands, commanded_names
 from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.ros.command_messages import Values, fin_command_from_message, joint_command_from_message
 from eel_dynamics.ros.loop.awaited import FINS, JOINTS, MESSAGES, Awaited
+from eel_dynamics.runs.exchange.joint_signs import message_sign
 from eel_dynamics.simulation.simulation import Simulation
 
 IN_A_ROW = 4  # commands, from which on they are a stream
@@ -156,7 +157,10 @@ class CommandQueue:
 
 
 class JointCommands(CommandQueue):
-    """Commands for the servos of a robot. The first starts a swimmer without a law, which is straight but for it."""
+    """Commands for the servos of a robot. The first starts a swimmer without a law, which is straight but for it.
+
+    Values have the signs of messages until they are given to the simulation.
+    """
 
     topic, parts = JOINTS, "joints"
 
@@ -166,10 +170,12 @@ class JointCommands(CommandQueue):
         self._limited: Robot | None = None  # whose `_limits` are, by joint and interface
         self._limits: dict[tuple[str, str], tuple[float, float]] = {}
         self._beyond: set[str] = set()  # what has been told of
+        self._signs: dict[str, int] = {}  # `message_sign` by joint
 
     def begin(self, simulation: Simulation, interfaces: Mapping[str, tuple[str, ...]]) -> None:
         """Begin at time 0 of a `simulation`, whose joints are driven by these `interfaces`."""
         self._interfaces, robot = interfaces, simulation.robot
+        self._signs = {joint.name: message_sign(joint.axis) for joint in (() if robot is None else robot.joints)}
         self._begin(simulation, () if robot is None else robot.driven_names)
         for kind in ("no values", *self._beyond):
             self._report.end(kind)
@@ -214,8 +220,9 @@ class JointCommands(CommandQueue):
             self.simulation.adopt(STAND_IN)
 
     def give(self, values: Values) -> None:
-        for joint, given in values.items():
-            self.simulation.command(joint, **given)
+        for name, given in values.items():
+            sign = self._signs[name]
+            self.simulation.command(name, **{interface: sign * value for interface, value in given.items()})
 
 
 class FinCommands(CommandQueue):
@@ -238,12 +245,13 @@ class FinCommands(CommandQueue):
 
 
 def limits_of(robot: Robot) -> dict[tuple[str, str], tuple[float, float]]:
-    """The least and the greatest value of each interface of the joints of a `robot` that have a servo."""
+    """The least and the greatest value of each interface of a `robot`'s joints that have a servo, signs of messages."""
     limits = {}
     for joint, servo in zip(robot.joints, robot.servos, strict=True):
         if servo is not None:
             speed, torque = servo.speed_limit or math.inf, servo.torque_limit or math.inf
-            limits[joint.name, "position"] = joint.limits or (-math.inf, math.inf)
+            low, high = joint.limits or (-math.inf, math.inf)
+            limits[joint.name, "position"] = (low, high) if message_sign(joint.axis) > 0 else (-high, -low)
             limits[joint.name, "velocity"], limits[joint.name, "effort"] = (-speed, speed), (-torque, torque)
     return limits
 

@@ -61,6 +61,7 @@ FIELDS: dict[str, dict[str, MessageField]] = {
     "motor_states": {"torque": MessageField("motor_torque"), "power": MessageField("motor_power")},
 }
 OF_JOINTS = "joint_states", "motor_states"  # of a robot
+SIGNED = "joint_angle", "joint_rate", "joint_torque", "motor_torque"  # of joints: in messages by `message_signs`
 PROFILES = "backbone", "curvature", "internal_wrench", "hydrodynamic_load"  # with the stations x
 
 

@@ -14,7 +14,8 @@ from eel_dynamics.model.flow.flow import lattice_around, velocities_at
 from eel_dynamics.model.robot.actuators import most_torque
 from eel_dynamics.model.robot.part import AXES
 from eel_dynamics.model.robot.robot import Robot
-from eel_dynamics.runs.exchange.message_fields import FIELDS, OF_JOINTS, PROFILES
+from eel_dynamics.runs.exchange.joint_signs import message_signs, sense_of
+from eel_dynamics.runs.exchange.message_fields import FIELDS, OF_JOINTS, PROFILES, SIGNED
 from eel_dynamics.runs.run_data import RunData
 
 SECOND = 1_000_000_000  # ns
@@ -60,7 +61,15 @@ def fields_of_fins(fins: tuple[Fin, ...]) -> list[dict[str, Any]]:
 def fields_of_joints(robot: Robot | None) -> list[dict[str, Any]]:
     """The fields of a JointGeometry of each joint of the `robot`; none without one."""
     joints = () if robot is None else robot.joints
-    return [{"name": joint.name, "station": joint.position, "axis": AXES[joint.axis][0] + 1} for joint in joints]
+    return [
+        {
+            "name": joint.name,
+            "station": joint.position,
+            "axis": AXES[joint.axis][0] + 1,
+            "sense": sense_of(joint.axis),
+        }
+        for joint in joints
+    ]
 
 
 def _body_of(run: RunData) -> SimpleNamespace:
@@ -77,7 +86,7 @@ def _body_of(run: RunData) -> SimpleNamespace:
 
 def _sample(run: RunData, k: int) -> Iterator[tuple[str, SimpleNamespace]]:
     """Topic and message at sample `k`, of the topics whose quantities the run has."""
-    header = SimpleNamespace(stamp=_stamp(run.time[k]))
+    header, signs = SimpleNamespace(stamp=_stamp(run.time[k])), message_signs(run.robot)
     for topic, fields in FIELDS.items():
         values = {path: getattr(run, each.quantity) for path, each in fields.items()}
         if (first := next(iter(values.values()))) is None or not first.size:
@@ -85,7 +94,8 @@ def _sample(run: RunData, k: int) -> Iterator[tuple[str, SimpleNamespace]]:
         message = SimpleNamespace(header=header, **_besides(run, k, topic))
         for path, each in fields.items():
             if values[path] is not None:  # a file of an older version may have none
-                _put(message, path, each.of(values[path][k]) + 0.0, each.parts)
+                sign = signs if each.quantity in SIGNED else 1.0
+                _put(message, path, sign * each.of(values[path][k]) + 0.0, each.parts)
         yield topic, message
     if run.flow is not None:
         points = lattice_around(run.backbone[k].mean(axis=0), run.body.length, run.flow)
@@ -100,11 +110,13 @@ def _besides(run: RunData, k: int, topic: str) -> dict[str, Any]:
     """What the message of a `topic` has besides the fields that `FIELDS` names."""
     if topic == "fin_states":
         return {"name": [fin.name for fin in run.fins]}
-    if topic == "joint_states" and run.robot is not None:
-        return {"name": [joint.name for joint in run.robot.joints]}
-    if run.robot is not None and run.motor_torque is not None and run.motor_power is not None and topic in OF_JOINTS:
-        return {"limit": most_torque(run.robot.servos, run.motor_torque[k], run.motor_power[k])}
-    return {"x": run.x} if topic in PROFILES else {}
+    if topic in OF_JOINTS and run.robot is not None:
+        names = {"name": [joint.name for joint in run.robot.joints]}
+        if topic == "joint_states" or run.motor_torque is None or run.motor_power is None:
+            return names
+        return names | {"limit": most_torque(run.robot.servos, run.motor_torque[k], run.motor_power[k])}
+    profile = {"x": run.x} if topic in PROFILES else {}
+    return profile | ({"fin_name": [fin.name for fin in run.fins]} if topic == "hydrodynamic_load" else {})
 
 
 def _put(message: SimpleNamespace, path: str, numbers: np.ndarray, parts: str) -> None:

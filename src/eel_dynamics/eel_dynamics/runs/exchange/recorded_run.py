@@ -28,7 +28,8 @@ from eel_dynamics.model.body.panels import panels_of
 from eel_dynamics.model.robot.robot import Robot, checked_robot, robot_of
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.exchange.eel_viz_functions import function_of_eel_viz
-from eel_dynamics.runs.exchange.message_fields import FIELDS, OF_JOINTS, quantities_of
+from eel_dynamics.runs.exchange.joint_signs import message_sign, message_signs
+from eel_dynamics.runs.exchange.message_fields import FIELDS, OF_JOINTS, SIGNED, quantities_of
 from eel_dynamics.simulation.energy import WORKS, EnergyLedger
 
 NEEDED = ("head_pose", "head_twist", "backbone", "curvature")
@@ -52,7 +53,9 @@ def fields_of_bag(
     messages = function_of_eel_viz("messages")
     try:
         with reading(""):
-            return fields_of_messages(messages(path, namespace), body, scene, found)
+            joints = () if found is None else found.joints
+            turned = None if found is None else {each.name for each in joints if message_sign(each.axis) < 0}
+            return fields_of_messages(messages(path, namespace, turned), body, scene, found)
     except ValueError as error:
         named = "" if shown(os.fspath(path)) in str(error) else f"bag {shown(os.fspath(path))} holds no run: "
         raise ValueError(one_line(f"{named}{error}")) from None
@@ -79,8 +82,11 @@ def fields_of_messages(
     if len(stamps) < FEWEST:
         raise ValueError(f"there must be {FEWEST} instants or more with a message on each topic, got {len(stamps)}")
     rows = {topic: [samples[topic][stamp] for stamp in stamps] for topic in (*NEEDED, *further)}
-    if OF_JOINTS[0] in rows and robot is not None:
-        rows[OF_JOINTS[0]] = [_in_order(message, robot) for message in rows[OF_JOINTS[0]]]
+    for topic in OF_JOINTS:
+        if (
+            topic in rows and robot is not None and hasattr(rows[topic][0], "name")
+        ):  # an older motor_states has no names
+            rows[topic] = [_in_order(topic, message, robot) for message in rows[topic]]
     scene = replace(
         Scene() if scene is None else scene, internal_wrench="internal_wrench" in rows, ledger="energy" in rows
     )
@@ -90,6 +96,7 @@ def fields_of_messages(
     fins = len(rows["fin_states"][0].position) if "fin_states" in rows else 0
     joints = 0 if robot is None else len(robot.joints)
     found |= quantities_of(rows, station=len(found["x"]), fin=fins, joint=joints)
+    found |= {name: found[name] * message_signs(robot) + 0.0 for name in SIGNED if found[name] is not None}
     # No message tells the angle of a motor behind a series spring, nor how tails bend.
     stiff = robot is not None and not any(servo and servo.has_spring for servo in robot.servos)
     found |= {"robot": robot, "motor_angle": found["joint_angle"] if stiff else None}
@@ -122,13 +129,13 @@ def _collected(messages: Iterable[tuple[str, Any]]) -> tuple[dict[str, Any], dic
     return once, samples
 
 
-def _in_order(message: Any, robot: Robot) -> Any:
-    """A message of joint_states whose joints are the robot's, in their order. `ValueError` where one is missing."""
+def _in_order(topic: str, message: Any, robot: Robot) -> Any:
+    """A message of joints whose joints are the robot's, in their order. `ValueError` where one is missing."""
     missing = [joint.name for joint in robot.joints if joint.name not in message.name]
     if missing:
-        raise ValueError(f"joint_states must have the robot's joints, got none of {', '.join(missing)}")
+        raise ValueError(f"{topic} must have the robot's joints, got none of {', '.join(missing)}")
     order = [list(message.name).index(joint.name) for joint in robot.joints]
-    names = FIELDS["joint_states"]
+    names = FIELDS[topic]
     return SimpleNamespace(**{name: np.array(getattr(message, name))[order] for name in names})
 
 

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The signs of joints in messages: those of REP-103, as of a URDF whose base link is the head.
+
+In joint_commands, joint_states and motor_states an angle above 0 turns the part behind a joint about +z (yaw) or +y
+(pitch) of the part ahead. In the library a joint's own `axis` says it: "yaw" is positive to the left, where the part
+behind turns about -z. Rates and torques have the sign of their angle.
+"""
+
+import numpy as np
+
+from eel_dynamics.model.axes import VECTOR
+from eel_dynamics.model.robot.part import AXES
+from eel_dynamics.model.robot.robot import Robot
+
+TO_THE_LEFT = "yaw", "-yaw"  # axes whose sign is that of the gaits: the others have that of messages
+OF_SECTIONS = VECTOR  # (3,) sign in messages of a turn of the part behind about each section axis
+
+
+def message_sign(axis: str) -> int:
+    """What an angle of a joint with this `axis` is multiplied by, from library to message and back: 1 or -1."""
+    return -1 if axis in TO_THE_LEFT else 1
+
+
+def message_signs(robot: Robot | None) -> np.ndarray:
+    """(J,) `message_sign` of each joint of a `robot`."""
+    return np.array([message_sign(joint.axis) for joint in (() if robot is None else robot.joints)], dtype=float)
+
+
+def sense_of(axis: str) -> int:
+    """The sense of a joint's angle in messages, about +y or +z: 1 right-handed, -1 left-handed (JointGeometry)."""
+    component, sign = AXES[axis]
+    return int(message_sign(axis) * sign * OF_SECTIONS[component])
