@@ -9,7 +9,7 @@ is (Omega, V) [rad/s, m/s] of the head in its own axes, relative to the water un
 (torque, force) [N m, N] about the head, in its axes. T instants, M stations, n nodes, m rows of a law.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Self
 
 import numpy as np
@@ -89,18 +89,54 @@ class Swimmer(_Shared):
         drag areas (3,) [kg/m] in section axes; whether by the law of the speed; whether it is the base of the tail;
         first station there or behind, none of them at the end of the tail). `ValueError` names what does not fit."""
 
+class RampedFlow:
+    """The velocity (3,) [m/s], times the sum of ramps as those of a law's envelope; without ramps, times 1. All flows
+    are in the world's axes."""
+
+    def __init__(self, velocity: Buffer, ramps: list[tuple[float, float, float]]) -> None: ...
+
+class SplineFlow:
+    """A velocity [m/s] over time: knots (n,) [s], coefficients (n - 1, 4, 3) of cubics, from the constant one on."""
+
+    def __init__(self, knots: Buffer, coefficients: Buffer) -> None: ...
+
+class ShearFlow:
+    """A layer: the velocity (3,) [m/s] far to one side, the layer's unit normal (3,) `across`, the place of its
+    middle along that [m], its width [m], and whether its profile is linear."""
+
+    def __init__(self, velocity: Buffer, across: Buffer, middle: float, width: float, linear: bool) -> None: ...
+
+class VortexFlow:
+    """Upright vortices: rows (n, 3) of x [m], y [m] and circulation [m^2/s], the radius of their cores [m], and the
+    velocity (3,) [m/s] of their drift."""
+
+    def __init__(self, vortices: Buffer, core: float, drift: Buffer) -> None: ...
+
+class WaveFlow:
+    """A wave on deep water: amplitude [m], wavenumber [1/m], angular frequency [rad/s], height of the surface [m],
+    phase [rad], horizontal unit direction (3,)."""
+
+    def __init__(
+        self, amplitude: float, wavenumber: float, frequency: float, surface: float, phase: float, direction: Buffer
+    ) -> None: ...
+
+class GriddedFlow:
+    """Velocities (t, x, y, z, 3) [m/s] at the points of the axes t [s], x, y and z [m], which rise."""
+
+    def __init__(self, axes: tuple[Buffer, ...], velocity: Buffer) -> None: ...
+
+class FunctionFlow:
+    """function(time [s], rows (n, 18)) completes rows as those of `Flow.at`."""
+
+    def __init__(self, function: Callable[[float, memoryview], None]) -> None: ...
+
+Source = RampedFlow | SplineFlow | ShearFlow | VortexFlow | WaveFlow | GriddedFlow | FunctionFlow
+
 class Flow(_Shared):
     """How the water moves by itself: the sum of its sources."""
 
-    def __init__(self, sources: list[tuple[Any, ...]]) -> None:
-        """Each source is a tuple, in the world's axes and SI units:
-        ("ramped", velocity (3,), ramps as those of a law's envelope, whose sum multiplies the velocity; none: 1);
-        ("spline", knots (n,), coefficients (n - 1, 4, 3) of cubics from the constant on); ("shear", velocity (3,) far
-        to one side, unit normal (3,) of the layer, place of its middle along that, width, whether it is linear);
-        ("vortices", rows (n, 3) of x, y and circulation, radius of the cores, drift (3,)); ("wave", amplitude,
-        wavenumber, angular frequency, height of the surface, phase, horizontal unit direction (3,)); ("grid",
-        axes t, x, y and z, velocities (t, x, y, z, 3)); ("function",
-        function(time, rows (n, 18))), which fills in rows as those of `at`. `ValueError` for another kind."""
+    def __init__(self, sources: Sequence[Source]) -> None:
+        """`ValueError` for what is no source."""
 
     def at(self, time: float, rows: Buffer) -> None:
         """Completes the rows (n, 18) at a time [s]: of the place (3,) [m], which stands first, the velocity (3,) [m/s],

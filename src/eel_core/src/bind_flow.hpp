@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Python class of flows. Its sources come as tuples, in the axes of the outside.
+// The Python classes of flows and of their sources, whose numbers are in the axes of the outside.
 #pragma once
 
 #include <memory>
@@ -83,37 +83,28 @@ inline GriddedFlow grid_from(const py::tuple& axes, const py::object& velocity)
     return flow;
 }
 
+inline SplineFlow spline_from(const py::object& knots, const py::object& coefficients)
+{
+    SplineFlow spline{cubics_from<Vector3<double>>(knots, coefficients)};
+    for (auto& cubic : spline.velocity.pieces)
+        for (auto& coefficient : cubic) coefficient = half_turn(coefficient);
+    return spline;
+}
+
+// Appends a source of one of the kinds.
+template <class... Source>
+void append(std::vector<std::variant<Source...>>& sources, const py::handle& source)
+{
+    const bool known =
+        ((py::isinstance<Source>(source) && (sources.emplace_back(source.cast<const Source&>()), true)) || ...);
+    if (!known)
+        throw py::value_error("sources must be of the classes of flows, got " + py::repr(source).cast<std::string>());
+}
+
 inline std::shared_ptr<Flow> flow_from(const py::list& sources)
 {
     auto flow = std::make_shared<Flow>();
-    for (const py::handle each : sources) {
-        const auto source = each.cast<py::tuple>();
-        const auto kind = source[0].cast<std::string>();
-        const auto number = [&](std::size_t i) { return source[i].cast<double>(); };
-        const auto vector = [&](std::size_t i, const char* name) { return vector_from(source[i], name); };
-        if (kind == "ramped") {
-            flow->sources.emplace_back(RampedFlow{vector(1, "velocity"), ramps_from(source[2])});
-        } else if (kind == "spline") {
-            SplineFlow spline{cubics_from<Vector3<double>>(source[1], source[2])};
-            for (auto& cubic : spline.velocity.pieces)
-                for (auto& coefficient : cubic) coefficient = half_turn(coefficient);
-            flow->sources.emplace_back(std::move(spline));
-        } else if (kind == "shear") {
-            flow->sources.emplace_back(
-                ShearFlow{vector(1, "velocity"), vector(2, "across"), number(3), number(4), source[5].cast<bool>()});
-        } else if (kind == "vortices") {
-            flow->sources.emplace_back(vortices_from(source[1], number(2), source[3]));
-        } else if (kind == "wave") {
-            flow->sources.emplace_back(
-                WaveFlow{number(1), number(2), number(3), number(4), number(5), vector(6, "direction")});
-        } else if (kind == "grid") {
-            flow->sources.emplace_back(grid_from(source[1], source[2]));
-        } else if (kind == "function") {
-            flow->sources.emplace_back(function_from(source[1]));
-        } else {
-            throw py::value_error("flow must be of a known kind, got '" + kind + "'");
-        }
-    }
+    for (const py::handle source : sources) append(flow->sources, source);
     return flow;
 }
 
@@ -130,6 +121,38 @@ inline void put_flow(const std::shared_ptr<Flow>& flow, double time, const py::o
     turn_rows(into.data(), count);
     flow_at(*flow, time, into.data(), count);
     turn_rows(into.data(), count);
+}
+
+inline void bind_flows(py::module_& module)
+{
+    using Object = const py::object&;
+    const auto vector = [](Object row, const char* name) { return vector_from(row, name); };
+    py::class_<RampedFlow>(module, "RampedFlow")
+        .def(py::init([vector](Object velocity, const py::list& ramps) {
+                 return RampedFlow{vector(velocity, "velocity"), ramps_from(ramps)};
+             }),
+             py::arg("velocity"), py::arg("ramps"));
+    py::class_<SplineFlow>(module, "SplineFlow").def(py::init(&spline_from), py::arg("knots"), py::arg("coefficients"));
+    py::class_<ShearFlow>(module, "ShearFlow")
+        .def(py::init([vector](Object velocity, Object across, double middle, double thickness, bool linear) {
+                 return ShearFlow{vector(velocity, "velocity"), vector(across, "across"), middle, thickness, linear};
+             }),
+             py::arg("velocity"), py::arg("across"), py::arg("middle"), py::arg("width"), py::arg("linear"));
+    py::class_<VortexFlow>(module, "VortexFlow")
+        .def(py::init(&vortices_from), py::arg("vortices"), py::arg("core"), py::arg("drift"));
+    py::class_<WaveFlow>(module, "WaveFlow")
+        .def(py::init([vector](double amplitude, double wavenumber, double frequency, double surface, double phase,
+                               Object direction) {
+                 return WaveFlow{amplitude, wavenumber, frequency, surface, phase, vector(direction, "direction")};
+             }),
+             py::arg("amplitude"), py::arg("wavenumber"), py::arg("frequency"), py::arg("surface"), py::arg("phase"),
+             py::arg("direction"));
+    py::class_<GriddedFlow>(module, "GriddedFlow").def(py::init(&grid_from), py::arg("axes"), py::arg("velocity"));
+    py::class_<FunctionFlow>(module, "FunctionFlow").def(py::init(&function_from), py::arg("function"));
+
+    auto flow = py::class_<Flow, std::shared_ptr<Flow>>(module, "Flow");
+    share_in_copies(flow);
+    flow.def(py::init(&flow_from), py::arg("sources")).def("at", &put_flow, py::arg("time"), py::arg("rows"));
 }
 
 }  // namespace eel_core

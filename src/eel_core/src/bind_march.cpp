@@ -93,12 +93,20 @@ StepBounds bounds_from(const py::kwargs& given)
     return made;
 }
 
+constexpr std::pair<const char*, Status> status_names[] = {{"marched", Status::marched},
+                                                           {"not_finite", Status::not_finite},
+                                                           {"step_too_small", Status::step_too_small},
+                                                           {"singular", Status::singular},
+                                                           {"too_many_steps", Status::too_many_steps},
+                                                           {"unfinished", Status::unfinished}};
+
 }  // namespace
 
 void bind_marches(py::module_& module)
 {
-    module.attr("STATUSES") =
-        py::make_tuple("marched", "not_finite", "step_too_small", "singular", "too_many_steps", "unfinished");
+    py::list statuses(std::size(status_names));
+    for (const auto& [name, status] : status_names) statuses[static_cast<std::size_t>(status)] = name;
+    module.attr("STATUSES") = py::tuple(statuses);
 
     auto bounds = py::class_<StepBounds, std::shared_ptr<StepBounds>>(module, "StepBounds");
     share_in_copies(bounds);

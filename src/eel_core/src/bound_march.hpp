@@ -29,6 +29,11 @@ class InUse {
 
 inline auto tuple_of(const Counts& counts) { return std::tuple(counts.steps, counts.rejected, counts.evaluations); }
 
+inline constexpr std::pair<const char*, Command::Kind> command_kinds[] = {{"law", Command::law},
+                                                                          {"position", Command::position},
+                                                                          {"velocity", Command::velocity},
+                                                                          {"effort", Command::effort}};
+
 class PyMarch {
   public:
     PyMarch(std::shared_ptr<const Swimmer> swimmer, const std::string& method, std::size_t order, bool planar,
@@ -129,11 +134,9 @@ class PyMarch {
                  double high)
     {
         const Driven in_use(*this);
-        constexpr std::array kinds{"law", "position", "velocity", "effort"};
-        const auto* const found = std::find(kinds.begin(), kinds.end(), kind);
-        if (!march_.modes() || servo >= march_.modes()->servos.size() || found == kinds.end())
-            throw py::value_error("a command must be for a servo, and of a known kind");
-        march_.command(servo, {static_cast<Command::Kind>(found - kinds.begin()), angle, rate, torque, low, high});
+        if (!march_.modes() || servo >= march_.modes()->servos.size())
+            throw py::value_error("a command must be for a servo");
+        march_.command(servo, {value_named(command_kinds, kind, "kind"), angle, rate, torque, low, high});
     }
     int advance(double time)
     {

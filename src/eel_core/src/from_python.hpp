@@ -183,6 +183,26 @@ inline std::vector<Ramp> ramps_from(const py::handle& ramps)
     return result;
 }
 
+// The names in a table of names and values.
+template <class Value, std::size_t count>
+py::tuple names_of(const std::pair<const char*, Value> (&table)[count])
+{
+    py::tuple names(count);
+    for (std::size_t i = 0; i < count; ++i) names[i] = table[i].first;
+    return names;
+}
+
+// The value of this `name` in the table; `argument`: whose name it is.
+template <class Value, std::size_t count>
+Value value_named(const std::pair<const char*, Value> (&table)[count], const std::string& name, const char* argument)
+{
+    for (const auto& [known, value] : table)
+        if (name == known) return value;
+    const py::object known = names_of(table);
+    const auto names = py::repr(known).template cast<std::string>();
+    throw py::value_error(std::string(argument) + " must be one of " + names + ", got '" + name + "'");
+}
+
 // A method for Python. It refuses an object that is none, or was made without its constructor: it has no holder then.
 template <class Class, class Result, class... Given>
 auto method(Result (Class::*function)(Given...))

@@ -182,15 +182,13 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
     module.def("layout", &layout, py::arg("samples"), py::arg("stations"), py::arg("wrench"), py::arg("load"),
                py::arg("fins") = 0);
     module.attr("MOST_SERVOS") = most_servos;
-    module.attr("FRICTION_LAWS") = py::tuple(py::cast(friction_names));
+    module.attr("FRICTION_LAWS") = names_of(friction_laws);
 
     auto swimmer = py::class_<Swimmer, std::shared_ptr<Swimmer>>(module, "Swimmer");
     share_in_copies(swimmer);
     swimmer.def(py::init(&swimmer_from), py::arg("grid"), py::arg("sections"), py::arg("stations"));
 
-    auto flow_class = py::class_<Flow, std::shared_ptr<Flow>>(module, "Flow");
-    share_in_copies(flow_class);
-    flow_class.def(py::init(&flow_from), py::arg("sources")).def("at", &put_flow, py::arg("time"), py::arg("rows"));
+    bind_flows(module);
 
     auto law_tables = py::class_<LawTables, std::shared_ptr<LawTables>>(module, "LawTables");
     share_in_copies(law_tables);

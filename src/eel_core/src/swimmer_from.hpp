@@ -132,6 +132,11 @@ inline constexpr std::pair<const char*, double Swimmer::*> quantities[] = {
     {"nose_mass", &Swimmer::nose_mass}, {"nose_drag", &Swimmer::nose_drag},
     {"righting", &Swimmer::righting},   {"gravity", &Swimmer::gravity}};
 
+inline constexpr std::pair<const char*, Friction> friction_laws[] = {{"printed", Friction::printed},
+                                                                     {"laminar", Friction::laminar},
+                                                                     {"blended", Friction::blended},
+                                                                     {"taylor", Friction::taylor}};
+
 inline std::shared_ptr<Swimmer> swimmer_from(const py::object& grid, const py::object& sections,
                                              const py::object& stations, const py::kwargs& physics)
 {
@@ -139,11 +144,7 @@ inline std::shared_ptr<Swimmer> swimmer_from(const py::object& grid, const py::o
     swimmer->grid = grid_from(grid);
     const std::size_t n = swimmer->grid.nodes;
     swimmer->sections = sections_from(sections, n);
-    const auto friction = physics["friction"].cast<std::string>();
-    const auto name = std::find(friction_names.begin(), friction_names.end(), friction);
-    if (name == friction_names.end())
-        throw py::value_error("friction is none of FRICTION_LAWS, got '" + friction + "'");
-    swimmer->friction = static_cast<Friction>(name - friction_names.begin());
+    swimmer->friction = value_named(friction_laws, physics["friction"].cast<std::string>(), "friction");
     swimmer->first_watched = physics["first_watched"].cast<std::size_t>();
     for (const auto& [key, member] : switches) swimmer.get()->*member = physics[key].cast<bool>();
     for (const auto& [key, member] : quantities) swimmer.get()->*member = physics[key].cast<double>();

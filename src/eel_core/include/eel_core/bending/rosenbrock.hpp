@@ -87,6 +87,9 @@ class BentStepper {
         for (BentPoint<M>* point : {&before_, &here_})
             point->in_time.resize(c), point->y.momentum.resize(c), point->y.x.resize(c);
         trial_ = before_.y;
+        scratch_.right.resize(M::freedoms + c);
+        for (std::vector<double>* each : {&scratch_.bx, &scratch_.sum_x, &scratch_.sum_u, &scratch_.dx, &scratch_.du})
+            each->resize(c);
     }
 
     Pace pace;
@@ -252,26 +255,26 @@ class BentStepper {
             for (std::size_t k = 0; k < 3; ++k)
                 if (k != j) weight[j] *= (time[3] - time[k]) / (time[j] - time[k]);
         }
-        std::vector<double> apart(c);
+        std::vector<double>& apart = scratch_.dx;
         for (std::size_t i = 0; i < c; ++i) {
             apart[i] = -body_.rate[i];
             for (std::size_t j = 0; j < 4; ++j) apart[i] += weight[j] * x[j][i];
         }
-        const std::vector<double> smoothed = filtered(point.time - before_.time, before_.damping, apart);
-        for (std::size_t i = 0; i < c; ++i) body_.rate[i] += smoothed[head + i];
+        filter(point.time - before_.time, before_.damping, apart, scratch_.right);
+        for (std::size_t i = 0; i < c; ++i) body_.rate[i] += scratch_.right[head + i];
         return true;
     }
 
-    // (M + g D + g^2 K)^-1 g D x of the last step, for head and coordinates.
-    std::vector<double> filtered(double length, const std::vector<double>& damping, const std::vector<double>& x) const
+    // Puts (M + g D + g^2 K)^-1 g D x of the last step, for head and coordinates, into `right`.
+    void filter(double length, const std::vector<double>& damping, const std::vector<double>& x,
+                std::vector<double>& right) const
     {
         constexpr std::size_t head = M::freedoms;
-        std::vector<double> right(head + x.size());
+        std::fill(right.begin(), right.end(), 0.0);
         for (std::size_t i = 0; i < x.size(); ++i)
             for (std::size_t j = 0; j < x.size(); ++j)
                 right[head + i] += Tableau::diagonal * length * damping[i * x.size() + j] * x[j];
         matrix_.solve(right.data());
-        return right;
     }
 
     // Makes the start of the last step one of the past ends.
@@ -297,7 +300,8 @@ class BentStepper {
             for (std::size_t j = 0; j <= i; ++j)
                 matrix.at(head + i, head + j) += g * (here_.damping[i * c + j] + g * here_.stiffness[i * c + j]);
         if (matrix.factor() != Definite::definite) return Status::singular;
-        std::vector<double> right(n), bx(c), sum_x, sum_u;
+        std::vector<double>&right = scratch_.right, &bx = scratch_.bx;
+        std::vector<double>&sum_x = scratch_.sum_x, &sum_u = scratch_.sum_u;
         for (std::size_t stage = 0; stage < Tableau::stages; ++stage) {
             const State* head_rate = &here_.head_rate;
             const std::vector<double>*momentum_rate = &here_.momentum_rate, *rate = &here_.rate;
@@ -309,7 +313,7 @@ class BentStepper {
                 head_rate = &body_.head_rate, momentum_rate = &body_.momentum_rate, rate = &body_.rate;
             }
             const double g_time = length * length * (Tableau::diagonal + Tableau::sum(Tableau::gamma, stage));
-            sum_x.assign(c, 0.0), sum_u.assign(c, 0.0);
+            std::fill(sum_x.begin(), sum_x.end(), 0.0), std::fill(sum_u.begin(), sum_u.end(), 0.0);
             for (std::size_t j = 0; j < stage; ++j) {
                 add_scaled(Tableau::gamma[stage][j], step_x_[j], sum_x);
                 add_scaled(Tableau::gamma[stage][j], step_u_[j], sum_u);
@@ -363,13 +367,14 @@ class BentStepper {
         std::array<double, Tableau::stages> weight;
         for (std::size_t j = 0; j < weight.size(); ++j) weight[j] = Tableau::weight[j] - Tableau::embedded[j];
         State defect{};
-        std::vector<double> dx(c), du(c);
+        std::vector<double>&dx = scratch_.dx, &du = scratch_.du, &smoothed = scratch_.right;
+        std::fill(dx.begin(), dx.end(), 0.0), std::fill(du.begin(), du.end(), 0.0);
         for (std::size_t j = 0; j < weight.size(); ++j) {
             add_scaled(weight[j] / length, step_head_[j], defect);
             add_scaled(weight[j], step_x_[j], dx), add_scaled(weight[j], step_u_[j], du);
         }
         // Of continuous parts, less what the rates at the step's end are smoothed by: their high modes are stiff.
-        const std::vector<double> smoothed = filtered(length, here_.damping, du);
+        filter(length, here_.damping, du, smoothed);
         for (std::size_t i = 0; i < modes_->modes; ++i)
             if (modes_->continuous[i]) du[i] -= smoothed[M::freedoms + i];
         double worst = 0.0;
@@ -433,7 +438,7 @@ class BentStepper {
     {
         const double length = here_.time - before_.time, time = before_.time + 0.5 * length;
         State head{};
-        std::vector<double> x, rate;
+        std::vector<double>&x = scratch_.middle_x, &rate = scratch_.middle_rate;
         interpolate(0.5, head, x, rate);
         normalise(head);
         ++pace.counts.evaluations;
@@ -468,6 +473,12 @@ class BentStepper {
     Definite matrix_;                      // of the last step, factored
     std::array<State, Tableau::stages> step_head_{};
     std::array<std::vector<double>, Tableau::stages> step_x_, step_p_, step_u_;
+    struct Scratch {                           // of a step: nothing is allocated within one
+        std::vector<double> right;             // of the linear system, then its solution: head and coordinates
+        std::vector<double> bx, sum_x, sum_u;  // coordinates: of a stage
+        std::vector<double> dx, du;            // the difference of the two results
+        std::vector<double> middle_x, middle_rate;
+    } scratch_;
     BentPowers works_{}, works_before_{}, middle_{};  // at the end and the start of the step; powers at its middle
     std::size_t hardest_ = 0;
     bool anew_ = true;

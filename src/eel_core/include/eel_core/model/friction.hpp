@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The laws of the axial friction c_f(Re), section 7.2.1.
 //
-// A new law is an entry of `Friction` and `friction_names`, and a case of `axial_friction`; `Scene.friction` takes its
+// A new law is an entry of `Friction` and of `friction_laws` (swimmer_from.hpp), and a case of `axial_friction`; `Scene.friction` takes its
 // name. Its coefficients come from `sections_of` in eel_dynamics/model/section_data.py. One that is not analytic along the body
 // is named in `ROUGH_FRICTION` (eel_dynamics/model/scene.py), which asks for more points. One that is no sum of a laminar and a
 // turbulent part, as `taylor`, has a case in `set_drag_units` (march/missed.hpp) too.
@@ -16,7 +16,6 @@
 namespace eel_core {
 
 enum class Friction : std::size_t { printed, laminar, blended, taylor };
-inline constexpr std::array friction_names{"printed", "laminar", "blended", "taylor"};  // as in Python
 
 // Whether the friction jumps where Re is critical, 8e4; the place of the jump is then integrated exactly
 // (`find_kinks`).

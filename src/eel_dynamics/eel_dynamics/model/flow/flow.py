@@ -49,7 +49,7 @@ class Flow:
     what: ClassVar[str] = "flow"
     vectors: ClassVar[tuple[str, ...]] = ()
 
-    def sources(self, planar: bool) -> list[tuple[Any, ...]]:
+    def sources(self, planar: bool) -> "list[eel_core.Source]":
         """Its sources as `eel_core.Flow` takes them; planar: of a planar scene."""
         raise NotImplementedError
 
@@ -99,7 +99,7 @@ class FlowSum(Flow):
 
     parts: tuple[Flow, ...]
 
-    def sources(self, planar: bool) -> list[tuple[Any, ...]]:
+    def sources(self, planar: bool) -> "list[eel_core.Source]":
         return [source for part in self.parts for source in part.sources(planar)]
 
     @cached_property

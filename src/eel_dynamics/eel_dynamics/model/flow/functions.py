@@ -10,6 +10,7 @@ import numpy as np
 from eel_common.quantity import checked_instance, number
 from eel_common.wording import shown
 
+import eel_core
 from eel_dynamics.model.flow.flow import ROWS, Flow, FlowTraits
 
 Field = Callable[[np.ndarray, float], Any]
@@ -62,7 +63,7 @@ class FlowField(Flow):
             if (given := getattr(self, name)) is not None and not callable(given):
                 raise ValueError(f"flow {name} must be a function of places and time, got {shown(given)}")
 
-    def sources(self, planar: bool) -> list[tuple[Any, ...]]:
+    def sources(self, planar: bool) -> "list[eel_core.Source]":
         def fill(time: float, view: memoryview) -> None:
             rows = np.asarray(view)
             x = rows[:, :3].copy()
@@ -76,7 +77,7 @@ class FlowField(Flow):
                     f"{velocity[index, 2]:.3g} m/s {_where(x[index], time)}"
                 )
 
-        return [("function", fill)]
+        return [eel_core.FunctionFlow(fill)]
 
     @cached_property
     def traits(self) -> FlowTraits:

@@ -12,6 +12,7 @@ from eel_common.quantity import checked_row, number, numbers
 from eel_common.wording import shown
 from numpy.typing import ArrayLike
 
+import eel_core
 from eel_dynamics.model.equality import EqualByFields
 from eel_dynamics.model.flow.flow import Flow, FlowTraits
 from eel_dynamics.model.flow.grid_files import AXES, read_grid
@@ -102,8 +103,8 @@ class GriddedFlow(EqualByFields, Flow):
         spans = [f"{name} {getattr(self, name)[0]:g} to {getattr(self, name)[-1]:g}" for name in AXES]
         return f"GriddedFlow({self.velocity.shape[:4]} points, {', '.join(spans)})"
 
-    def sources(self, planar: bool) -> list[tuple[Any, ...]]:
-        return [("grid", tuple(getattr(self, name) for name in AXES), self.velocity)]
+    def sources(self, planar: bool) -> "list[eel_core.Source]":
+        return [eel_core.GriddedFlow(tuple(getattr(self, name) for name in AXES), self.velocity)]
 
     @cached_property
     def traits(self) -> FlowTraits:

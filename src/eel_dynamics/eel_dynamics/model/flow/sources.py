@@ -10,6 +10,7 @@ import numpy as np
 from eel_common.quantity import Quantities, checked_row, documented, numbers, quantity
 from eel_common.wording import shown
 
+import eel_core
 from eel_dynamics.model.flow.flow import Flow, FlowTraits
 
 GRAVITY = 9.80665  # m/s^2, standard
@@ -43,14 +44,14 @@ class Uniform(Flow):
         object.__setattr__(self, "time", tuple(time.tolist()))
         object.__setattr__(self, "velocity", tuple(map(tuple, rows.tolist())))
 
-    def sources(self, planar: bool) -> list[tuple[Any, ...]]:
+    def sources(self, planar: bool) -> "list[eel_core.Source]":
         if self.time is None:
-            return [("ramped", np.array(self.velocity), [])]
+            return [eel_core.RampedFlow(np.array(self.velocity), [])]
         from scipy.interpolate import CubicSpline
 
         spline = CubicSpline(self.time, self.velocity, bc_type="clamped")
         coefficients = np.ascontiguousarray(spline.c[::-1].transpose(1, 0, 2))  # from the constant one on
-        return [("spline", np.array(self.time), coefficients)]
+        return [eel_core.SplineFlow(np.array(self.time), coefficients)]
 
     @cached_property
     def traits(self) -> FlowTraits:
@@ -72,9 +73,9 @@ class Gust(Flow, Quantities):
     hold: float = quantity(1.0, "s", "how long it blows at its height", 0.0)
     fall: float = quantity(1.0, "s", "how long it falls", 0.0, exclusive=True)
 
-    def sources(self, planar: bool) -> list[tuple[Any, ...]]:
+    def sources(self, planar: bool) -> "list[eel_core.Source]":
         start, risen, falls, end = self.traits.breakpoints
-        return [("ramped", np.array(self.velocity), [(start, risen, 1.0), (falls, end, -1.0)])]
+        return [eel_core.RampedFlow(np.array(self.velocity), [(start, risen, 1.0), (falls, end, -1.0)])]
 
     @cached_property
     def traits(self) -> FlowTraits:
@@ -103,9 +104,9 @@ class Shear(Flow, Quantities):
         if abs(_unit("flow across", self.across) @ self.velocity) > 1e-9 * math.hypot(*self.velocity):
             raise ValueError(f"flow across must be normal to the velocity {self.velocity}, got {shown(self.across)}")
 
-    def sources(self, planar: bool) -> list[tuple[Any, ...]]:
+    def sources(self, planar: bool) -> "list[eel_core.Source]":
         across, linear = _unit("flow across", self.across), self.profile == "linear"
-        return [("shear", np.array(self.velocity), across, float(across @ self.centre), self.width, linear)]
+        return [eel_core.ShearFlow(np.array(self.velocity), across, float(across @ self.centre), self.width, linear)]
 
     @cached_property
     def traits(self) -> FlowTraits:
@@ -139,9 +140,9 @@ class Vortex(_Vortices, Quantities):
     centre: tuple[float, float, float] = quantity((0.0, 0.0, 0.0), "m", "a point of its axis at t = 0")
     drift: tuple[float, float, float] = quantity((0.0, 0.0, 0.0), "m/s", "velocity of its axis")
 
-    def sources(self, planar: bool) -> list[tuple[Any, ...]]:
+    def sources(self, planar: bool) -> "list[eel_core.Source]":
         x, y, _ = self.centre
-        return [("vortices", np.array([x, y, self.circulation]), self.core, np.array(self.drift))]
+        return [eel_core.VortexFlow(np.array([x, y, self.circulation]), self.core, np.array(self.drift))]
 
 
 @documented
@@ -167,14 +168,14 @@ class VortexStreet(_Vortices, Quantities):
         super().__post_init__()
         _unit("flow downstream", self.downstream)
 
-    def sources(self, planar: bool) -> list[tuple[Any, ...]]:
+    def sources(self, planar: bool) -> "list[eel_core.Source]":
         along = _unit("flow downstream", self.downstream)
         left = np.array([-along[1], along[0]])
         far = self.spacing * np.arange(self.count)[:, None] * along + self.start[:2]
         rows = far + 0.5 * self.width * left, far + 0.5 * self.spacing * along - 0.5 * self.width * left
         strength = np.repeat([-self.circulation, self.circulation], self.count)
         vortices = np.ascontiguousarray(np.column_stack([np.concatenate(rows), strength]))
-        return [("vortices", vortices, self.core, np.array(self.drift))]
+        return [eel_core.VortexFlow(vortices, self.core, np.array(self.drift))]
 
 
 @documented
@@ -198,11 +199,11 @@ class Wave(Flow, Quantities):
         super().__post_init__()
         _unit("flow direction", self.direction)
 
-    def sources(self, planar: bool) -> list[tuple[Any, ...]]:
+    def sources(self, planar: bool) -> "list[eel_core.Source]":
         direction = np.append(_unit("flow direction", self.direction), 0.0)
         wavenumber = TURN / self.wavelength
         frequency = TURN / self.traits.time_scale
-        return [("wave", self.amplitude, wavenumber, frequency, self.surface, self.phase, direction)]
+        return [eel_core.WaveFlow(self.amplitude, wavenumber, frequency, self.surface, self.phase, direction)]
 
     @cached_property
     def traits(self) -> FlowTraits:

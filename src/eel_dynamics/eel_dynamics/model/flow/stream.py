@@ -8,10 +8,10 @@ When samples stop, the rate dies out within another interval, and the last veloc
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
+import eel_core
 from eel_dynamics.model.flow.flow import Flow, FlowTraits
 
 SHORTEST = 1e-3  # s, of an interval
@@ -34,14 +34,14 @@ class Course(Flow):
     values: tuple[tuple[float, ...], ...]
     rates: tuple[tuple[float, ...], ...]
 
-    def sources(self, planar: bool) -> list[tuple[Any, ...]]:
+    def sources(self, planar: bool) -> "list[eel_core.Source]":
         # not SciPy's cubics: its import takes more than a second, in a node between two samples
         u, v, h = np.array(self.values), np.array(self.rates), np.diff(self.knots)[:, None]
         slope = np.diff(u, axis=0) / h
         square = (3.0 * slope - 2.0 * v[:-1] - v[1:]) / h
         cube = (v[:-1] + v[1:] - 2.0 * slope) / h**2
         pieces = np.ascontiguousarray(np.stack([u[:-1], v[:-1], square, cube], axis=1))
-        return [("spline", np.array(self.knots), pieces)]
+        return [eel_core.SplineFlow(np.array(self.knots), pieces)]
 
     @cached_property
     def traits(self) -> FlowTraits:
