@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Starts all commands and nodes: before anything else is imported, it lets Ctrl-C end them silently, and refuses limits
-of the shell that leave too little room.
+"""Starts every command and node. Two things happen before any other import: Ctrl-C is set to end the process silently,
+and too low a limit of the shell is refused.
 
-Python's own handler of SIGINT raises KeyboardInterrupt in the midst of an import: a traceback, or a library that blames
-its own installation. Libraries that find too little room abort, or blame theirs. So an entry point names `main` of a
-module as `eel_command:main_of.PACKAGE.MODULE`, and each package imports this first, for `python -m PACKAGE.MODULE`.
-Only Python's standard library is imported here, and nothing changes where a package is imported as a library.
+Python's own handler of SIGINT raises KeyboardInterrupt in the middle of an import, which prints a traceback. Libraries
+that lack memory or files abort, or report a broken installation. So an entry point names `main` of a module as
+`eel_command:main_of.PACKAGE.MODULE`, and each package imports this module first, for `python -m PACKAGE.MODULE`.
+This module imports only Python's standard library. Importing a package as a library changes nothing.
 """
 
 import contextlib
@@ -15,15 +15,15 @@ import signal
 import sys
 from pathlib import Path
 
-LEAST_FILES = 64  # a node has 20 to 30 files open, and one or two more for each other node
-LEAST_MEMORY = 1.0  # GB of address space: a node or command takes up to 0.6 GB on two cores, and more on more
+LEAST_FILES = 64  # a node opens 20 to 30 files, and one or two more for each other node
+LEAST_MEMORY = 1.0  # GB of address space: a node or command takes up to 0.6 GB on two cores, more on more cores
 RERUN_MEMORY = 4.0  # GB, where Rerun is loaded
 WITH_RERUN = ("eel_viz.ros.node", "eel_viz.bags.replay", "eel_viz.pictures.render")
 CANNOT_START = 2  # exit status
 
 
 class MainOf:
-    """`main` of the module with this name, and the names of all modules below; it is imported when it is called."""
+    """`main` of the named module. Attributes name the modules below it. A call imports the module."""
 
     def __init__(self, module: str) -> None:
         self._module = module
@@ -34,23 +34,23 @@ class MainOf:
         return MainOf(f"{self._module}.{name}".lstrip("."))
 
     def __call__(self, arguments: list[str] | None = None) -> int:
-        """The exit status of `main`; `arguments`: None for those of this process, which then is this command alone."""
+        """Run `main` and return its exit status. arguments: None takes this process's own, as the command it runs."""
         if arguments is not None:
             status: int = importlib.import_module(self._module).main(arguments)
             return status
         name = Path(sys.argv[0]).name
         begin(self._module, name)
-        with contextlib.suppress(OSError):  # the name of the process is python's after sh
+        with contextlib.suppress(OSError):  # started by sh, the process is named python
             Path("/proc/self/comm").write_text(name)
         status = importlib.import_module(self._module).main()
         return status
 
 
 def begin(module: str, name: str) -> None:
-    """Make this process the command `name` in `module`: SIGINT ends it, also one that came before. SystemExit where it
-    has too little room."""
+    """Make this process the command `name` of `module`. SIGINT ends it, even one that is pending. Raises SystemExit
+    where the shell's limits are too low."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])  # executables of `make build` begin with it blocked
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])  # executables of `make build` start with SIGINT blocked
     files, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
     memory, _ = resource.getrlimit(resource.RLIMIT_AS)
     least = RERUN_MEMORY if module in WITH_RERUN else LEAST_MEMORY

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What every command uses: numbers with bounds, values in messages, one-line errors, files to be read and written."""
+"""Shared by all packages: numbers with bounds, values in messages, one-line errors, input and output files."""

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """An orientation as angles and as a matrix, in REP-103 axes: x forward, y left, z up.
 
-Heading, climb and roll are the Z-Y-X angles, but the climb has the sign of the pitch turned. They take a quaternion
-(4,) x y z w, world from head, of any norm but 0; or the quaternions (4, N) of N heads, and give (N,).
+Heading, climb and roll are the Z-Y-X angles, with the sign of the pitch reversed for the climb. Each takes a quaternion
+(4,) x y z w, world from head, of any norm but 0. Quaternions (4, N) of N heads give angles (N,).
 """
 
 import math
@@ -13,11 +13,11 @@ import numpy as np
 
 from eel_common.wording import shown
 
-ROUNDED = 1e-3  # of a norm: a quaternion of few digits is a unit quaternion, and is normalised
+ROUNDED = 1e-3  # of the norm: a quaternion rounded to few digits is accepted, and normalised
 
 
 def unit_quaternion(name: str, values: Sequence[float]) -> tuple[float, ...]:
-    """`values` (x, y, z, w) of norm 1; `ValueError` with the `name` where the norm differs by more than `ROUNDED`."""
+    """`values` (x, y, z, w) normalised. `ValueError` names `name` where the norm differs from 1 by over `ROUNDED`."""
     norm = math.hypot(*values)
     if not abs(norm - 1.0) <= ROUNDED:
         raise ValueError(f"{name} must be a unit quaternion, got {shown(list(values))} of norm {norm:.6g}")
@@ -44,14 +44,14 @@ def roll(orientation: Sequence[float] | np.ndarray) -> Any:
 
 
 def components(orientation: Sequence[float] | np.ndarray) -> Any:
-    """Of one quaternion, or another vector, as floats, which are faster; of N as rows (N,)."""
+    """The components of one quaternion or vector as floats, which are faster; of N as rows (N,)."""
     if isinstance(orientation, np.ndarray) and orientation.ndim == 1:
         return orientation.tolist()
     return orientation
 
 
 def _plain(angle: Any) -> Any:
-    """A float in place of a number of NumPy."""
+    """The angle as a Python float where it is a NumPy scalar."""
     return angle if isinstance(angle, np.ndarray) else float(angle)
 
 
@@ -72,7 +72,7 @@ def world_from_body(orientation: np.ndarray) -> np.ndarray:
 
 
 def section_axes(orientation: np.ndarray) -> np.ndarray:
-    """The section axes 1, 2, 3 in the world, columns of (..., 3, 3), of sections turned by `orientation` (..., 4).
+    """The section axes 1, 2, 3 in the world, as columns (..., 3, 3). orientation: (..., 4), of the sections.
 
     They are -x (towards the tail), -y and +z of the section turned as the head.
     """
@@ -80,5 +80,5 @@ def section_axes(orientation: np.ndarray) -> np.ndarray:
 
 
 def world_from_section(orientation: np.ndarray, vectors: np.ndarray) -> np.ndarray:
-    """`vectors` (..., 3), given in section axes, in the world, for the `orientation` (..., 4) of their sections."""
+    """Turn `vectors` (..., 3) from section axes into world axes. orientation: (..., 4), of the sections."""
     return np.asarray((section_axes(orientation) @ np.asarray(vectors)[..., None])[..., 0])

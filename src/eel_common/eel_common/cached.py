@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Properties that are computed once, for objects that one thread computes with.
+"""`cached_property` without a lock, for objects that one thread uses.
 
-`functools.cached_property` has a lock for all objects of a class before Python 3.12: what threads compute of objects of
-their own, such as a measure of a run, then waits for each other, even while it lets go of Python's lock.
+Before Python 3.12, `functools.cached_property` holds one lock per class. Threads that compute a property of different
+objects, such as a measure of a run, then wait for each other, even in code that releases the interpreter's lock.
 """
 
 from typing import TYPE_CHECKING
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 else:
 
     class cached_property:
-        """As `functools.cached_property`, without a lock."""
+        """`functools.cached_property` without its lock."""
 
         def __init__(self, function):
             self.function, self.__doc__ = function, function.__doc__

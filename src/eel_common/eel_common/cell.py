@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an object shows of itself in a cell of a notebook: a small picture, and its numbers."""
+"""How an object is shown in a notebook's cell: a small picture, and its numbers."""
 
 import base64
 import html
@@ -7,9 +7,9 @@ import io
 from collections.abc import Callable
 from typing import Any
 
-BLUE, ORANGE, GREY = "#0072B2", "#D55E00", "#888888"  # of Okabe and Ito
+BLUE, ORANGE, GREY = "#0072B2", "#D55E00", "#888888"  # the palette of Okabe and Ito
 STYLE: Any = {"font.size": 8.5, "axes.spines.top": False, "axes.spines.right": False}
-DOTS = 90  # in an inch
+DOTS = 90  # per inch
 
 
 def figure(width: float, height: float, panels: tuple[int, int] = (1, 1), **more: Any) -> tuple[Any, Any]:
@@ -28,7 +28,7 @@ def figure(width: float, height: float, panels: tuple[int, int] = (1, 1), **more
 
 
 def cell_of(draw: Callable[[], Any], text: str) -> str:
-    """HTML: the figure that `draw` makes, and below it the `text`; without matplotlib, or where it fails, the text."""
+    """HTML of the figure that `draw` makes, above the `text`. Without matplotlib, or on an error, the text alone."""
     lines = f"<pre style='line-height:1.3'>{html.escape(text)}</pre>"
     try:
         made, file = draw(), io.BytesIO()

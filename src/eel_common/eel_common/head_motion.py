@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The head's motion as a controller sees it: in REP-103 axes, as on the topic `odom`.
+"""The head's motion for controllers: in REP-103 axes, as on the topic `odom`.
 
 The swimmer heads for +x, y is left, z is up.
 """
@@ -17,7 +17,7 @@ MANY_TURNS = 1e9  # rad
 
 
 class HeadMotion(NamedTuple):
-    """Pose and twist of the head, in REP-103 axes; of N heads, with a further axis (., N) each."""
+    """Pose and twist of the head, in REP-103 axes. For N heads each field has a further axis (., N)."""
 
     position: np.ndarray  # (3,) m, world
     orientation: np.ndarray  # (4,) x y z w, world from head
@@ -41,7 +41,7 @@ class HeadMotion(NamedTuple):
 
 
 def wrapped(angle: Any) -> Any:
-    """The `angle` [rad] from -pi to pi; of an array each."""
+    """The `angle` [rad] wrapped to -pi to pi, element by element."""
     if type(angle) is float and abs(angle) < MANY_TURNS:  # faster
         return angle - TURN * round(angle / TURN)
     inside = angle - _TURN * np.rint(angle / _TURN)

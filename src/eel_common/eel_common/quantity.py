@@ -6,13 +6,13 @@ ROS node declares its parameters from the same fields. Metadata of a field:
 
     unit, description, minimum, maximum (inclusive; either may be None)
     exclusive       the minimum itself is refused
-    whole           a whole number, though a float
-    after           the name of another field, than which this one must be greater
+    whole           a float that must be a whole number
+    after           the name of a field that this one must exceed
     profile         a number, or a function along the body
-    plain           no number: the class checks it
-    choices         of a text
+    plain           not a number: the class checks it
+    choices         the texts that are allowed
     number          a text or a number
-    changeable      of a ROS parameter: while the node runs (True), or with effect at the next reset (`AT_RESET`)
+    changeable      a ROS parameter may change: while the node runs (True), or at the next reset (`AT_RESET`)
 """
 
 import math
@@ -29,9 +29,9 @@ from eel_common.wording import not_one_of, shown
 Value = TypeVar("Value")
 Kind = TypeVar("Kind", bound=type)
 
-AT_RESET = "at the next reset"  # when a change acts
-FEW = 8  # numbers of a row that a message shows
-LARGEST = 1e30  # size of a number; 1 / LARGEST the least that must be above 0: products of some of them are finite
+AT_RESET = "at the next reset"  # when a change takes effect
+FEW = 8  # numbers of a row shown in a message
+LARGEST = 1e30  # bounds size to 1/LARGEST .. LARGEST, so that products of a few are finite
 
 
 def quantity(
@@ -43,22 +43,22 @@ def quantity(
     compare: bool = True,
     **more: Any,
 ) -> Value:
-    """A dataclass field with these metadata, and what is `more`. compare: whether it counts where two are compared."""
+    """A dataclass field with these metadata and `more`. compare: whether comparisons of two objects include it."""
     metadata = {"unit": unit, "description": description, "minimum": minimum, "maximum": maximum}
     return field(default=default, compare=compare, metadata=metadata | more)
 
 
 def required(unit: str, description: str, minimum: float | None = None, **more: Any) -> Any:
-    """As `quantity`, of a field without a default."""
+    """As `quantity`, for a field without a default."""
     return quantity(MISSING, unit, description, minimum, **more)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Quantities:
-    """Base of parameter sets. Every field gets the type of its default, or a `ValueError` names it (`checked`).
+    """Base of parameter sets. Each field takes the type of its default; a `ValueError` names a bad one (`checked`).
 
-    A field whose default is None may be None. `what` begins the names of the fields in errors. A subclass with
-    `repr=False` shows the fields that differ from their defaults.
+    A field whose default is None may be None. `what` precedes the field names in errors. A subclass with
+    `repr=False` prints only the fields that differ from their defaults.
     """
 
     what: ClassVar[str] = ""
@@ -84,7 +84,7 @@ class Quantities:
 
     @classmethod
     def among(cls, values: Mapping[str, Any]) -> Self:
-        """The set with those of the `values` by name that are fields of it."""
+        """The set made from those of the `values` whose names are its fields."""
         return cls(**{item.name: values[item.name] for item in fields(cls) if item.name in values})
 
 
@@ -114,7 +114,7 @@ def documented(kind: Kind) -> Kind:
     return kind
 
 
-# -- checks of values: what does not fit is a `ValueError` that says what `name` must be, and what it got
+# -- checks: a `ValueError` states what `name` must be, and the value given
 
 
 def number(
@@ -193,7 +193,7 @@ def checked_path(name: str, value: Any) -> Path:
 
 
 def checked_choice(name: str, value: Any, known: Collection[str], *others: str) -> str:
-    """`value`, if it is one of the names `known`; others: what may be given besides, in words."""
+    """`value`, if it is one of the names `known`. others: further allowed values, in words."""
     if not isinstance(value, str) or value not in known:
         raise ValueError(not_one_of(name, value, (*known, *others)))
     return value
@@ -208,9 +208,9 @@ def is_finite(value: Any) -> bool:
 
 
 def checked(item: Field[Any], value: Any, name: str) -> Any:
-    """`value` in the type of the default of the field `item`, within its metadata.
+    """`value` converted to the type of the default of the field `item`, and checked against its metadata.
 
-    A float may be given as an integer, a row of texts as one text with commas. For a default of None 0 is None.
+    A float may be given as an integer, a row of texts as one text with commas. If the default is None, 0 means None.
     """
     default, about = item.default, item.metadata
     if isinstance(default, bool):
@@ -228,7 +228,7 @@ def checked(item: Field[Any], value: Any, name: str) -> Any:
 
 
 def _in_bounds(item: Field[Any], value: Any, name: str) -> float:
-    """`value` as a number within the metadata of the field `item`."""
+    """`value` as a number within the bounds of the field `item`."""
     about, integer = item.metadata, isinstance(item.default, int)
     if integer and not about.get("whole"):
         _of_kind(isinstance(value, int) and not isinstance(value, bool), value, f"{name} must be an integer")
@@ -246,7 +246,7 @@ def _of_kind(good: bool, value: Any, rule: str) -> Any:
 
 
 def _checked_row(default: tuple[Any, ...], value: Any, name: str) -> tuple[Any, ...]:
-    array = hasattr(value, "typecode")  # of rclpy: an array.array
+    array = hasattr(value, "typecode")  # rclpy gives an array.array
     row = array or (isinstance(value, (list, tuple, np.ndarray)) and getattr(value, "ndim", 1) == 1)
     if isinstance(default[0], str):
         words: Any = value.split(",") if isinstance(value, str) else value if row else (None,)

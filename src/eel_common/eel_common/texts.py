@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From texts and plain values to objects: NAME FIELD=VALUE ..., numbers, rows and words; objects of named fields.
+"""Objects from texts and plain values: NAME FIELD=VALUE ..., numbers, rows and words; objects of named fields.
 
-What makes objects of a text stands within `reading` (files/input_file.py), which turns whatever is raised into one
+Code that makes objects from a text runs within `reading` (files/input_file.py), which turns every error into one
 `ValueError`.
 """
 
@@ -16,18 +16,18 @@ from eel_common.wording import did_you_mean, shown
 
 Made = TypeVar("Made")
 
-JOINED = " + "  # between texts of which each makes an object
+JOINED = " + "  # joins texts that make one object each
 TRUTH = {"true": True, "on": True, "false": False, "off": False}
 
 
 def parts_of_text(text: str) -> list[str]:
-    """The texts that are joined by " + "; the name of a file is one."""
+    """The texts joined by " + ". The name of a file counts as one, whatever it holds."""
     parts = [text] if os.path.isfile(text) else text.split(JOINED)
     return [part.strip() for part in parts]
 
 
 def named_fields(what: str, first: str, text: str) -> dict[str, str]:
-    """The fields of a text NAME FIELD=VALUE ..., each once. The name is that called `first`; it may hold spaces."""
+    """The fields of a text NAME FIELD=VALUE ..., each once. NAME goes into the field `first`, and may hold spaces."""
     name, *given = [text] if os.path.isfile(text) else re.split(r"\s+(?=\w+=)", text.strip())
     found = {first: name}
     for each in given:
@@ -39,7 +39,7 @@ def named_fields(what: str, first: str, text: str) -> dict[str, str]:
 
 
 def value_of(text: str) -> Any:
-    """A truth, a number, a row of them (commas), rows of these (semicolons), or the text itself."""
+    """A boolean, a number, a row of numbers (commas), rows of these (semicolons), or the text itself."""
     for between in ";,":
         if between in text:
             return tuple(value_of(part) for part in text.split(between))
@@ -52,7 +52,7 @@ def value_of(text: str) -> Any:
 
 
 def made(kind: Callable[..., Made], given: Mapping[str, Any], what: str) -> Made:
-    """`kind`, a dataclass, of the fields `given`. `ValueError` names one that `what` has not, or that is missing."""
+    """The dataclass `kind` from the fields `given`. `ValueError` names an unknown or a missing field of `what`."""
     known: Any = fields(kind)  # type: ignore[arg-type]
     names = [item.name for item in known if item.init]
     for name in given:

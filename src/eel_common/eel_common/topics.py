@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names and types of the swimmer's topics, and fields of its ledger, as texts: no ROS is imported.
+"""Names and types of the swimmer's topics, and fields of its energy ledger, as texts: this module imports no ROS.
 
-A new topic has its name here; a new type of message is a file of eel_msgs/msg, named in eel_msgs/CMakeLists.txt.
-`SampleMessages` (eel_dynamics/ros/messages.py) makes its message. `FIELDS`
-(eel_dynamics/runs/exchange/message_fields.py) says which quantity of `Observations` each field holds; what is none is
+A new topic needs an entry here. A new message type needs a file in eel_msgs/msg, named in eel_msgs/CMakeLists.txt.
+`SampleMessages` (eel_dynamics/ros/messages.py) makes the message. `FIELDS`
+(eel_dynamics/runs/exchange/message_fields.py) says which quantity of `Observations` fills each field. Other fields are
 filled by `SampleMessages`, and for runs by `_sample` (eel_dynamics/runs/exchange/messages_of_run.py). `PARTS` and
-`NOT_AWAITED` (eel_dynamics/ros/publishers.py) name what is costly to find for it, and topics whose subscribers the
-start does not wait for. A topic of `INPUTS` has a subscription of its own, as eel_dynamics/ros/current_subscription.py;
-one of `LATCHED` is published once, as the body is. `READERS` (eel_viz/recording/dispatcher.py) reads it, and the
-methods of its name in the classes of `Loggers` draw it.
+`NOT_AWAITED` (eel_dynamics/ros/publishers.py) name its costly quantities, and topics whose subscribers the start does
+not await. A topic of `INPUTS` has its own subscription, as eel_dynamics/ros/current_subscription.py. A topic of
+`LATCHED` is published once, as the body is. `READERS` (eel_viz/recording/dispatcher.py) reads it, and methods of its
+name in the classes of `Loggers` draw it.
 """
 
-OWN = {  # relative: below the swimmer's namespace
+OWN = {  # relative names: below the swimmer's namespace
     "head_pose": "geometry_msgs/msg/PoseStamped",
     "head_twist": "geometry_msgs/msg/TwistStamped",
     "odom": "nav_msgs/msg/Odometry",
@@ -37,16 +37,16 @@ OWN = {  # relative: below the swimmer's namespace
 DIAGNOSTICS = "/diagnostics"
 GLOBAL = {"/clock": "rosgraph_msgs/msg/Clock", DIAGNOSTICS: "diagnostic_msgs/msg/DiagnosticArray"}
 LATCHED = ("body", "curvature_law", "goal")  # transient local
-INPUTS = ("curvature_samples", "joint_commands", "current", "fin_command")  # of a controller or sensor, by its clock
+INPUTS = ("curvature_samples", "joint_commands", "current", "fin_command")  # from controllers and sensors
 SAMPLED = tuple(name for name in OWN if name not in (*LATCHED, *INPUTS))  # once a sample
-WHERE_ASKED_FOR = ("joint_states", "fin_states", "motor_states", "flow_vectors")  # of `SAMPLED`: with such parts
+WHERE_ASKED_FOR = ("joint_states", "fin_states", "motor_states", "flow_vectors")  # of `SAMPLED`: if it has such parts
 SWIMMER = "head_pose"  # without publishers of this topic the swimmer has gone
-LATER_ENERGY_FIELDS = (  # that an older bag has not
+LATER_ENERGY_FIELDS = (  # missing in older bags
     *("flow_power", "fins_power", "damping_power", "elastic"),
     *(f"{part}_work" for part in ("actuator", "wake", "nose", "drag", "flow", "fins", "damping")),
     *("appendages_power", "appendages_work"),
 )
-ENERGY_FIELDS = (  # of an EnergyLedger, in its order
+ENERGY_FIELDS = (  # of the message EnergyLedger, in its order
     *("kinetic_body", "kinetic_fluid", "potential"),
     *("actuator_power", "wake_power", "nose_power", "drag_power"),
     "residual",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How messages show a value or an error: short, in one line, on any terminal."""
+"""How messages show a value or an error: short, in one line, safe on every terminal."""
 
 import re
 import reprlib
@@ -7,9 +7,9 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from typing import Any
 
-LONGEST = 80  # characters shown of a value
+LONGEST = 80  # characters of a shown value
 LONGEST_LINE = 300  # of a whole message
-_LONG_WORD = re.compile(rf"\S{{{LONGEST + 3},}}")  # a value as `shown`, with its comma or colon, is none
+_LONG_WORD = re.compile(rf"\S{{{LONGEST + 3},}}")  # longer than any `shown` value with its comma or colon
 _brief = reprlib.Repr()
 _brief.maxstring = _brief.maxother = LONGEST
 _brief.maxlevel = 3
@@ -17,7 +17,7 @@ _brief.maxlist = _brief.maxtuple = 8
 
 
 class WorkStopped(RuntimeError):
-    """A work that cannot go on, though its input was good. `exit_status`: of a command that ends by it."""
+    """Work that cannot go on, though its input was valid. `exit_status`: that of a command ended by it."""
 
     exit_status = 3
 
@@ -25,7 +25,7 @@ class WorkStopped(RuntimeError):
 def shown(value: Any) -> str:
     """`value` as Python writes it, in one line of at most `LONGEST` characters.
 
-    The middle of a longer text is left out.
+    A longer text loses its middle.
     """
     if hasattr(value, "typecode"):  # an array of a ROS message
         value = list(value[:LONGEST])
@@ -37,9 +37,9 @@ def shown(value: Any) -> str:
 
 
 def one_line(error: object) -> str:
-    """The text of `error` in one line of at most `LONGEST_LINE` characters; those that do not print are escaped.
+    """The text of `error` in one line of at most `LONGEST_LINE` characters. Non-printing ones are escaped.
 
-    The middle of long words, and of a long line, is left out.
+    Long words, and a long line, lose their middle.
     """
     if isinstance(error, OSError) and error.strerror:
         error = error.strerror if error.filename is None else f"{error.strerror}: {shown(error.filename)}"
@@ -50,13 +50,13 @@ def one_line(error: object) -> str:
 
 
 def did_you_mean(name: str, known: Iterable[str], alike: float = 0.6) -> str:
-    """The `known` name that is most like `name`, as a question in brackets. Empty if none is `alike`, from 0 to 1."""
+    """The `known` name most like `name`, as a question in brackets. Empty if none is `alike`, from 0 to 1."""
     found = get_close_matches(str(name), known, n=1, cutoff=alike)
     return f" (did you mean {found[0]!r}?)" if found else ""
 
 
 def not_one_of(name: str, value: Any, known: Iterable[str]) -> str:
-    """The text of an error: the `value` of what bears the `name` is none of those `known`."""
+    """The text of an error: the `value` of `name` is not among those `known`."""
     names = list(known)
     hint = did_you_mean(value, names) if isinstance(value, str) else ""
     return f"{name} must be one of {', '.join(names)}, got {shown(value)}{hint}"

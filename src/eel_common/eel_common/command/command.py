@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What all commands have in common: errors of one line, the exit status, Ctrl-C, and the check of outputs."""
+"""What all commands share: one-line errors, the exit status, Ctrl-C, and the check of outputs."""
 
 import argparse
 from collections.abc import Callable
@@ -10,19 +10,19 @@ from eel_common.command.command_line import Parser, interruptible, one_line_warn
 from eel_common.files.output_file import NotWritten, check_output, command_begins
 from eel_common.wording import WorkStopped, shown
 
-Work = Callable[[argparse.Namespace], int | None]  # of a command: returns its exit status, None for 0
+Work = Callable[[argparse.Namespace], int | None]  # the work of a command: returns its exit status, or None for 0
 
 
 def command(
     name: str, description: str, *, add_options: Callable[[Parser], None], epilog: str = "", interrupted: str = ""
 ) -> Callable[[Work], Callable[..., int]]:
-    """Decorator: makes main(arguments) of the command `name` of its work, a function of the options.
+    """Decorator: turns a function of the options into main(arguments) of the command `name`.
 
-    description, epilog: of its help. add_options(parser) adds its options. interrupted: what Ctrl-C leaves, printed
-    with status 130; empty: Ctrl-C ends the command at once.
-    main returns the exit status: that of the work; 1 where an output cannot be written to its end; 2 for bad input, a
-    missing package or too little memory; that of a `WorkStopped`, 3 for a swim that stops. An error prints one line
-    with its reason. arguments: None for those of this process.
+    description, epilog: texts of its help.
+    add_options(parser): adds its options.
+    interrupted: printed after Ctrl-C, with status 130: what is left behind. Empty: Ctrl-C ends the command at once.
+    main returns the exit status: that of the work; 1 where an output cannot be completed; 2 for bad input, a missing
+    package or too little memory; that of a `WorkStopped`, 3 for a swim that stops. An error prints one line.
     """
 
     def main_of(work: Work) -> Callable[..., int]:
@@ -50,7 +50,7 @@ def command(
 
 
 def checked_out(command: str, out: str, suffixes: tuple[str, ...]) -> Path:
-    """The path of an output of the `command`, which says so where the file exists. `ValueError` for another suffix."""
+    """The path of an output of the `command`. Prints a notice if the file exists. `ValueError` for other suffixes."""
     path = Path(out)
     if path.suffix not in suffixes:
         raise ValueError(f"--out must end in {', '.join(suffixes[:-1])} or {suffixes[-1]}, got {shown(out)}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command line of every command and node: one line per error, and output that any terminal can show."""
+"""The command line of every command and node: one line per error, and output that every terminal can show."""
 
 import argparse
 import contextlib
@@ -14,11 +14,11 @@ from typing import Any, NoReturn
 
 from eel_common.wording import did_you_mean, not_one_of, one_line, shown
 
-COMPLETING = "_ARGCOMPLETE"  # in the environment where a shell asks for completions
+COMPLETING = "_ARGCOMPLETE"  # environment variable, set where a shell asks for completions
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser that reports an error in one line, and wraps each line of its texts."""
+    """An argument parser that reports an error in one line, and wraps its texts line by line."""
 
     def __init__(self, *, description: str, epilog: str = "", **options: Any) -> None:
         super().__init__(
@@ -30,7 +30,7 @@ class Parser(argparse.ArgumentParser):
         )
 
     def parse_args(self, args: Iterable[str] | None = None, namespace: Any = None) -> Any:
-        if hasattr(sys.stdout, "reconfigure"):  # an escape for what its encoding lacks, as on stderr, and no failure
+        if hasattr(sys.stdout, "reconfigure"):  # characters outside its encoding are escaped, as on stderr
             sys.stdout.reconfigure(errors="backslashreplace")
         if COMPLETING in os.environ:
             import argcomplete
@@ -41,7 +41,7 @@ class Parser(argparse.ArgumentParser):
         return super().parse_args(words, namespace)
 
     def _check_options(self, words: list[str]) -> None:
-        """Refuse an option that there is not before one is missed that must be given."""
+        """Refuse an unknown option before argparse complains of a missing one."""
         for word in words:
             name = word.partition("=")[0]
             if name == "--":
@@ -54,7 +54,7 @@ class Parser(argparse.ArgumentParser):
                 self.error(f"no option {shown(name)}{did_you_mean(name, self._option_string_actions)}")
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
-        """Refuse a choice that there is not, in the words of all commands."""
+        """Refuse an unknown choice, in the wording of all commands."""
         if action.choices is not None and value not in action.choices:
             raise argparse.ArgumentError(
                 None, not_one_of("/".join(action.option_strings) or action.dest, value, map(str, action.choices))
@@ -66,13 +66,13 @@ class Parser(argparse.ArgumentParser):
 
 
 def _formatter() -> type[argparse.HelpFormatter]:
-    """Colours where the output is a terminal and rich-argparse is installed."""
+    """The formatter of --help: with colours where the output is a terminal and rich-argparse is installed."""
     if sys.stdout is not None and sys.stdout.isatty():
         with contextlib.suppress(ImportError):
             from rich_argparse import RawDescriptionRichHelpFormatter
 
             class Coloured(RawDescriptionRichHelpFormatter):
-                """Brackets are units, not marks of a style."""
+                """Rich's markup is off: brackets hold units."""
 
                 text_markup = help_markup = False
 
@@ -81,7 +81,7 @@ def _formatter() -> type[argparse.HelpFormatter]:
 
 
 def _wrapped(text: str) -> str:
-    """The text with each line wrapped to the terminal's width; what follows is indented as the line, and by 4."""
+    """The text wrapped to the terminal's width, line by line. Continuation lines are indented by 4 more."""
     width = shutil.get_terminal_size().columns - 2
     lines = text.splitlines()
     if len(lines) == 1:
@@ -98,7 +98,7 @@ def print_to_stderr(program: str, message: object) -> None:
 
 @contextlib.contextmanager
 def one_line_warnings(program: str) -> Iterator[None]:
-    """Print each warning as "PROGRAM: warning: ...", without its place in the sources."""
+    """Print each warning as "PROGRAM: warning: ...", without its file and line."""
 
     def show(message: Warning | str, category: type[Warning], *place: Any, **written: Any) -> None:
         print_to_stderr(program, f"warning: {message}")
@@ -110,8 +110,8 @@ def one_line_warnings(program: str) -> Iterator[None]:
 
 @contextlib.contextmanager
 def interruptible() -> Iterator[None]:
-    """Let Ctrl-C raise KeyboardInterrupt in here, for work that leaves something whole; before and after, `eel_command`
-    lets it end a command at once."""
+    """Inside, Ctrl-C raises KeyboardInterrupt, so that the work can complete its output. Outside, `eel_command` lets
+    Ctrl-C end a command at once."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         yield

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel completion`: print what lets bash or zsh complete commands and options.
+"""`eel completion`: print the shell code that completes commands and options in bash or zsh.
 
 bash: eval "$(eel completion bash)"     zsh: eval "$(eel completion zsh)"
 """
@@ -17,7 +17,7 @@ def _add_options(parser: Parser) -> None:
 
 @command("eel completion", "Print a shell's completion of eel, for eval in its start file.", add_options=_add_options)
 def main(options: argparse.Namespace) -> None:
-    """Without argcomplete, the names of the commands are completed alone."""
+    """Print it. Without argcomplete, only the names of the commands are completed."""
     try:
         from argcomplete import shellcode
     except ImportError:

@@ -1,30 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tells on stderr how far a work has come that takes more than 2 s."""
+"""Shows on stderr the progress of a task that takes more than 2 s."""
 
 import sys
 import time
 from collections.abc import Callable
 
 WIDTH = 30  # characters of the bar
-QUIET = 2.0  # s before the first word
-REDRAWN = 0.1  # s between two drawings of the bar, at least
-RARE = 60.0  # s between two lines, at most
-WINDOW, SPACING = 6.0, 1.0  # s of wall time whose rate counts, and between two instants of it, at least
-AGREED = 1.5  # times the rate in one half of the window by that in the other, at most
+QUIET = 2.0  # s before the first report
+REDRAWN = 0.1  # s: least time between two drawings of the bar
+RARE = 60.0  # s: longest time between two lines
+WINDOW, SPACING = 6.0, 1.0  # s of wall time: the window of the rate, and the least time between its marks
+AGREED = 1.5  # largest ratio of the rates in the two halves of the window
 
 
 class Forecast:
-    """The wall time that a work has left, by its rate in the last seconds. What was before its first word is set-up.
+    """The wall time left, from the rate of the last seconds. Time before the first report counts as set-up.
 
-    It is silent until the rates in the two halves of the last 6 s, or of the last three words if these are rarer, agree
-    within 1.5: a work at such a rate takes what is told to a factor of 2.
+    There is no forecast until the rates in the two halves of the last 6 s agree within a factor of 1.5. If reports are
+    rarer, the last three count. A forecast is then right to a factor of 2.
     """
 
     def __init__(self) -> None:
-        self._marks: list[tuple[float, float]] = []  # wall time [s], what was done
+        self._marks: list[tuple[float, float]] = []  # wall time [s], amount done
 
     def add(self, now: float, done: float) -> None:
-        """Take in what is `done` at the wall time `now` [s]. Where it is less than before the work has begun anew."""
+        """Add a mark: the amount `done` at the wall time `now` [s]. Less than before starts again."""
         if self._marks and done < self._marks[-1][1]:
             self._marks.clear()
         if not self._marks or now - self._marks[-1][0] >= SPACING:
@@ -33,7 +33,7 @@ class Forecast:
             del self._marks[0]
 
     def left(self, count: float) -> float | None:
-        """Wall time [s] from the last mark until `count` is done; None where it cannot be told."""
+        """Wall time [s] from the last mark until `count` is done; None without a forecast."""
         if len(self._marks) < 3 or self._marks[-1][0] - self._marks[0][0] < WINDOW:
             return None
         (start, begun), *between, (end, done) = self._marks
@@ -45,7 +45,7 @@ class Forecast:
 
 
 class Progress:
-    """A terminal shows a bar that is drawn anew. Anything else gets a line after 2, 4, 8 ... s, and every minute."""
+    """On a terminal, a bar. Elsewhere a line after 2, 4, 8 ... s, and then every minute."""
 
     def __init__(self, program: str, unit: str):
         self._program, self._unit = program, unit
@@ -56,7 +56,7 @@ class Progress:
         self._due = self._start + QUIET
 
     def __call__(self, done: float, count: float | None) -> None:
-        """Tell, if due: `done` of `count`, in the unit. count: None where the end is not known."""
+        """Report `done` of `count`, in the unit, if a report is due. count: None where the end is not known."""
         now = time.monotonic()
         self._forecast.add(now, done)
         last = self._drawn and count is not None and done >= count
@@ -77,7 +77,7 @@ class Progress:
             self._due = now + min(took, RARE)
 
     def say(self, text: str) -> None:
-        """Tell at once what is done now."""
+        """Report `text` at once."""
         sys.stderr.write(f"{self._program}: {text}\n")
         sys.stderr.flush()
 
@@ -85,7 +85,7 @@ class Progress:
 def progress_of(
     progress: Callable[..., object] | bool | None, unit: str = "points"
 ) -> Callable[[float, float], object]:
-    """The function progress(done, count) that the argument `progress` asks for.
+    """The function progress(done, count) for the argument `progress` of a public function.
 
     progress: a function; True: `Progress`; False: nothing; None: `Progress` where stderr is a terminal.
     """

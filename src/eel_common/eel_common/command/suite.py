@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `eel`: lists the commands of all packages that are installed, and runs one.
+"""The command `eel`: lists the commands of all installed packages, and runs one.
 
 A package declares its commands as entry points of one of the groups below:
 `simulate = eel_dynamics.commands.simulate`. The module has `main(arguments)`, which returns the exit status. The first
@@ -27,13 +27,13 @@ GROUPS = {  # of entry points: heading in the list
 
 
 def commands() -> dict[str, EntryPoint]:
-    """The commands that are installed, by name, in the order of `GROUPS`."""
+    """The installed commands by name, in the order of `GROUPS`."""
     found = entry_points()
     return {entry.name: entry for group in GROUPS for entry in found.select(group=group)}
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Exit status of the command; 0 for the list; 2 for a command that there is not."""
+    """Return the exit status of the command; 0 after the list; 2 for an unknown command."""
     words = sys.argv[1:] if arguments is None else arguments
     if COMPLETING in os.environ:
         words = _typed_before_the_cursor()
@@ -52,7 +52,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def summary_of(module: str) -> str:
-    """What the docstring of a command's `module` says after the colon of its first line, without importing it."""
+    """The text after the colon in the first line of the `module`'s docstring, read without importing it."""
     package, *parts = module.split(".")
     spec = find_spec(package)
     path = Path(spec.submodule_search_locations[0], *parts) if spec and spec.submodule_search_locations else Path()
@@ -77,7 +77,8 @@ def _parser(known: dict[str, EntryPoint]) -> Parser:
 
 
 def _typed_before_the_cursor() -> list[str]:
-    """The command that a line to be completed names; its own parser completes the rest. Empty while it is typed."""
+    """The command named in the line that the shell completes; empty while its name is being typed. The command's own
+    parser completes the rest."""
     words = os.environ["COMP_LINE"].split()
     if len(words) < 2 or (len(words) == 2 and not os.environ["COMP_LINE"][-1].isspace()):
         return []

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files that are read, with bounds, and files that are written, whole or not at all."""
+"""Input files, read within bounds. Output files, written completely or not at all."""

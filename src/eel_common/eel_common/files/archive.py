@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads the arrays of numbers in an .npz archive.
 
-NumPy's own reader gives the head of an array to Python's parser, and believes the shape that it finds there. Here the
-head must have the form that NumPy writes, and the shape must fit the size in the archive's directory. The archive's
-checksums are checked.
+NumPy's own reader evaluates an array's header with Python's parser, and trusts the shape in it. Here the header must
+have the form that NumPy writes, and the shape must fit the size in the archive's directory. The archive's checksums are
+checked.
 """
 
 import math
@@ -17,7 +17,7 @@ from eel_common.files.input_file import InputFile
 from eel_common.wording import shown
 
 MOST_ARRAYS = 1000
-MOST_NUMBERS = 5_000_000  # of a file: 40 MB
+MOST_NUMBERS = 5_000_000  # in one file: 40 MB
 SUFFIX = ".npy"
 END, PLACE = 22, slice(10, 12)  # bytes of a directory's end, and the place of the number of members in it
 LONGEST_HEAD = 1000  # bytes
@@ -26,7 +26,7 @@ NUMBERS = re.compile(r"[<>|=]([biuf])([1248])")
 
 
 def read_archive(path: str | os.PathLike[str]) -> dict[str, np.ndarray]:
-    """The arrays of an .npz archive as floats, of any shape. Call it within `reading`: `zipfile` raises much."""
+    """The arrays of an .npz archive as floats, of any shape. Call it within `reading`: `zipfile` raises many kinds."""
     with InputFile(path) as file, ZipFile(file) as archive:
         members = archive.infolist()
         if not members or len(members) > MOST_ARRAYS:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads numbers and names from HDF5 files by h5py, which takes nothing in them for a program.
+"""Reads numbers and names from HDF5 files with h5py, which executes nothing in them.
 
-A file of HDF5 may state any shape without its data, name other files, and hold chunks that inflate to much more than
-they should. So shapes, links and chunks are checked before numbers are read. Pickled parts of PyTables are texts here:
-`names_in` finds names in one without unpickling.
+An HDF5 file may state a shape without data, refer to other files, and hold chunks that inflate far beyond their size.
+So shapes, links and chunks are checked before any number is read. Pickled attributes of PyTables are read as text:
+`names_in` finds the names in one without unpickling.
 """
 
 import contextlib
@@ -24,13 +24,13 @@ MOST_NAMES, LONGEST_NAME = 10_000, 1_000
 MOST_CHUNKS, MOST_CHUNK_BYTES = 100_000, 64_000_000
 WIDEST = 8  # bytes of a number
 DEFLATE, SHUFFLE, CHECKSUM = 1, 2, 3  # filters that HDF5 itself has
-OPENED, ENDED = ("MARK",), ("LIST", "TUPLE")  # instructions of a pickle that holds names alone, as PyTables writes it
+OPENED, ENDED = ("MARK",), ("LIST", "TUPLE")  # instructions in a pickle that holds only names, as PyTables writes it
 NAMED, KEPT, AGAIN, ADDED = ("UNICODE", "BINUNICODE", "STRING"), ("PUT", "BINPUT"), ("GET", "BINGET"), ("APPEND",)
 
 
 @contextlib.contextmanager
 def opened_hdf5(path: str | os.PathLike[str], most: int | None = None) -> Iterator[Any]:
-    """The `h5py.File` at `path`, of at most so many bytes. `ValueError` without h5py. Call it within `reading`."""
+    """The `h5py.File` at `path`, of at most `most` bytes. `ValueError` without h5py. Call it within `reading`."""
     try:
         import h5py
     except ImportError:
@@ -46,7 +46,7 @@ def opened_hdf5(path: str | os.PathLike[str], most: int | None = None) -> Iterat
 
 
 def members(group: Any) -> dict[str, Any]:
-    """The groups and data sets that a group holds itself, by name. What links to elsewhere is left out."""
+    """The groups and data sets directly in a group, by name. External links are left out."""
     import h5py
 
     names = [name for name in group if isinstance(group.get(name, getlink=True), h5py.HardLink)]
@@ -54,7 +54,7 @@ def members(group: Any) -> dict[str, Any]:
 
 
 def numbers_of(data: Any, most: int = MOST_NUMBERS) -> np.ndarray:
-    """The numbers of a data set, also of named fields. `ValueError` for more than `most`, or for anything else."""
+    """The numbers of a data set, named fields too. `ValueError` for more than `most`, or for anything else."""
     kinds = [data.dtype[name].base for name in data.dtype.names] if data.dtype.names else [data.dtype.base]
     if any(kind.kind not in "biuf" or kind.itemsize > WIDEST for kind in kinds):
         raise ValueError(f"{shown(data.name)} must hold real numbers, got {shown(str(data.dtype))}")
@@ -63,7 +63,7 @@ def numbers_of(data: Any, most: int = MOST_NUMBERS) -> np.ndarray:
 
 
 def texts_of(data: Any) -> list[str]:
-    """The texts of a data set with one dimension. `ValueError` for anything else."""
+    """The texts of a one-dimensional data set. `ValueError` for anything else."""
     import h5py
 
     if data.ndim != 1 or (data.dtype.kind != "S" and h5py.check_string_dtype(data.dtype) is None):
@@ -75,7 +75,7 @@ def texts_of(data: Any) -> list[str]:
 
 
 def _check(data: Any, most: int) -> None:
-    """`ValueError` where a data set has more bytes than `most`, lies in other files, or has too large chunks."""
+    """`ValueError` for a data set of more than `most` bytes, in another file, or with chunks that are too large."""
     plan = data.id.get_create_plist()
     if data.is_virtual or plan.get_external_count():
         raise ValueError(f"{shown(data.name)} lies in another file")
@@ -95,24 +95,24 @@ def _check(data: Any, most: int) -> None:
 
 
 def _check_chunks(data: Any, size: int) -> None:
-    """`ValueError` where a chunk inflates to more than its `size` [bytes], and the bytes of a checksum."""
+    """`ValueError` where a chunk inflates to more than `size` [bytes] and its checksum."""
     places: list[tuple[int, ...]] = []
     data.id.chunk_iter(lambda chunk: places.append(chunk.chunk_offset))
     for place in places:
         _, content = data.id.read_direct_chunk(place)
-        with contextlib.suppress(zlib.error):  # not deflated, or damaged, which HDF5 tells
+        with contextlib.suppress(zlib.error):  # not deflated, or damaged: HDF5 reports it
             if len(zlib.decompressobj().decompress(content, size + 5)) > size + 4:
                 raise ValueError(f"{shown(data.name)} has a chunk that inflates to more than its {size} bytes")
 
 
 def attribute_text(holder: Any, name: str) -> bytes:
-    """The text of an attribute; empty where there is none, or it is no text."""
+    """The text of an attribute; empty where it is missing or no text."""
     value = holder.attrs.get(name, b"")
     return value.encode() if isinstance(value, str) else bytes(value) if isinstance(value, bytes) else b""
 
 
 def names_in(text: bytes) -> list[tuple[str, ...]]:
-    """The tuples of names in a pickled list of them. It is not unpickled: `ValueError` where it holds anything else."""
+    """The tuples of names in a pickled list, found without unpickling. `ValueError` if it holds anything else."""
     stack: list[Any] = []
     kept: dict[Any, Any] = {}
     mark = object()

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The entry for files that nobody vouches for. Every reader of the suite opens its file here.
+"""The entry for untrusted files. Every reader of the suite opens its file here.
 
-`reading` turns whatever a parser raises into one `ValueError`. `opened` gives a file of which a parser reads no more
-than there is. `from_json` reads a text of JSON. `archive`, `tables` and `yaml_tree` read other formats by them.
+`reading` turns every error of a parser into one `ValueError`. `opened` gives a file that stops a parser from reading
+past the end. `from_json` reads JSON. `archive`, `tables` and `yaml_tree` build on these.
 """
 
 import contextlib
@@ -15,13 +15,13 @@ from typing import Any
 from eel_common.quantity import checked_path
 from eel_common.wording import one_line
 
-MOST_READS = 10_000  # of one file: a parser takes 10 or so for each variable or member
-MOST_VALUES = 2_000_000  # of a text of JSON: each takes up to 90 bytes of memory
+MOST_READS = 10_000  # of one file: a parser needs about 10 for each variable or member
+MOST_VALUES = 2_000_000  # in a JSON text: each takes up to 90 bytes of memory
 HINTS = {MemoryError: "it needs more memory than there is", RecursionError: "it is nested too deeply"}
 
 
 class Misplaced(ValueError):
-    """What is wrong in a file, and the place in words, such as "line 3"."""
+    """An error in a file, with its place in words, such as "line 3"."""
 
     def __init__(self, place: str, text: str) -> None:
         super().__init__(f"{place}: {text}")
@@ -29,9 +29,9 @@ class Misplaced(ValueError):
 
 @contextlib.contextmanager
 def reading(what: str) -> Iterator[None]:
-    """Turn every error within into a `ValueError` of one line that begins with `what`: a file or value in words, or "".
+    """Turn every error within into a one-line `ValueError` that begins with `what`: a file or value in words, or "".
 
-    What makes an object of a file, a text or plain values stands within it.
+    Code that builds an object from a file, a text or plain values runs within it.
     """
     try:
         yield
@@ -49,8 +49,8 @@ def reading(what: str) -> Iterator[None]:
 class InputFile(io.BufferedReader):
     """The regular file at `path`, opened for reading. `ValueError` or `OSError` where there is none.
 
-    A read past the end, more than `MOST_READS` reads, or more than twice the file's content are a `ValueError`. So a
-    parser that believes a wrong length or number in the file allocates nothing and comes to its end.
+    A read past the end, more than `MOST_READS` reads, or more than twice the file's content raise `ValueError`. So a
+    parser that trusts a wrong length in the file allocates nothing, and stops.
     """
 
     def __init__(self, path: str | os.PathLike[str], most: int | None = None) -> None:
@@ -66,7 +66,7 @@ class InputFile(io.BufferedReader):
             raise ValueError(f"it must have at most {most} bytes, got {self.size}")
 
     def read(self, size: int | None = -1) -> bytes:
-        """The next `size` bytes, or all that are left."""
+        """The next `size` bytes; all the rest without a size."""
         rest = self.size - self.tell()
         size = rest if size is None or size < 0 else size
         if size > rest:
@@ -78,7 +78,7 @@ class InputFile(io.BufferedReader):
 
 
 def from_json(text: str | bytes, **options: Any) -> Any:
-    """The value of a JSON `text`. `ValueError` for more than `MOST_VALUES` values; `RecursionError` for many levels."""
+    """The value of a JSON `text`. `ValueError` beyond `MOST_VALUES` values; `RecursionError` if nested too deeply."""
     counts = map(text.count, ",[{") if isinstance(text, str) else map(text.count, b",[{")
     if (count := sum(counts)) > MOST_VALUES:
         raise ValueError(f"its text must hold at most {MOST_VALUES} values, got {count}")
@@ -86,7 +86,7 @@ def from_json(text: str | bytes, **options: Any) -> Any:
 
 
 def number_of(text: str) -> float:
-    """The number in a `text`. `ValueError` where there is none: 1_0 is none, though Python takes it."""
+    """The number in a `text`. `ValueError` if it is none; 1_0 is none, though Python accepts it."""
     if "_" in text:
         raise ValueError(f"it must be a number, got {text!r}")
     return float(text)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Output files: an output has its name only when it is complete.
 
-An output is written beside its name: `run.npz` as `run.part.npz`. It takes its name when it is complete. Until then an
-older file stays as it was, whatever happens: a full disk, an error, a kill. Only a file that was there at the start is
-replaced. Where another one has appeared since, the output gets a number: `run-2.npz`.
+An output is written under a temporary name: `run.npz` as `run.part.npz`. It gets its own name when it is complete.
+Until then an older file stays unchanged, even after a full disk, an error or a kill. Only a file that existed at the
+start is replaced. If another one has appeared since, the output gets a number: `run-2.npz`.
 """
 
 import contextlib
@@ -24,7 +24,7 @@ KINDS = {stat.S_IFLNK: "a symbolic link", stat.S_IFDIR: "a folder", stat.S_IFIFO
 
 _starts: list[int] = []  # ns: when the present command began
 _own: dict[Path, tuple[int, ...] | None] = {}  # files that this process has written
-_written_as: dict[Path, Path] = {}  # output: the path that it has got
+_written_as: dict[Path, Path] = {}  # output: the path it was given
 
 
 class NotWritten(OSError):
@@ -34,8 +34,8 @@ class NotWritten(OSError):
 class Draft:
     """A new file at `path`, to be written. `complete` gives it its `name`; `discard` removes it.
 
-    since: the start [ns, of `time.time_ns`], where the command has not begun before (`command_begins`); None: now.
-    `OSError` where `name` cannot be written, or held something other than an older output at the start.
+    since: the start [ns, of `time.time_ns`], unless `command_begins` was earlier; None: now.
+    `OSError` where `name` cannot be written, or was something other than an older output at the start.
     """
 
     def __init__(self, name: str | os.PathLike[str], since: int | None = None) -> None:
@@ -50,12 +50,12 @@ class Draft:
 
     @property
     def replaces(self) -> bool:
-        """Whether there is an older file, whose name the draft will get."""
+        """Whether an older file exists, whose name the draft will get."""
         return self._older is not None and _identity(self.name) == self._older
 
     def complete(self) -> Path:
-        """Give the file its name, in place of the older one, or one with a number; returns it. `OSError` where that
-        fails; the draft then stays."""
+        """Give the file its name, or one with a number, and return the path. It replaces the older file. `OSError` if
+        that fails; the draft then stays."""
         with self.path.open("rb") as file:
             os.fsync(file.fileno())
         name = self.name
@@ -74,7 +74,7 @@ class Draft:
         self.path.unlink(missing_ok=True)
 
     def _made(self) -> Path:
-        """The path of a new file. Another process, or a killed one, may have left a draft of the same name."""
+        """Create a new file and return its path. Another process, or a killed one, may hold the same draft name."""
         for mark in itertools.chain(["part"], map("part-{}".format, itertools.count(2))):
             with contextlib.suppress(FileExistsError):
                 (path := part_of(self.name, mark)).open("xb").close()
@@ -83,13 +83,13 @@ class Draft:
 
 
 def part_of(name: Path, mark: str = "part") -> Path:
-    """The path of the output `name` until it is complete."""
+    """The path of the output `name` while it is incomplete."""
     return beside(name, f".{mark}")
 
 
 @contextlib.contextmanager
 def command_begins() -> Iterator[None]:
-    """What appears from now on, until the context ends, has appeared since the start."""
+    """Mark the start of a command: files that appear until the context ends count as new."""
     _starts.append(time.time_ns())
     try:
         yield
@@ -103,19 +103,19 @@ def numbered(name: Path, number: int) -> Path:
 
 
 def beside(name: Path, mark: str, end: str = "") -> Path:
-    """The path beside the output `name` of its stem, cut where it must be, the `mark`, its suffix and the `end`."""
+    """The path beside the output `name`: its stem, shortened if needed, the `mark`, its suffix and the `end`."""
     left = LONGEST_NAME - len(os.fsencode(mark + name.suffix + end))
     return name.with_name(os.fsdecode(os.fsencode(name.stem)[:left]) + mark + name.suffix + end)
 
 
 def written_as(name: str | os.PathLike[str]) -> Path:
-    """The path that the last output `name` of this process has got: `name`, or one with a number."""
+    """The path that the last output `name` of this process was given: `name`, or one with a number."""
     return _written_as.get(Path(name).absolute(), Path(name))
 
 
 def check_output(argument: str, name: str | os.PathLike[str]) -> None:
-    """`ValueError` that names the `argument` where the output `name` cannot be written. An older file of its kind is no
-    obstacle."""
+    """`ValueError` that names the `argument` if the output `name` cannot be written. An older file of its kind may
+    exist."""
     try:
         Draft(name).discard()
     except OSError as error:
@@ -125,9 +125,9 @@ def check_output(argument: str, name: str | os.PathLike[str]) -> None:
 
 @contextlib.contextmanager
 def replacing(name: str | os.PathLike[str], since: int | None = None) -> Iterator[Path]:
-    """The path to which to write the output `name`. It is complete when the context ends without an error.
+    """The path at which to write the output `name`. It is complete when the context ends without an error.
 
-    since: as in `Draft`. A warning says where it has got a number. `NotWritten` where an `OSError` occurs within.
+    since: as in `Draft`. Warns if the output is given a number. `NotWritten` for an `OSError` within.
     """
     with contextlib.ExitStack() as undo:
         try:
@@ -143,12 +143,12 @@ def replacing(name: str | os.PathLike[str], since: int | None = None) -> Iterato
 
 
 def appeared(name: Path, path: Path) -> str:
-    """The line that says why the output `name` is at `path`."""
+    """The line that explains why the output `name` is at `path`."""
     return f"{shown(str(name))} has appeared since the start, and stays: the output is {shown(str(path))}"
 
 
 def _renamed(path: Path, name: Path) -> bool:
-    """Give the file at `path` a new `name`; whether that was free."""
+    """Give the file at `path` a new `name`. Returns whether that name was free."""
     try:
         os.link(path, name)
     except FileExistsError:
@@ -163,7 +163,7 @@ def _renamed(path: Path, name: Path) -> bool:
 
 
 def _identity(path: Path, since: int | None = None) -> tuple[int, ...] | None:
-    """What tells the file at `path` from any other; None if there is none, or if it has appeared since a time [ns]."""
+    """An identity of the file at `path`; None if it does not exist, or has appeared after `since` [ns]."""
     try:
         found = path.lstat()
     except FileNotFoundError:
@@ -174,7 +174,7 @@ def _identity(path: Path, since: int | None = None) -> tuple[int, ...] | None:
 
 
 def _other_content(path: Path) -> str:
-    """What `path` holds, in words. Empty for nothing, an empty file, or a file that begins as its kind does."""
+    """What `path` holds, in words. Empty for nothing, an empty file, or a file of the kind its suffix names."""
     try:
         mode = path.lstat().st_mode
     except FileNotFoundError:

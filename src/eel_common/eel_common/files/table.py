@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A table that was read: numbers by the names of columns, in SI. Errors name line and column.
+"""A table read from a file: numbers by column name, in SI units. Errors name line and column.
 
 A name may end in its unit: time_ms, "t [ms]", x(mm), yawDeg, "Zeit / s".
 """
@@ -36,11 +36,11 @@ LISTED = {
 UNITS = {word: (si, by) for si, words in LISTED.items() for by, each in words.items() for word in each.split()}
 NAME = re.compile(rf"(.*?)(?:^|[_./])({'|'.join(map(re.escape, sorted(UNITS, key=len, reverse=True)))})")
 BRACKETS = re.compile(r"[\[(]\s*([^\[\]()]*?)\s*[\])]")
-INDEX = re.compile(r"\w*\d")  # in brackets: no unit, but a number or the name of a joint
+INDEX = re.compile(r"\w*\d")  # in brackets: the number or name of a joint, not a unit
 
 
 def split_name(name: str) -> tuple[str, str]:
-    """A column's name in small letters, without its unit; and that unit, or ""."""
+    """A column's name in lower case without its unit, and that unit, or ""."""
     name = name.strip().lstrip("%").replace("μ", "u").replace("µ", "u")
     known = next((each for each in BRACKETS.finditer(name) if each[1].lower() in UNITS), None)
     name = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", f"{name[: known.start()]} {name[known.end() :]}" if known else name)
@@ -52,12 +52,12 @@ def split_name(name: str) -> tuple[str, str]:
 
 
 class Table:
-    """Columns of equal length, named by `head` (columns,), and for each row its place in the file.
+    """Columns of equal length, named by `head` (columns,), and the place of each row in the file.
 
-    values (rows, columns): NaN where a cell is no number. marks (rows, columns): 0 for a number, else a number from 1
-    of the cell's text among `words`. lines (rows,): in the file; None: the rows count from 1. heads: all rows of the
-    header. notes: what was guessed, in words. lost: lines of rows that were left out. what: begins an error, before the
-    file's name.
+    values (rows, columns): NaN where a cell is no number. marks (rows, columns): 0 for a number, else 1 + the index of
+    the cell's text in `words`. lines (rows,): line in the file; None: rows count from 1. heads: all rows of the header.
+    notes: guesses made while reading, in words. lost: lines of rows that were left out. what: begins an error, before
+    the file's name.
     """
 
     def __init__(
@@ -88,28 +88,28 @@ class Table:
         return bool(self.places(name))
 
     def error(self, text: str, first: int | None = None, last: int | None = None) -> ValueError:
-        """An error about rows `first` to `last` (indices): with the file, their lines and a `text`."""
+        """An error about rows `first` to `last` (indices). It names the file and their lines before `text`."""
         place = "" if first is None else f", {self.word} {self.lines[first]}"
         if first is not None and last is not None and last != first:
             place = f", {self.word}s {self.lines[first]} to {self.lines[last]}"
         return ValueError(f"{self._what}{shown(str(self.path))}{place}: {text}")
 
     def tell(self) -> None:
-        """Warn of what was guessed, where anything was."""
+        """Warn of the guesses, if any."""
         if self.notes:
             warnings.warn(f"{self._what}{shown(str(self.path))} is read with {', '.join(self.notes)}", stacklevel=3)
 
     # -- columns
 
     def places(self, name: str) -> list[int]:
-        """Indices of the columns of this `name`: as it stands, or else without its unit and in any case."""
+        """Indices of the columns of this `name`: an exact match, or else one without unit and case."""
         exact = [place for place, each in enumerate(self.head) if each == name]
         return exact or [place for place, each in enumerate(self.head) if split_name(each)[0] == name.lower()]
 
     def chosen(self, text: str, what: str) -> list[int]:
-        """Indices of the columns that a `text` names: numbers from 1 ("8-13,15"), names, or patterns ("*Fbck*").
+        """Indices of the columns named by a `text`: numbers from 1 ("8-13,15"), names, or patterns ("*Fbck*").
 
-        `ValueError` says `what` must name columns where it names none, or one twice.
+        `ValueError` if it names none, or one twice. what: begins the error.
         """
         found: list[int] = []
         for part in map(str.strip, text.split(",")):
@@ -133,7 +133,7 @@ class Table:
         return f"column {self.head[place]}" if self.head[place].isdigit() else self.head[place] or f"column {place + 1}"
 
     def unit(self, place: int) -> str:
-        """The unit in the name of a column, or "". `ValueError` where there are others in brackets."""
+        """The unit in a column's name, or "". `ValueError` for an unknown one in brackets."""
         unit, name = split_name(self.head[place])[1], self.head[place]
         others = [each for each in BRACKETS.findall(name) if each and not INDEX.fullmatch(each)]
         if others and (not unit or not any(unit in split_name(f"[{each}]") for each in others)):
@@ -143,9 +143,9 @@ class Table:
     def numbers(
         self, columns: Sequence[int], unit: str = "", *, missing: bool = True, largest: float = LARGEST
     ) -> np.ndarray:
-        """The numbers (rows, columns) in this SI `unit`; "": as in the file. missing: NaN for a cell without a value.
+        """The numbers (rows, columns) in this SI `unit`; "": as in the file. missing: NaN for an empty cell.
 
-        `ValueError` names the first cell that is no number, is not finite (unless `missing`), or is beyond `largest`.
+        `ValueError` names the first cell that is no number, is not finite (unless `missing`), or exceeds `largest`.
         """
         factors = [self.factor(place, unit) for place in columns]
         found, marks = self._values[:, list(columns)] * factors, self._marks[:, list(columns)]
@@ -161,7 +161,7 @@ class Table:
         return found
 
     def column(self, name: str, unit: str = "", largest: float = LARGEST) -> np.ndarray:
-        """The numbers (rows,) of the one column of this `name`, in this SI `unit`. Errors as those of `numbers`."""
+        """The numbers (rows,) of the one column of this `name`, in this SI `unit`. Errors as in `numbers`."""
         if len(places := self.places(name)) != 1:
             raise self.error(f"there must be one column {name}, got {len(places)} in {shown(self.head)}")
         return np.asarray(self.numbers(places, unit, missing=False, largest=largest)[:, 0])
@@ -185,7 +185,7 @@ class Table:
         return bool(2 * np.sum(np.isfinite(self._values[:, place])) > np.sum(self.filled(place)))
 
     def check_units(self, columns: Sequence[int]) -> None:
-        """`ValueError` where some of the `columns` have a unit in their names, and others none."""
+        """`ValueError` if some of the `columns` have a unit in their names and others have none."""
         bare = [place for place in columns if not self.unit(place)]
         if 0 < len(bare) < len(columns):
             other = next(place for place in columns if place not in bare)
@@ -193,7 +193,7 @@ class Table:
             raise self.error(f"{self.label(bare[0])} {rule}")
 
     def factor(self, place: int, unit: str) -> float:
-        """What a column's numbers must be multiplied by to be in this SI `unit`; 1 where its name has none."""
+        """The factor from a column's unit to this SI `unit`; 1 if its name has no unit."""
         if not unit or not (given := self.unit(place)):
             return 1.0
         dimension, factor = UNITS[given]

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads a table of text, or the columns of an .npz archive. Errors name file and line.
 
-What separates the cells (commas, semicolons, tabs, bars or blanks), whether numbers have decimal commas, the encoding
-and the header are told from the first lines. A header is the last row of names above the numbers; a row of units may
-stand below it, other lines above. Rows that begin with # count not, but for a spreadsheet's errors: #REF!. Numbers that
-may mean two things are refused.
+The separator (commas, semicolons, tabs, bars or blanks), decimal commas, the encoding and the header are recognised
+from the first lines. The header is the last row of names above the numbers. A row of units may stand below it, other
+lines above. Rows that begin with # are comments, except spreadsheet errors: #REF!. Ambiguous numbers are refused.
 """
 
 import array
@@ -27,25 +26,25 @@ from eel_common.wording import shown
 
 SUFFIXES = ".csv", ".tsv", ".txt", ".dat"  # of tables of text, in any case
 MOST_BYTES, MOST_LINES, LONGEST_LINE, MOST_COLUMNS = 200_000_000, 5_000_000, 1_000_000, 10_000
-FIRST_LINES, FIRST_CHARACTERS = 200, 1_000_000  # that tell the form
+FIRST_LINES, FIRST_CHARACTERS = 200, 1_000_000  # from which the form is recognised
 DELIMITERS = {";": "semicolons", "\t": "tabs", ",": "commas", "|": "bars", " ": "blanks"}
 TRACKER = "scorer", "individuals", "bodyparts", "coords"  # rows of DeepLabCut's header, whose names may be numbers
 WITH_COMMA, WITH_POINT = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?"), re.compile(r"[+-]?\d*\.\d+(?:[eE][+-]?\d+)?")
 THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 SPREADSHEETS = re.compile(r"#(?:n/a|[a-z]+[/0-9]*[!?])", re.IGNORECASE)  # errors in the cells of their tables
 SWAPPED = str.maketrans(",.", ".,")
-Row = tuple[list[str], int, int]  # cells up to the last that is not empty; its line; how many cells there are
+Row = tuple[list[str], int, int]  # cells up to the last non-empty one; the row's line; its number of cells
 
 
 def is_table(path: str | os.PathLike[str], *others: str) -> bool:
-    """Whether a file's name ends as a table of text does, or in one of the `others`."""
+    """Whether a file's suffix is that of a text table, or one of the `others`."""
     return Path(path).suffix.lower() in (*SUFFIXES, *others)
 
 
 def read_table(path: str | os.PathLike[str], what: str = "", *, lenient: bool = False) -> Table:
-    """The table in a file. `ValueError` in one line, with the line, for what cannot be read.
+    """The table in a file. `ValueError` in one line, with the line number, if it cannot be read.
 
-    what: begins an error, before the file's name, such as "body file ". lenient: leave out rows of another length.
+    what: begins an error, before the file's name, such as "body file ". lenient: leave out rows of a different length.
     """
     path = Path(path)
     with reading(f"{what}{shown(str(path))}"):
@@ -57,7 +56,7 @@ def read_table(path: str | os.PathLike[str], what: str = "", *, lenient: bool = 
 
 
 def _flat(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Arrays as columns. Where some are (N, n), `time` (N,) counts for n rows each, and an (n,) for each instant."""
+    """Arrays as columns. Beside (N, n), `time` (N,) is repeated n times a row, and an (n,) for each row."""
     shape = next((each.shape for each in arrays.values() if each.ndim == 2), None)
     if shape is not None and len(arrays) * shape[0] * shape[1] > MOST_NUMBERS:
         raise ValueError(f"a table must hold at most {MOST_NUMBERS} numbers, got {len(arrays)} columns of {shape}")
@@ -142,7 +141,7 @@ def _encoding(file: InputFile) -> str:
 
 
 def _lines(text: io.TextIOBase) -> Iterator[str]:
-    """The lines of an open `text`, as many and as long as a table may have."""
+    """The lines of an open `text`. Their number and length are bounded."""
     for _ in range(MOST_LINES):
         line = text.readline(LONGEST_LINE)
         if not line:
@@ -154,7 +153,7 @@ def _lines(text: io.TextIOBase) -> Iterator[str]:
 
 
 def _split(lines: Iterable[str], delimiter: str, strict: bool = True) -> Iterator[Row]:
-    """The rows that are not empty. `Misplaced` for quotes that are not as they should be, if `strict`."""
+    """The non-empty rows. `Misplaced` for wrong quotes, if `strict`."""
     if delimiter == " ":
         lines = (" ".join(re.sub(r"^\s*([#%])\s+", r"\1", line).split()) + "\n" for line in lines)
     rows = csv.reader(lines, delimiter=delimiter, skipinitialspace=True, strict=strict)
@@ -171,7 +170,7 @@ def _split(lines: Iterable[str], delimiter: str, strict: bool = True) -> Iterato
 
 
 def _form(first: list[str]) -> tuple[str, bool]:
-    """What separates the cells: that which gives most numbers; and whether these have decimal commas."""
+    """The separator that yields most numbers, and whether these have decimal commas."""
     score, found = dict[str, tuple[float, float]](), dict[str, list[str]]()
     for delimiter in DELIMITERS:
         rows = list(_split(first, delimiter, strict=False))
@@ -189,7 +188,7 @@ def _form(first: list[str]) -> tuple[str, bool]:
 
 
 def _part_of_numbers(cells: Iterable[str]) -> float:
-    """The part of the cells that are numbers, of those that are not empty."""
+    """The fraction of the non-empty cells that are numbers."""
     filled = [cell for cell in cells if cell.lower() not in MISSING]
     return sum(map(_is_number, filled)) / max(1, len(filled))
 
@@ -200,22 +199,22 @@ def _is_number(cell: str) -> bool:
 
 
 def _counted(cells: Iterable[str]) -> bool:
-    """Whether the numbers among the cells are names that count, such as 1, 2, 3."""
+    """Whether the numbers among the cells are names in sequence, such as 1, 2, 3."""
     numbers = [cell for cell in cells if _is_number(cell)]
     whole = len(numbers) > 1 and all(len(cell) < 6 and cell.isdecimal() for cell in numbers)
     return whole and len(set(numbers)) == len(numbers) == int(max(numbers, key=int)) - int(min(numbers, key=int)) + 1
 
 
 def _usual(sizes: Iterable[int]) -> int:
-    """The most frequent of the sizes, the first of several; 0 without any."""
+    """The most frequent size, the first of equals; 0 without any."""
     return max(Counter(sizes).items(), key=lambda each: each[1], default=(0, 0))[0]
 
 
 def _head(first: list[Row]) -> tuple[list[str], list[list[str]], int, list[str]]:
-    """The names of the columns, all rows of the header, the line after it, and what was guessed.
+    """The names of the columns, all rows of the header, the line after it, and the guesses made.
 
-    A row of the header has names where the columns have numbers; the first may have a few
-    numbers too, or such as count.
+    A header row has names where the columns have numbers. The first header row may also have a few numbers, or numbers
+    in sequence.
     """
     if not first:
         raise ValueError("it is empty")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The times of a table's rows, as people write them.
+"""The times of a table's rows, in the forms that occur in practice.
 
-Time is a number in the unit of its column's name; or since 1970 in s, ms, us or ns, as its size tells; a stamp of
-ISO 8601; a time of day; or two columns, whole seconds and their parts.
+Times are numbers in the unit of the column's name; numbers since 1970 in s, ms, us or ns, told by their size; ISO 8601
+stamps; times of day; or two columns, whole seconds and fractions.
 """
 
 import math
@@ -15,26 +15,25 @@ import numpy as np
 from eel_common.files.table import UNITS, Table, split_name
 from eel_common.wording import shown
 
-WORD = (  # of a name of a time, between separators
+WORD = (  # a word in the name of a time, between separators
     r"(?:date|wall|sys|ros|sim|run)?time(?:stamp|code)?|date|stamp|clock|elapsed"
     r"|(?:mess|uhr)?zeit(?:stempel|punkt)?|temps|tiempo"
 )
 CALLED = re.compile(rf"(?:.*[^a-z])?(?:{WORD})(?:[^a-z].*)?|(?:.*[_./])?(?:t|ts)")
-PLAINLY = "time", "t", "stamp", "timestamp"  # names that count before others
-NOT_ALONE = "min", "ns", "h"  # units of time that mean other things without a name
+PLAINLY = "time", "t", "stamp", "timestamp"  # preferred names
+NOT_ALONE = "min", "ns", "h"  # units of time that are ambiguous as a column's whole name
 EPOCH = 9.5e8, 4.1e9  # s since 1970: the years 2000 to 2099
 PARTS = {1.0: "s", 1e-3: "ms", 1e-6: "us", 1e-9: "ns"}  # units of times since 1970
 DAY = 86400.0  # s
-RISING, MOVING = 0.95, 0.5  # parts of a column's steps that do not fall, and that rise, if it is a time
+RISING, MOVING = 0.95, 0.5  # of a time's steps, the fractions that do not fall, and that rise
 
 
 def time_of(table: Table, column: str = "", besides: Sequence[int] = (), *, missing: bool = False) -> np.ndarray:
-    """The times (rows,) [s] of a `table`, from the first on where they are dates. What is not plain from the column's
-    name goes into the table's notes.
+    """The times (rows,) [s] of a `table`, counted from the first where they are dates. Guesses go into its notes.
 
-    column: its name or number; "": the one that is called time, or the first that is called so and is not always the
-    same, or the only one that rises and is none of those `besides`. missing: NaN for a cell that is no time, in place
-    of a `ValueError`.
+    column: its name or number. "": a column called time, or the first such one that varies, or the only rising column
+    that is not among `besides`.
+    missing: NaN for a cell that is no time, instead of a `ValueError`.
     """
     place = _place_of_time(table, column, besides)
     values, factor, told = _stamps(table, place) if not table.has_numbers(place) else _numbers(table, place)
@@ -70,7 +69,7 @@ def _place_of_time(table: Table, column: str, besides: Sequence[int]) -> int:
 
 
 def is_time(name: str) -> bool:
-    """Whether a column's name is one of a time."""
+    """Whether a column's name is that of a time."""
     base, unit = split_name(name)
     return CALLED.fullmatch(base) is not None or (not base and unit not in ("", *NOT_ALONE) and UNITS[unit][0] == "s")
 
@@ -98,14 +97,14 @@ def _of_epoch(values: np.ndarray) -> float | None:
 
 
 def _rises(values: np.ndarray) -> bool:
-    """Whether nearly all steps of the `values` are upward, and they are no count."""
+    """Whether nearly all steps of the `values` rise, and the values are not a row count."""
     steps = np.diff(values)
     count = np.median(steps) == 1.0 if len(steps) else True
     return not count and bool(np.mean(steps >= 0.0) > RISING and np.mean(steps > 0.0) > MOVING)
 
 
 def _numbers(table: Table, place: int) -> tuple[np.ndarray, float, str]:
-    """The times of a column of numbers, their unit [s], and what they are."""
+    """The times in a column of numbers, their unit [s], and their kind in words."""
     values, unit = table.raw(place), table.unit(place)
     size = float(np.nanmedian(np.abs(values)))
     dimension, factor = UNITS.get(unit, ("s", _of_epoch(values) or 1.0))
@@ -118,14 +117,14 @@ def _numbers(table: Table, place: int) -> tuple[np.ndarray, float, str]:
 
 
 def _stamps(table: Table, place: int) -> tuple[np.ndarray, float, str]:
-    """The times of a column of texts, their unit [s], and what they are."""
+    """The times in a column of texts, their unit [s], and their kind in words."""
     values = np.array([_seconds(text) for text in table.texts(place)])
     nights = np.cumsum(np.diff(values, prepend=values[:1]) < -0.5 * DAY) if np.nanmax(values, initial=0.0) < DAY else 0
     return values + DAY * nights, 1.0, "stamps"
 
 
 def _seconds(text: str) -> float:
-    """A stamp of ISO 8601, or 28.11.2026, in s since 1970, in UTC where it does not say, or a time of day; or NaN."""
+    """A text in s: ISO 8601 or 28.11.2026, since 1970, in UTC by default; or a time of day. NaN for anything else."""
     plain = re.sub(r"^(\d\d)\.(\d\d)\.(\d{4})", r"\3-\2-\1", text).replace(",", ".").replace("/", "-")
     if re.match(r"\d{1,2}:", plain):
         plain = f"1970-01-01T{plain if plain[2] == ':' else f'0{plain}'}"
@@ -137,7 +136,7 @@ def _seconds(text: str) -> float:
 
 
 def _part_of(table: Table, place: int, values: np.ndarray) -> tuple[int, np.ndarray] | None:
-    """The column of the parts of whole seconds, of the same name and another unit, and what it holds [s]."""
+    """The column with the fractions of whole seconds, of the same name and another unit, and its values [s]."""
     if np.any(values[np.isfinite(values)] % 1.0):
         return None
     base, _ = split_name(table.head[place])

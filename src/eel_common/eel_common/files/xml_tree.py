@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads an XML file into elements that know their lines. Size, levels and elements are bounded.
 
-A document type is refused, and with it all entities of its own.
+A document type, and with it every entity definition, is refused.
 """
 
 import os
@@ -31,7 +31,7 @@ class Element:
 
 
 def read_xml(path: str | os.PathLike[str]) -> Element:
-    """The root of an XML file. `Misplaced` for what XML, or the bounds, do not allow; else `ValueError`, `OSError`."""
+    """The root of an XML file. `Misplaced` for invalid XML, or beyond the bounds; otherwise `ValueError`, `OSError`."""
     with InputFile(path, MOST_BYTES) as file:
         return from_xml(file.read())
 

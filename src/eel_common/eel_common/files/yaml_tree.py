@@ -14,7 +14,7 @@ from eel_common.wording import did_you_mean, shown
 Made = TypeVar("Made")
 
 MOST_BYTES, MOST_NODES, DEEPEST = 500_000, 20_000, 32
-LONGEST_SCALAR = 1000  # characters of what is no text: a number, a date
+LONGEST_SCALAR = 1000  # characters of a number or a date
 
 
 class Entries(dict[str, Any]):
@@ -29,7 +29,7 @@ class Entries(dict[str, Any]):
 def read_yaml(path: str | os.PathLike[str]) -> Any:
     """The document in a YAML file: `Entries`, a list, a scalar, or None.
 
-    `Misplaced` for what YAML, or the bounds, do not allow; else `ValueError`, `OSError`.
+    `Misplaced` for invalid YAML, or beyond the bounds; otherwise `ValueError`, `OSError`.
     """
     with InputFile(path, MOST_BYTES) as file:
         return from_yaml(file.read().decode("utf-8"))
@@ -48,7 +48,7 @@ def from_yaml(text: str, most: int = MOST_NODES) -> Any:
 
 
 class _Loader(yaml.SafeLoader):
-    """PyYAML's safe loader, with bounds on the levels and on the nodes, each as often as it is named."""
+    """PyYAML's safe loader, with bounds on levels and nodes. A node counts each time an alias names it."""
 
     def __init__(self, text: str, most: int) -> None:
         super().__init__(text)
@@ -63,7 +63,7 @@ class _Loader(yaml.SafeLoader):
         return node
 
     def value(self, node: Any, depth: int) -> Any:
-        """What a node stands for. An alias counts as all that it names."""
+        """The value of a node. An alias counts as all the nodes it names."""
         self._values += 1
         self._check(depth, self._values, node.start_mark)
         if isinstance(node, yaml.SequenceNode):
@@ -88,11 +88,11 @@ class _Loader(yaml.SafeLoader):
             value = self.construct_object(node)
         except yaml.YAMLError:
             raise
-        except Exception as error:  # of a tag that does not go with the value
+        except Exception as error:  # the tag does not fit the value
             rule = f"{shown(node.value)} is no {node.tag.rpartition(':')[2]}: {error}"
             raise Misplaced(f"line {line}", rule) from None
         if isinstance(value, str) and node.style is None and is_number(value):
-            return float(value)  # such as 1e-3, which YAML 1.1 calls a text
+            return float(value)  # such as 1e-3, a text in YAML 1.1
         return value
 
     def _check(self, depth: int, nodes: int, mark: Any) -> None:
@@ -101,7 +101,7 @@ class _Loader(yaml.SafeLoader):
             raise Misplaced(f"line {mark.line + 1}", rule)
 
 
-# -- errors of what is made of a document; a mapping that is no file's has no lines
+# -- errors in objects built from a document; only a file's mapping has lines
 
 
 def fail(entries: Mapping[str, Any], key: str, reason: object) -> NoReturn:
@@ -120,7 +120,7 @@ def check_keys(entries: Mapping[str, Any], known: Iterable[str]) -> None:
 
 
 def tried(entries: Mapping[str, Any], key: str, make: Callable[..., Made], *arguments: Any, **options: Any) -> Made:
-    """What `make` makes of the arguments; its error is one at the `key`, or at the first that its text names."""
+    """Call `make` on the arguments. Its error is reported at the `key`, or at the first key that its text names."""
     try:
         with reading(""):
             return make(*arguments, **options)

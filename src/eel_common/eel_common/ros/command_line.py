@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command line of a node: --help lists its parameters; other arguments than ROS arguments are refused."""
+"""The command line of a node: --help lists its parameters; non-ROS arguments are refused."""
 
 import re
 import sys
@@ -24,10 +24,10 @@ def handle_arguments(
     parameters: Iterable[tuple[str, str, Any]],
     words: list[str],
 ) -> int | None:
-    """Handle the arguments in `words` (the program first) that are not ROS arguments; returns the exit status.
+    """Handle the non-ROS arguments in `words` (the program first). Returns the exit status, or None to start the node.
 
-    0 after -h or --help, which print `about` and the `parameters` (name, description, default); 2 for any other
-    argument, or bad ROS arguments, after a line that says so; None if the node is to start.
+    0 after -h or --help, which print `about` and the `parameters` (name, description, default). 2 for any other
+    argument, or bad ROS arguments, after one line that explains it.
     """
     try:
         rest = remove_ros_args(words)[1:]
@@ -49,7 +49,7 @@ def handle_arguments(
 
 
 def refusal(error: RuntimeError) -> str:
-    """The text of rcl's `error` for ROS arguments that it does not understand, without positions in its C sources."""
+    """The text of rcl's `error` for bad ROS arguments, without positions in its C sources."""
     text = str(error)
     if isinstance(error, rclpy_implementation.UnknownROSArgsError):  # its text is a list of the words
         return f"unknown ROS arguments {text.strip('[]')} (parameters come as -p NAME:=VALUE)"

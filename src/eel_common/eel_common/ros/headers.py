@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Headers of messages: stamps as seconds of simulation time, and back; frame ids below a namespace; and what follows a
-header, read from the serialised message: the length of a sequence before it is deserialised, or its numbers.
+"""Headers of messages: stamps to seconds of simulation time and back, and frame ids below a namespace. `FieldReader`
+reads the length or the numbers of a sequence from the serialised message.
 """
 
 from struct import Struct, error, unpack_from
@@ -10,7 +10,7 @@ import numpy as np
 from builtin_interfaces.msg import Time
 
 END = 2**31 - 1  # s: the last second that a stamp holds
-LATEST = END - 60  # s: a minute before, so that what answers it has a stamp too
+LATEST = END - 60  # s: a minute earlier, so that an answer has a valid stamp too
 
 ENCODING, HEADER = 4, 12  # bytes: of the encoding, and with the stamp
 ORDERS = {b"\0\0": ">", b"\0\1": "<"}  # of the bytes of a number, by the encoding
@@ -25,7 +25,7 @@ class Stamp(NamedTuple):
 
 
 def seconds_of(stamp: Time | Stamp, name: str = "header.stamp") -> float:
-    """The time [s] of a stamp. `ValueError` for one that is not valid, or so late that no answer can follow it.
+    """The time [s] of a stamp. `ValueError` if it is invalid, or too late for an answer to have a stamp.
 
     name: of the field, for the error.
     """
@@ -37,7 +37,7 @@ def seconds_of(stamp: Time | Stamp, name: str = "header.stamp") -> float:
 
 
 def stamp_of(time: float) -> Time:
-    """The stamp of a `time` [s], to the nearest nanosecond. `ValueError` for one that no stamp holds."""
+    """The stamp of a `time` [s], to the nearest nanosecond. `ValueError` if it does not fit into a stamp."""
     if not 0.0 <= time < END:
         raise ValueError(f"time of a sample must be >= 0 s and < {END} s, got {time:.9g} s")
     seconds, nanoseconds = divmod(round(time * 1e9), 1_000_000_000)
@@ -45,15 +45,15 @@ def stamp_of(time: float) -> Time:
 
 
 def frame_in(namespace: str, frame: str) -> str:
-    """`frame` below the `namespace` of a node, such as eel1/odom; without a leading slash, which tf2 refuses.
+    """`frame` below the `namespace` of a node, such as eel1/odom, so that robots in two namespaces share no frame.
 
-    So two robots in two namespaces do not share a frame.
+    It has no leading slash, which tf2 refuses.
     """
     return f"{namespace}/{frame}".strip("/")
 
 
 class FieldReader:
-    """Reads the fields of the message `data` that follow its header, one after the other.
+    """Reads the fields after the header from the serialised message `data`, one after the other.
 
     The layout is CDR (RTPS 2.5, 10.5): 4 bytes for the encoding, then the fields, each number aligned to its size.
     `ValueError` for another encoding; `EOFError` if the message ends before a field.

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A node that answers each call and stands each message, and checks its parameters by the fields that declare them.
+"""A node that survives every call and message, and checks its parameters by the fields that declare them.
 
-Its read-only parameters accept the value that they have: `ros2 param load` sets every parameter of a dump, and rclpy
-refuses those that are read-only even where nothing changes. `ros2 param set` and `load` hand over 1e-06, nan and
-[1.0, 2] as texts: YAML 1.1 reads no number in the first two, and rclpy no array in the third.
+Its read-only parameters accept their present value: `ros2 param load` sets every parameter of a dump, and rclpy would
+refuse those that are read-only even if nothing changes. `ros2 param set` and `load` send 1e-06, nan and [1.0, 2] as
+texts: YAML 1.1 does not read the first two as numbers, nor rclpy the third as an array.
 """
 
 from dataclasses import Field
@@ -31,7 +31,7 @@ class ParameterNode(ServedNode):
         super().__init__(name, **{"automatically_declare_parameters_from_overrides": True, **options})
 
     def set_parameters_atomically(self, parameters: list[Parameter]) -> SetParametersResult:
-        """Set `parameters` at once. The reason that comes with a success is `answer_to` them."""
+        """Set all `parameters` or none. With a success, the reason holds `answer_to`."""
         try:
             changes = [each for each in map(self._as_declared, parameters) if not self._is_held(each)]
             if not changes:
@@ -49,11 +49,11 @@ class ParameterNode(ServedNode):
         return result
 
     def answer_to(self, names: list[str]) -> str:
-        """What the user is told of the parameters `names`, which have been set."""
+        """The text for the user after the parameters `names` have been set."""
         return ""
 
     def _as_declared(self, parameter: Parameter) -> Parameter:
-        """The parameter with a value in its field's type. `ValueError` where it does not fit."""
+        """The parameter with its value in the field's type. `ValueError` if it does not fit."""
         item = self.parameter_fields.get(parameter.name)
         if item is None or not self.has_parameter(parameter.name):
             return parameter
@@ -71,7 +71,7 @@ class ParameterNode(ServedNode):
 
 
 def as_parameter(value: Any) -> Any:
-    """`value` as a ROS parameter holds it: a list for a tuple, 0.0 for None."""
+    """`value` in the form of a ROS parameter: a list for a tuple, 0.0 for None."""
     if value is None:
         return 0.0
     return list(value) if isinstance(value, tuple) else value

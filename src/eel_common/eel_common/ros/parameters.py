@@ -25,17 +25,17 @@ ROS_PREFIXES = (
     "use_sim_time",
     "start_type_description_service",
     "qos_overrides.",
-)  # of ROS's own parameters
-ALIKE = 0.8  # of two names, from 0 to 1: a parameter of another node is no slip
+)  # ROS's own parameters
+ALIKE = 0.8  # least likeness of a misspelt name, from 0 to 1; others belong to other nodes
 FILE, VALUE, VALUES = "--params-file", ("-p", "--param"), "ros__parameters"
-MAXIMUM_INTEGER = 2**63 - 1  # of a ROS parameter
+MAXIMUM_INTEGER = 2**63 - 1  # of an integer ROS parameter
 
 
 def take_overrides(node: Node) -> dict[str, Any]:
     """The user's parameter overrides, by name.
 
-    `node` has declared them. All but ROS's own parameters are undeclared, so that `declare` can declare them with type
-    and range. A parameter file that is for other nodes alone is warned of.
+    `node` has declared them. All except ROS's own are undeclared here, so that `declare` can declare them with type and
+    range. A warning names each parameter file that is only for other nodes.
     """
     given: dict[str, Any] = node.get_parameters_by_prefix("")  # of `Parameter`s, not of values as rclpy says
     warn_of_other_nodes(node)
@@ -49,7 +49,7 @@ def take_overrides(node: Node) -> dict[str, Any]:
 def declare_all(node: ParameterNode, *kinds: type[Quantities]) -> list[Any]:
     """Declare the fields of these classes of `Quantities` as parameters, with the user's overrides, and return them.
 
-    `ValueError` names an override that does not fit. A warning names those that no field has.
+    `ValueError` names an override that does not fit. A warning names overrides without a field.
     """
     overrides = take_overrides(node)
     made = [kind.among(overrides) for kind in kinds]
@@ -62,8 +62,8 @@ def declare_all(node: ParameterNode, *kinds: type[Quantities]) -> list[Any]:
 def warn_of_unknown(node: Node, overrides: Iterable[str], known: Collection[str]) -> None:
     """Warn of overrides that are not `known`; they are ignored.
 
-    Those for all nodes (`/**` in a parameter file) may be another node's: of them only those are named that are like a
-    known one.
+    Overrides for all nodes (`/**` in a parameter file) may belong to another node, so of these only names that resemble
+    a known one are reported.
     """
     unknown = [name for name in overrides if name not in known and not name.startswith(ROS_PREFIXES)]
     shared = shared_names(sys.argv) if unknown else set()
@@ -76,7 +76,7 @@ def warn_of_unknown(node: Node, overrides: Iterable[str], known: Collection[str]
 def declare(node: ParameterNode, values: Any, prefix: str = "", changeable: bool | str | None = None) -> None:
     """Declare a parameter, named `prefix` and field, for each field of the dataclass instance `values`.
 
-    changeable: replaces the metadata's.
+    changeable: replaces this entry of the metadata.
     """
     for item in fields(values):
         descriptor = _descriptor(item, changeable)
@@ -98,7 +98,7 @@ def described(item: Field[Any]) -> str:
 
 
 def default_of(item: Field[Any]) -> Any:
-    """The default of a field as a ROS parameter holds it: a list for a tuple, 0.0 for None."""
+    """The default of a field in the form of a ROS parameter: a list for a tuple, 0.0 for None."""
     assert item.default is not MISSING, item.name
     return as_parameter(item.default)
 
@@ -126,13 +126,13 @@ def _descriptor(item: Field[Any], changeable: bool | str | None) -> ParameterDes
 
 
 def shared_names(words: Sequence[str]) -> set[str]:
-    """The names that the files in the command line `words` set for all nodes. A file that cannot be read has none."""
+    """The names that the files in the command line `words` set for all nodes. An unreadable file sets none."""
     nodes = (each for _, found in _given_in(words) for each in found)
     return {name for node, values in nodes if "*" in node for name in _names_in(values)}
 
 
 def warn_of_other_nodes(node: Node) -> None:
-    """Warn of each parameter file in the command line, and of each parameter, that is for other nodes alone."""
+    """Warn of each parameter file and parameter in the command line that is only for other nodes."""
     own = node.get_fully_qualified_name()
     for option, nodes in _given_in(sys.argv):
         known = dict.fromkeys(name for name, _ in nodes)
@@ -141,23 +141,23 @@ def warn_of_other_nodes(node: Node) -> None:
 
 
 def _pattern(node: str) -> str:
-    """The names of nodes that a `node` of a parameter file means, as a regular expression: as rclpy makes it."""
+    """A regular expression for the node names that `node`, a key of a parameter file, matches; rclpy's rule."""
     return re.escape(node).replace(r"/\*\*", r"(/\w+)*").replace(r"/\*", r"(/\w+)")
 
 
 def _given_in(words: Sequence[str]) -> Iterator[tuple[str, list[tuple[str, Any]]]]:
-    """The options in the command line `words` that name nodes, with what they have of which nodes."""
+    """The options in the command line `words` that concern nodes by name, and for each the nodes and their content."""
     for option, word in pairwise(words):
         node, colon, name = word.partition(":=")[0].rpartition(":")
         if option == FILE:
-            with contextlib.suppress(ValueError, OSError):  # ROS has read it before
+            with contextlib.suppress(ValueError, OSError):  # ROS has already read it
                 yield f"{option} {shown(word)}", list(_nodes_in(read_yaml(word)))
         elif option in VALUE and colon:
             yield f"{option} {shown(word)}", [("/" + node.strip("/"), {name: ""})]
 
 
 def _nodes_in(content: Any, above: str = "") -> Iterator[tuple[str, Any]]:
-    """The nodes of a parameter file, with the namespaces `above` them, and their parameters."""
+    """The nodes in a parameter file, below the namespaces `above`, and their parameters."""
     for key, value in content.items() if isinstance(content, dict) else ():
         if key == VALUES:
             yield above, value
@@ -167,6 +167,6 @@ def _nodes_in(content: Any, above: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def _names_in(values: Any, above: str = "") -> Iterator[str]:
-    """The names of the parameters with these `values`, below the names `above` them."""
+    """The full names of the parameters in `values`, with the prefix `above`."""
     for key, value in values.items() if isinstance(values, dict) else ():
         yield from _names_in(value, f"{above}{key}.") if isinstance(value, dict) else (f"{above}{key}",)

@@ -12,7 +12,7 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class ProcessEnd:
-    """Handles signals. Create it first, in the main thread.
+    """Handles signals. Create it first, and in the main thread.
 
     A signal may interrupt any line, so its handler only sets a flag.
 
@@ -35,10 +35,10 @@ class ProcessEnd:
             signal.signal(number, signal.SIG_IGN)
 
     def leave_when_stuck(self, seconds: float) -> None:
-        """From now on leave, with status 0, where the main thread is not `over` so many `seconds` after a signal,
-        until `stay_when_stuck` is called.
+        """From now on, leave with status 0 if the main thread is not `over` within `seconds` after a signal, until
+        `stay_when_stuck` is called.
 
-        Python's handlers wait until the main thread is back from a long computation; the byte does not.
+        Python runs signal handlers only when the main thread returns from C code. So a thread waits for a wake-up byte.
         """
         reader, writer = os.pipe()
         os.set_blocking(writer, False)
@@ -53,7 +53,7 @@ class ProcessEnd:
         threading.Thread(target=watch, daemon=True).start()
 
     def stay_when_stuck(self) -> None:
-        """From now on do not leave so: there are files to complete."""
+        """Do not leave in this way any more: there are files to complete."""
         self._stays = True
 
 

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Quality of service: KEEP_ALL, transient local, profiles that match the publishers' offers; two for one topic."""
+"""Quality of service: KEEP_ALL, transient local, profiles that match publishers' offers; messages delivered twice."""
 
 from collections.abc import Mapping
 from typing import Any
 
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
-REMEMBERED = 4096  # deliveries: one of two subscriptions may be so far behind the other
+REMEMBERED = 4096  # deliveries: the largest lag between two subscriptions
 
 
 def latched(depth: int) -> QoSProfile:
@@ -15,7 +15,7 @@ def latched(depth: int) -> QoSProfile:
 
 
 def keep_all(*, reliable: bool = True, latched: bool = False) -> QoSProfile:
-    """KEEP_ALL history: no message is dropped. `latched`: transient local, a subscriber also gets earlier messages."""
+    """KEEP_ALL history: no message is dropped. `latched`: transient local; later subscribers get earlier messages."""
     return QoSProfile(
         history=HistoryPolicy.KEEP_ALL,
         depth=1,
@@ -25,7 +25,7 @@ def keep_all(*, reliable: bool = True, latched: bool = False) -> QoSProfile:
 
 
 def fitting(offers: list[QoSProfile]) -> QoSProfile:
-    """The strictest subscription profile that all of the publishers' `offers` match."""
+    """The strictest subscription profile that matches all of the publishers' `offers`."""
     return keep_all(
         reliable=all(offer.reliability == ReliabilityPolicy.RELIABLE for offer in offers),
         latched=all(offer.durability == DurabilityPolicy.TRANSIENT_LOCAL for offer in offers),
@@ -33,7 +33,7 @@ def fitting(offers: list[QoSProfile]) -> QoSProfile:
 
 
 def matches(profile: QoSProfile, offer: QoSProfile) -> bool:
-    """Whether a subscription with `profile` gets the messages of a publisher with `offer`."""
+    """Whether a subscription with `profile` matches a publisher with `offer`."""
     unreliable = profile.reliability == ReliabilityPolicy.RELIABLE and offer.reliability != ReliabilityPolicy.RELIABLE
     volatile = (
         profile.durability == DurabilityPolicy.TRANSIENT_LOCAL and offer.durability != DurabilityPolicy.TRANSIENT_LOCAL
@@ -42,19 +42,19 @@ def matches(profile: QoSProfile, offer: QoSProfile) -> bool:
 
 
 class Deliveries:
-    """The messages of one topic, by the time at which they were sent and their publisher's count of messages.
+    """The messages received on one topic, told apart by time of sending and the publisher's count.
 
-    A topic may need two subscriptions, because one quality of service does not match all publishers. A publisher that
-    both match then delivers each message twice.
+    One quality of service may not match all publishers, so that a topic needs two subscriptions. A publisher that
+    matches both then delivers each message twice.
     """
 
     def __init__(self) -> None:
         self._known: dict[tuple[Any, ...], None] = {}  # the oldest first
 
     def repeats(self, info: Mapping[str, Any]) -> bool:
-        """Whether the message with this message `info` has come before; from now on it has.
+        """Whether a message with this `info` has come before. It is remembered.
 
-        A message without a time of sending is never a repetition.
+        A message without a time of sending never counts as repeated.
         """
         delivery = info.get("source_timestamp"), info.get("publication_sequence_number")
         if delivery in self._known:

@@ -18,12 +18,12 @@ from eel_common.ros.start import start
 Served = TypeVar("Served", bound=Node)
 
 POLL_PERIOD = 0.1  # s between two calls of `poll`
-PAUSE = 0.1  # s after a call of `take_messages` that found none: messages in bursts cost less
-QUIET = 0.2  # s at the end without a message from before it: publishers repeat what is missing every 0.05 s
-ON_THE_WAY = 5_000_000_000  # ns that a publisher waits at its end for a message to arrive
-DRAIN_LIMIT = 1.5  # s at most, after a signal, to take messages from before it
-STUCK = 0.5  # s after a signal, after which a node that starts, or keeps no files, leaves in the middle of a callback
-SLOW_START = 4.0  # s likewise, of one that keeps files: its start may have begun one
+PAUSE = 0.1  # s after a call of `take_messages` that found none: bursts cost less than single messages
+QUIET = 0.2  # s without an earlier message, after which the end is reached: publishers resend every 0.05 s
+ON_THE_WAY = 5_000_000_000  # ns: longest wait of a publisher at its end for a message to arrive
+DRAIN_LIMIT = 1.5  # s: longest time after a signal for taking earlier messages
+STUCK = 0.5  # s after a signal: then a node that starts, or writes no files, leaves in the middle of a callback
+SLOW_START = 4.0  # s likewise, for a node that writes files: its start may have begun one
 
 
 def run_node(
@@ -39,20 +39,19 @@ def run_node(
     period: float = POLL_PERIOD,
     complete: bool = False,
 ) -> int:
-    """Make the node and spin it until a signal comes or `poll(node)` returns False.
+    """Make the node and spin it until a signal comes or `poll(node)` returns False. Returns the exit status.
 
-    words: the command line, the program first. about, parameters: what --help prints (`handle_arguments`); without
-    them, the caller has handled other arguments than ROS arguments. sim_time: whether `use_sim_time` is true by
-    default.
-
-    take_messages(node, before): takes some of the waiting messages itself and returns how many of them are from before
-    this time [ns, as `is_from_before`]; 0: all. The executor then only serves rare callbacks, such as parameter
-    services. period: between two calls of `poll` [s]. complete: a node that keeps files. It subscribes in its
-    `listen()`; from then on no signal makes it leave before they are complete. At the end, it takes all that was sent
-    before; after a signal for `DRAIN_LIMIT` at most, and what is left its `drop_messages(before)` counts: `(number,
-    whether that is all)`. At the end the node's `close()` is called, if it has one.
-    Returns the exit status: 0; 1 if the node has a `failure` (a text), which is printed; 2 if it
-    cannot start.
+    words: the command line, the program first.
+    about, parameters: for --help (`handle_arguments`); without them, the caller has handled non-ROS arguments.
+    sim_time: the default of `use_sim_time`.
+    take_messages(node, before): takes waiting messages, and returns how many of them are from before that time [ns, as
+    `is_from_before`]; 0: all. The executor then serves only rare callbacks, such as parameter services.
+    period: time between two calls of `poll` [s].
+    complete: the node writes files. It subscribes in its `listen()`; from then on a signal lets it complete them. At
+    its end it takes all earlier messages, after a signal for at most `DRAIN_LIMIT`. Its `drop_messages(before)` counts
+    the rest: `(number, whether that is all)`.
+    The node's `close()` is called at the end, if it exists. Status 0; 1 if the node has a `failure` (a text), which is
+    printed; 2 if it cannot start.
     """
     if about and (status := handle_arguments(name, about, parameters, words)) is not None:
         return status
@@ -115,7 +114,7 @@ def _serve(
 
 
 def _goes_on(poll: Callable[[Any], bool], node: Any) -> bool:
-    """Whether `poll(node)` lets the node go on; it does so where it raises, which is logged."""
+    """Whether `poll(node)` lets the node go on. An exception is logged, and the node goes on."""
     try:
         return poll(node)
     except Exception as error:
@@ -124,15 +123,15 @@ def _goes_on(poll: Callable[[Any], bool], node: Any) -> bool:
 
 
 def is_from_before(about: Mapping[str, Any], before: int) -> bool:
-    """Whether the message with this message info `about` had come `before` [ns, system clock], or had been sent and was
-    on its way."""
+    """Whether the message with this message info `about` had been received, or was on its way, `before` [ns, system
+    clock]."""
     late = (about["received_timestamp"] or time.time_ns()) - before
     return late <= (ON_THE_WAY if about["source_timestamp"] <= before else 0)
 
 
 def _drain(node: Any, take_messages: Any, end: ProcessEnd) -> None:
-    """Take what was sent before now: until none of it has come for `QUIET` [s], or the node has a `failure`, or it is
-    time to go."""
+    """Take messages sent before now. Ends when none has come for `QUIET` [s], when the node has a `failure`, or when
+    the time is up."""
     before, last = time.time_ns(), time.monotonic()
     limit = float("inf")
     while (now := time.monotonic()) - last < QUIET and not getattr(node, "failure", ""):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs callbacks so that an exception does not end the node: it is logged, and the message is dropped or refused."""
+"""Runs callbacks so that no exception ends the node: it is logged, and the message is dropped or the call refused."""
 
 import inspect
 import time
@@ -16,13 +16,13 @@ from rclpy.serialization import deserialize_message
 from rclpy.subscription import Subscription
 
 LOG_PERIOD = 1.0  # s between two log lines about dropped messages of one topic
-LARGEST_MESSAGE = 2**21  # bytes that are read: three times the largest sample of 10,000 stations; a law takes 0.2 s
+LARGEST_MESSAGE = 2**21  # bytes accepted: three times a sample with 10,000 stations; such a law takes 0.2 s
 LONGEST_REASON = 300  # characters
 
 
 @dataclass
 class Dropped:
-    """What has been dropped of one topic. logged: how many of them the log has, and when [s, steady clock]."""
+    """What has been dropped of one topic. logged: how many of them were logged, and when [s, steady clock]."""
 
     count: int = 0
     logged: int = 0
@@ -34,21 +34,21 @@ _dropped: WeakKeyDictionary[Node, dict[str, Dropped]] = WeakKeyDictionary()
 
 
 class ServedNode(Node):
-    """A node that goes on whatever comes. A message that cannot be taken is left out; each service call is answered.
+    """A node that survives every input. An unusable message is dropped; each service call is answered.
 
-    Its subscriptions take bytes. With bytes that are no message, rclpy's own way leaves twelve lines of the C libraries
-    on stderr for each.
+    Its subscriptions take bytes: where bytes are no message, rclpy's own subscriptions print twelve lines of the C
+    libraries on stderr.
     """
 
     def create_service(self, srv_type: Any, srv_name: str, callback: Callable[..., Any], **options: Any) -> Any:
-        """As of `Node`, but each call is answered, whatever `callback` raises; also those of the parameter services."""
+        """As in `Node`, but each call is answered even if `callback` raises; those of parameter services too."""
         return super().create_service(srv_type, srv_name, answering(self, srv_name, callback), **options)
 
     def create_subscription(
         self, msg_type: Any, topic: str, callback: Callable[..., Any], qos_profile: Any, **options: Any
     ) -> Subscription:
-        """As of `Node`; what the `callback(message)` raises is logged, and the message dropped, as one that is too
-        large. With `raw=True` it is `callback(data, about)`: the serialised message, and the message info."""
+        """As in `Node`, but errors of `callback(message)` are logged and the message dropped, as are too large ones.
+        With `raw=True` it is `callback(data, about)`: the serialised message and its message info."""
         what, raw = f"a message of {self.resolve_topic_name(topic)}", options.pop("raw", False)
 
         def take(data: bytes, about: dict[str, Any]) -> None:
@@ -57,12 +57,12 @@ class ServedNode(Node):
             except Exception as error:
                 log_dropped(self, error, what)
 
-        taken: Callable[..., None] = take  # the hint of rclpy leaves out the message info
+        taken: Callable[..., None] = take  # rclpy's type hint omits the message info
         return super().create_subscription(msg_type, topic, taken, qos_profile, raw=True, **options)
 
 
 class PolledGroup(CallbackGroup):
-    """A callback group that the executor neither waits for nor runs; the node polls its subscriptions."""
+    """A callback group that the executor ignores: the node polls its subscriptions."""
 
     def can_execute(self, entity: Any) -> bool:
         return False
@@ -79,8 +79,8 @@ def serve_once(executor: Executor, node: Node, timeout: float | None = None) -> 
 
 
 def log_dropped(node: Node, error: Exception, what: str = "a message") -> None:
-    """Log that `what` is dropped, with the `error`: at once, or with those of the same second when `serve_once` finds
-    that it has passed."""
+    """Log that `what` is dropped because of the `error`: at once, or together with others when `serve_once` finds that
+    a second has passed."""
     dropped = _dropped.setdefault(node, {}).setdefault(what, Dropped())
     dropped.count += 1
     dropped.reason = reason_of(error)
@@ -102,9 +102,9 @@ def reason_of(error: Exception) -> str:
 
 
 def read_message(data: bytes, kind: type) -> Any:
-    """The message of the type `kind` that is serialised in `data`. `ValueError` for more bytes than are read.
+    """The message of type `kind` serialised in `data`. `ValueError` for more than `LARGEST_MESSAGE` bytes.
 
-    A sequence of messages takes microseconds for each of its bytes, and no signal is heard meanwhile.
+    A sequence of messages takes microseconds per byte, and meanwhile no signal is handled.
     """
     if len(data) > LARGEST_MESSAGE:
         raise ValueError(f"it must have at most {LARGEST_MESSAGE} bytes, got {len(data)}")
@@ -112,8 +112,8 @@ def read_message(data: bytes, kind: type) -> Any:
 
 
 def answering(node: Node, name: str, callback: Callable[..., Any]) -> Callable[..., Any]:
-    """The `callback` of the service `name`, so that it answers each call: an exception is logged, and is the
-    reason of a refusal."""
+    """The `callback` of the service `name`, wrapped so that it answers each call. An exception is logged, and becomes
+    the reason of a refusal."""
 
     async def answer(request: Any, response: Any) -> Any:
         try:
@@ -128,7 +128,7 @@ def answering(node: Node, name: str, callback: Callable[..., Any]) -> Callable[.
 
 
 def _refusal(request: Any, response: Any, reason: str) -> Any:
-    """The `response` with the `reason`, where its type has a place for it."""
+    """The `response` with the `reason` in the field for it, if its type has one."""
     if hasattr(response, "results"):  # of SetParameters, one for each parameter
         left = len(request.parameters) - len(response.results)
         response.results += [SetParametersResult(successful=False, reason=reason) for _ in range(left)]

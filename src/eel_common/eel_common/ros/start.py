@@ -30,8 +30,8 @@ REPAIR = "a library of the messages is damaged or missing, `make clean build` ma
 def start(name: str, words: list[str], make: Callable[[], Started]) -> Started | None:
     """Initialise rclpy with the command line `words` (the program first) and return the node that `make()` returns.
 
-    If that fails, one line on stderr says why: that no more files can be opened, whatever came of that; or
-    the error, with the command that repairs a damaged build. The result is then None.
+    If that fails, one line on stderr gives the reason: no more files can be opened, even if another error came of it;
+    or the error, with the command that repairs a damaged build. The result is then None.
     """
     use_profile()
     try:
@@ -45,7 +45,7 @@ def start(name: str, words: list[str], make: Callable[[], Started]) -> Started |
 
 
 def _no_more_files() -> str:
-    """That no more files can be opened; empty where they can."""
+    """An error text if no more files can be opened; otherwise empty."""
     try:
         os.close(os.open(os.devnull, os.O_RDONLY))
     except OSError as error:

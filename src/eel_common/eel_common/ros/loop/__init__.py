@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a node with a loop of its own needs: its pace, /clock, requests of callbacks, topics without loss, its log."""
+"""For a node with its own loop: pace, /clock, requests of callbacks, topics without loss, its log."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""When /clock is published: with each sample or at a rate of its own, and again and again while the run stands."""
+"""When /clock is published: with each sample or at its own rate, and repeatedly while the run stands."""
 
 import math
 import time
@@ -9,7 +9,7 @@ TICK = 0.05  # s of wall time between two messages while the simulation stands
 
 
 class ClockPublisher(Protocol):
-    """What publishes /clock."""
+    """The publisher of /clock."""
 
     def tick(self, nanoseconds: int) -> None:
         """Publish it, with simulation time `nanoseconds` [ns]."""
@@ -18,7 +18,7 @@ class ClockPublisher(Protocol):
 class ClockTicks:
     """Publishes /clock through a `publisher`: messages k = 0, 1, ... at the simulation times k/rate.
 
-    With a `rate` [Hz] of 0 there is one with each sample. The time that it shows goes back at a reset alone.
+    With a `rate` [Hz] of 0 there is one with each sample. Its time goes backwards only at a reset.
     """
 
     def __init__(self, rate: float, publisher: ClockPublisher) -> None:

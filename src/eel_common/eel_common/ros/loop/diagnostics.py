@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The node's log: a condition is logged once, and shown in /diagnostics while it lasts."""
+"""The node's log: a condition is logged once, and stays in /diagnostics while it lasts."""
 
 import math
 import time
@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from typing import Protocol
 
 OK, WARN, ERROR = 0, 1, 2  # levels of diagnostic_msgs/DiagnosticStatus
-REPEAT = 1.0  # s: an event of one kind is logged at most once in this time
+REPEAT = 1.0  # s: in this time an event of one kind is logged at most once
 RECENT = 2.0  # s: how long an event is shown in the diagnostics
-BURST = 20  # lines of one kind with different texts that are logged in that time
+BURST = 20  # differing lines of one kind that are logged in that time
 
 
 class Logger(Protocol):
-    """One of rclpy."""
+    """An rclpy logger."""
 
     def info(self, message: str) -> object: ...
 
@@ -25,7 +25,7 @@ class Logger(Protocol):
 
 @dataclass
 class Event:
-    """The last event of a kind, and how many lines were logged of the kind since `begin`. Times on the steady clock."""
+    """The last event of a kind, and its number of logged lines since `begin`. Times on the steady clock."""
 
     level: int = OK
     text: str = ""
@@ -33,7 +33,7 @@ class Event:
     seen: float = -math.inf  # s
     begin: float = -math.inf  # s
     lines: int = 0
-    left_out: int = 0  # lines that were not logged, and not counted in a line yet
+    left_out: int = 0  # lines neither logged nor counted in a later line
 
 
 class Report:
@@ -64,13 +64,13 @@ class Report:
             self.info(text)
 
     def lasts(self, kind: str) -> bool:
-        """Whether the condition has begun and has not ended."""
+        """Whether the condition lasts."""
         return kind in self._lasting
 
     def event(self, kind: str, text: str, level: int = WARN, differing: bool = False) -> None:
-        """Log an event: the same text once while it comes again within a second, each time.
+        """Log an event. The same text is logged once while it repeats within a second.
 
-        Of other texts of one kind one a second, or with `differing` up to `BURST`.
+        Differing texts of one kind are logged once a second, or with `differing` up to `BURST` times.
         """
         event, now = self._events.setdefault(kind, Event()), self._now()
         if text != event.told or now - event.seen >= REPEAT:
@@ -97,7 +97,7 @@ class Report:
         self._log(level, text + more)
 
     def _log(self, level: int, text: str) -> None:
-        # Statements apart: rclpy's loggers tell calls apart by their line.
+        # Separate statements: rclpy's loggers tell calls apart by their line.
         if level == ERROR:
             self._logger.error(text)
         elif level == WARN:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The pace of a run that follows the /clock of another node: each sample is due once /clock has come to its time.
+"""The pace of a run that follows another node's /clock: each sample is due when /clock reaches its time.
 
-A run that begins late, or that is slower than the other node, is behind /clock, and goes as fast as it can until it has
-caught up. If /clock goes back, the run stands until /clock has come to its time again, or until it is reset too.
+A run that starts late or is slower than /clock runs as fast as it can until it has caught up. If /clock goes back, the
+run stands until /clock has reached its time again, or until it is reset too.
 """
 
 import math
@@ -17,14 +17,14 @@ from eel_common.ros.loop.pacing import Pace
 from eel_common.ros.loop.requests import RequestQueue
 from eel_common.ros.serving import ServedNode
 
-LITTLE = 1.0  # s of simulated time, by which a run may be behind
-STILL = 1.0  # s of wall time in which /clock does not move, after which this is said
+LITTLE = 1.0  # s of simulated time: a smaller lag is not late
+STILL = 1.0  # s of wall time: a longer halt of /clock is reported
 
 
 class FollowedClock(Pace):
     """The pace of a followed /clock, with the methods of `Pace`.
 
-    factor: 0: the run also waits for controllers and subscribers. The value is of no further use.
+    factor: 0: the run also waits for controllers and subscribers. Other values have no effect.
     """
 
     def __init__(self, period: float, factor: float) -> None:
@@ -47,14 +47,14 @@ class FollowedClock(Pace):
             self._went_back_to = None
 
     def due(self, sample: int) -> float:
-        """-inf where `sample` is due, inf where /clock has not come to its time."""
+        """-inf if `sample` is due, inf while /clock has not reached its time."""
         if self.lost(sample) < 0.0:
             return math.inf
         self._went_back_to = None
         return -math.inf
 
     def lost(self, sample: int) -> float:
-        """Time [s] by which `sample` is behind /clock; below 0 where it lies ahead."""
+        """Time [s] by which `sample` is behind /clock; negative if it is ahead."""
         return self._shown - sample * self.period + 1e-9
 
     def is_late(self, sample: int) -> bool:
@@ -62,11 +62,11 @@ class FollowedClock(Pace):
         return self.lost(sample) > LITTLE
 
     def give_up_delay(self, sample: int, now: float) -> float:
-        """The time [s] by which `sample` is behind /clock, or 0 if that is little."""
+        """The time [s] by which `sample` is behind /clock; 0 for a small lag."""
         return self.lost(sample) if self.is_late(sample) else 0.0
 
     def held_by(self, sample: int) -> str:
-        """Why `sample` is not due, as text, where that is not only a matter of moments."""
+        """The reason, as text, why `sample` is not due, unless it will be in a moment."""
         if self.due(sample) < 0.0:
             return ""
         if self._went_back_to is not None:
@@ -80,9 +80,9 @@ class FollowedClock(Pace):
 
 
 class ClockSubscription:
-    """Passes the newest time on /clock to the `pace` of a run, by its `requests`.
+    """Passes the newest time on /clock to the `pace` of a run, through its `requests`.
 
-    It is reliable, because the last message of a run that ends comes once, unless a publisher is best-effort.
+    It is reliable unless a publisher is best-effort: the last message of a run that ends is sent once.
     """
 
     def __init__(self, node: ServedNode, pace: FollowedClock, requests: RequestQueue) -> None:
@@ -91,7 +91,7 @@ class ClockSubscription:
         self._subscribe()
 
     def look(self) -> None:
-        """Look the publishers up, and subscribe as they offer; call this a few times a second."""
+        """Look up the publishers, and subscribe with a matching profile; call this a few times a second."""
         offers = [each.qos_profile.reliability for each in self._node.get_publishers_info_by_topic("/clock")]
         unreliable = ReliabilityPolicy.BEST_EFFORT in offers
         wanted = ReliabilityPolicy.BEST_EFFORT if unreliable else ReliabilityPolicy.RELIABLE
@@ -106,6 +106,6 @@ class ClockSubscription:
 
     def _subscribe(self) -> None:
         quality = QoSProfile(depth=1, reliability=self._reliability)
-        quiet = SubscriptionEventCallbacks(use_default_callbacks=False)  # `look` finds what does not match
+        quiet = SubscriptionEventCallbacks(use_default_callbacks=False)  # `look` finds mismatches
         make = self._node.create_subscription
         self._subscription = make(Clock, "/clock", self.receive_clock, quality, event_callbacks=quiet)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tells of a late run: once in the log when it begins, once when it is over, and in /diagnostics while it lasts."""
+"""Reports a late run: in the log when it begins and when it is over, and in /diagnostics while it lasts."""
 
 import math
 
@@ -7,7 +7,7 @@ from eel_common.ros.loop.diagnostics import Report
 from eel_common.ros.loop.pacing import Pace
 
 LATE = "late"  # kind of the condition
-QUIET = 3.0  # s of wall time in which nothing is late, after which it is over: a busy machine is late again and again
+QUIET = 3.0  # s of wall time without lateness, until it counts as over: a busy machine is late repeatedly
 
 
 class Lateness:
@@ -15,7 +15,7 @@ class Lateness:
 
     def __init__(self, report: Report) -> None:
         self._report = report
-        self._since, self._last = 0.0, -math.inf  # s, steady clock: when it began, and when the run was late last
+        self._since, self._last = 0.0, -math.inf  # s, steady clock: first and last time the run was late
         self._most = 0.0  # s
 
     def check(self, pace: Pace, sample: int, time: float, now: float) -> None:

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Decides what this node publishes where others publish the same: the swimmer's topics, and /clock.
+"""Decides what this node publishes when other nodes publish the same: the swimmer's topics, and /clock.
 
-Each dynamics node gives its identity in /diagnostics: topic, start, host, process. So all nodes decide alike as soon as
-they have received each other's: who began first publishes. Of two swimmers with the same topics the later one waits
-until the earlier one has gone; of two that make /clock the later one leaves it to the earlier one. Any other
-publisher of /clock, such as a player of bags, has it for itself.
-A warning alone would be shorter, but two swims mixed on one topic, or two times on /clock, spoil what all others make
-of them (test_namespaces.py and test_node_flow.py show both).
+Each dynamics node gives its identity in /diagnostics: topic, start, host, process. So all nodes decide alike once they
+have received each other's identity: the earliest start publishes. Of two swimmers with the same topics the later one
+waits until the earlier one has gone. Of two sources of /clock the later one stops publishing it. Any other publisher of
+/clock, such as a bag player, has precedence.
+A warning alone would be shorter. But two swims on one topic, or two times on /clock, corrupt what every subscriber
+computes (test_namespaces.py and test_node_flow.py show both).
 """
 
 import os
@@ -19,13 +19,13 @@ from typing import NamedTuple
 from eel_common.ros.loop.diagnostics import ERROR, Report
 from eel_common.ros.serving import ServedNode
 
-GONE = 5.0  # s without diagnostics from a node, after which it counts as gone; they come once a second
-STRANGE = 3.0  # s after which a publisher of /clock whose node has sent no diagnostics is none of these nodes
+GONE = 5.0  # s without diagnostics, sent once a second: the node counts as gone
+STRANGE = 3.0  # s without diagnostics: a publisher of /clock counts as a foreign node
 HINT = "this node does not, and keeps a time of its own (with follow_clock:=true it would follow /clock)"
 
 
 class Identity(NamedTuple):
-    """A dynamics node; the lesser of two began first."""
+    """A dynamics node. They compare by start time: the lesser began first."""
 
     started: str  # UTC, ISO 8601
     host: str
@@ -33,12 +33,12 @@ class Identity(NamedTuple):
 
     @staticmethod
     def own() -> "Identity":
-        """That of this process, started now."""
+        """The identity of this process, started now."""
         return Identity(datetime.now(UTC).isoformat(), socket.gethostname(), str(os.getpid()))
 
 
 class OtherNode(NamedTuple):
-    """What another dynamics node has last said of itself."""
+    """The last status of another dynamics node."""
 
     name: str
     topic: str  # its head_pose
@@ -47,17 +47,17 @@ class OtherNode(NamedTuple):
 
 
 class OtherNodes:
-    """Compares this node, which publishes the `topic`, with the others on the network.
+    """Compares this node, which publishes the `topic`, with other nodes on the network.
 
     Attributes:
-        holding: why this node is to wait, as text; empty if it is not.
-        clock_is_free: whether no other node has /clock.
+        holding: the reason, as text, why this node must wait; empty if it need not.
+        clock_is_free: whether no other node owns /clock.
     """
 
     def __init__(self, node: ServedNode, topic: str, own: Identity, report: Report) -> None:
         self._node, self._topic, self._own, self._report = node, topic, own, report
         self._others: dict[Identity, OtherNode] = {}
-        self._strangers: dict[str, float] = {}  # publishers of /clock, and since when they are there [s, steady clock]
+        self._strangers: dict[str, float] = {}  # foreign publishers of /clock: time first seen [s, steady clock]
         self.holding, self.clock_is_free = "", True
 
     def values(self, makes_clock: bool) -> dict[str, str]:
@@ -65,7 +65,7 @@ class OtherNodes:
         return {"swimmer": self._topic, "makes_clock": str(makes_clock), **self._own._asdict()}
 
     def receive(self, name: str, values: Mapping[str, str]) -> None:
-        """Take a status in /diagnostics: the `name` of its node, and its values."""
+        """Take a status from /diagnostics: the node's `name`, and its values."""
         if "swimmer" in values and all(field in values for field in Identity._fields):
             identity = Identity(*(values[field] for field in Identity._fields))
             if identity != self._own:

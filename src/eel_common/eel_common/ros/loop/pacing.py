@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pacing on the steady clock: due times of samples.
+"""Pacing on the steady clock: the due times of samples.
 
 Sample k is due at start + (k - first) * period / factor. A run that is late by more than a period and `SHORTEST_DELAY`
-does not hurry: it regains the lost time at `CATCH_UP` above its pace, so that a controller can follow. Until then later
-samples are due later. Of the lost time `MOST_REGAINED` at most is regained, and the rest given up: a run that stood for
-hours is not faster for days. The run keeps its accuracy, not its pace.
+does not hurry: it regains the lost time by running `CATCH_UP` faster, so that a controller can follow. At most
+`MOST_REGAINED` is regained; the rest is given up. So a run that stood for hours is not faster for days. A late run
+keeps its accuracy, not its pace.
 """
 
 import math
 
 SHORTEST_DELAY = 0.02  # s: shorter delays come from the operating system's scheduling
-CATCH_UP = 0.1  # of the pace, by which a late run is faster until it has regained the lost time
+CATCH_UP = 0.1  # fraction of the pace by which a late run is faster
 MOST_REGAINED = 10.0  # s: it is regained in 110 s
 
 
@@ -28,7 +28,7 @@ class Pace:
         self.given_up = 0.0
 
     def restart(self, sample: int, now: float, factor: float | None = None) -> None:
-        """Make `sample` due `now` [s, steady clock], and later samples relative to it. Nothing is late any more."""
+        """Make `sample` due `now` [s, steady clock], and later samples relative to it. Lateness is forgotten."""
         if factor is not None:
             self.factor = factor
         self._first, self._start, self._lost = sample, now, 0.0
@@ -41,7 +41,7 @@ class Pace:
         return self._start + self._steps(sample) - (self._lost - self.lost(sample))
 
     def lost(self, sample: int) -> float:
-        """Time [s] that the schedule has lost and not regained by `sample`."""
+        """Time [s] that the schedule has lost and not yet regained by `sample`."""
         return max(0.0, self._lost - self._steps(sample) * CATCH_UP / (1.0 + CATCH_UP))
 
     def is_late(self, sample: int) -> bool:
@@ -49,10 +49,7 @@ class Pace:
         return self.lost(sample) > 0.0
 
     def give_up_delay(self, sample: int, now: float) -> float:
-        """If `sample` is late at `now` [s, steady clock], make later samples due later.
-
-        Returns the delay [s], or 0.
-        """
+        """If `sample` is late at `now` [s, steady clock], delay it and later samples. Returns the delay [s], or 0."""
         if self.factor == 0.0:
             return 0.0
         delay = now - self.due(sample)
@@ -65,7 +62,7 @@ class Pace:
         return delay
 
     def held_by(self, sample: int) -> str:
-        """Why `sample` is not due, as text, where that is not only a matter of time: never."""
+        """The reason, as text, why `sample` waits for more than its due time. Here there is none: empty."""
         return ""
 
     def _steps(self, sample: int) -> float:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What callbacks ask of the run loop: its thread executes each request between two samples."""
+"""Requests of callbacks to the run loop, whose thread executes each of them between two samples."""
 
 import math
 import threading
@@ -7,30 +7,30 @@ import time
 from collections.abc import Callable, Generator
 from typing import Any, NamedTuple, Protocol
 
-INTERRUPT_AFTER = 1.0  # s of wall time for one sample, after which any request interrupts its computation
+INTERRUPT_AFTER = 1.0  # s of wall time: a request interrupts a sample that takes longer
 
 
 class Waking(Protocol):
-    """What a run loop sleeps on."""
+    """The event that a run loop waits for."""
 
     def set(self) -> None:
         """Wake the run loop, or let its next `wait` return at once."""
 
     def wait(self, seconds: float) -> bool:
-        """Sleep until it is woken, at most `seconds`; whether it was."""
+        """Sleep at most `seconds`; return whether it was woken."""
 
     def wake_callers(self) -> None:
-        """Let the executor look whether the requests that callbacks await are done."""
+        """Let the executor check whether awaited requests are done."""
 
 
 class Answer:
-    """The run loop's answer. A callback that awaits it lets the executor run callbacks of other groups meanwhile.
+    """The run loop's answer. While a callback awaits it, the executor runs callbacks of other groups.
 
     Attributes:
-        done: set once it is there.
+        done: whether it has been given.
         time: simulation time [s] at that moment.
-        failure: why the request was refused, as text; empty if it was not.
-        deadline: [s, steady clock] until when it is awaited.
+        failure: why the request was refused, as text; empty if it was executed.
+        deadline: [s, steady clock] end of the wait.
     """
 
     def __init__(self, inbox: Waking) -> None:
@@ -45,7 +45,7 @@ class Answer:
             self._inbox.wake_callers()
 
     def __await__(self) -> Generator[None, None, None]:
-        """Yield to the executor until the answer is there, or until `deadline`."""
+        """Yield to the executor until the answer is given, or until `deadline`."""
         self._awaited = True
         while not self.done.is_set() and time.monotonic() < self.deadline:
             yield
@@ -72,9 +72,9 @@ class RequestQueue:
         self._urgent = self.stopped = False
 
     def put(self, action: Callable[..., None], *arguments: Any, urgent: bool = False, newest: bool = False) -> Answer:
-        """Have `action(*arguments)` executed between two samples; an `urgent` one interrupts the present sample.
+        """Queue `action(*arguments)` for execution between two samples. If `urgent`, it interrupts the present sample.
 
-        newest: it replaces the last request, where that one has the same action.
+        newest: it replaces the last request if that has the same action.
         """
         request = Request(action, arguments, Answer(self._inbox))
         with self._guard:
@@ -86,7 +86,7 @@ class RequestQueue:
         return request.answer
 
     def take(self) -> list[Request]:
-        """The waiting requests, for the run loop to execute; later ones wait for the next sample."""
+        """Remove and return the waiting requests. Later ones wait for the next sample."""
         with self._guard:
             taken, self._waiting, self._urgent = self._waiting, [], False
         return taken
@@ -97,9 +97,9 @@ class RequestQueue:
         self._inbox.set()
 
     def interrupt(self, since: float) -> bool:
-        """Whether to interrupt the computation of a sample, begun at `since` [s, steady clock]."""
+        """Whether to interrupt the computation of a sample that began at `since` [s, steady clock]."""
         return self.stopped or self._urgent or (bool(self._waiting) and time.monotonic() - since > INTERRUPT_AFTER)
 
     def wait(self, seconds: float) -> bool:
-        """Sleep at most `seconds`; whether a request, a message or the end of the run was the reason to wake."""
+        """Sleep at most `seconds`; return whether a request, a message or the end of the run woke it."""
         return bool(self._waiting) or self.stopped or self._inbox.wait(seconds)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Messages that are serialised once; after that their numbers are changed in place.
+"""Messages that are serialised once. After that their numbers are changed in place.
 
-Serialising a message field by field costs more than computing its numbers. The layout of the serialised form stays the
-same while texts and lengths do; so only numbers at known offsets change.
+Serialising a message field by field costs more than computing its numbers. The layout of the serialised form depends
+only on texts and lengths, so the numbers keep their offsets.
 """
 
 import array
@@ -21,7 +21,7 @@ MARKED_TIME = 0x1A2B3C4D, 0x2B3C4D5E  # s, ns
 
 
 class SerialisedMessage:
-    """A `message` in its serialised form. Texts and lengths of sequences cannot be changed.
+    """A `message` in serialised form. Its texts and the lengths of its sequences are fixed.
 
     Attributes:
         numbers: views of its float64 numbers, by the path of a sequence or array ("torque_1"), or of a message with

@@ -61,20 +61,20 @@ def ros_domain(tmp_path_factory: Any) -> Iterator[int]:
 
 @pytest.fixture(autouse=True)
 def no_progress_on_a_slow_machine(monkeypatch: Any) -> None:
-    """What a command says in this process does not depend on how long it takes."""
+    """The output of a command in this process does not depend on its run time."""
     monkeypatch.setattr("eel_common.command.progress.QUIET", math.inf)
 
 
 @pytest.fixture
 def fresh_domain(monkeypatch: Any) -> Iterator[int]:
-    """A domain for one test alone, for what counts messages or publishers; in the environment while the test lasts."""
+    """A domain for one test, which counts messages or publishers; in the environment while the test lasts."""
     domain = reserve_domain()
     monkeypatch.setenv("ROS_DOMAIN_ID", str(domain.number))
     yield domain.number
     domain.claim.close()
 
 
-# Fast DDS without shared memory. It heeds FASTDDS_BUILTIN_TRANSPORTS only where the discovery range is left to it.
+# Fast DDS without shared memory. It obeys FASTDDS_BUILTIN_TRANSPORTS only if no discovery range is set.
 OVER_UDP = {
     "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",
     fastdds_profile.VARIABLE: str(Path(__file__).with_name("loopback_udp.xml")),
@@ -84,7 +84,7 @@ OVER_UDP = {
 def starter(folder: Path, **settings: str) -> Iterator[Callable[..., NodeProcess]]:
     """Yields start(executable, *arguments) -> NodeProcess, and ends what it started; output goes to `folder`.
 
-    settings: environment variables beside this process's own.
+    settings: further environment variables.
     """
     started: list[NodeProcess] = []
 
@@ -109,16 +109,16 @@ def start(tmp_path: Any) -> Any:
 def start_to_kill(tmp_path: Any) -> Any:
     """As `start`, for tests that kill a node while others run.
 
-    A killed node may leave a lock in shared memory behind. Fast DDS's thread of discovery in the nodes that go on then
-    waits for it without end, and they find nobody any more (eProsima/Fast-DDS issues 1144, 5053).
+    A killed node may leave a lock in shared memory. Fast DDS's discovery thread in other nodes then waits for it
+    without end, and they discover nobody any more (eProsima/Fast-DDS issues 1144, 5053).
     """
     yield from starter(tmp_path, **OVER_UDP)
 
 
 @pytest.fixture
 def start_in_turn(start: Any, tmp_path: Path) -> Any:
-    """start_in_turn(module, [words, ...]) -> [(status, what it said), ...]: the `main` of a node's or command's module
-    with one command line after the other, each of which it refuses; in one process, as imports take most of a start."""
+    """start_in_turn(module, [words, ...]) -> [(status, output), ...]: runs the `main` of a node's or command's module
+    with each command line, which it must refuse. All in one process, as imports take most of a start."""
 
     def start_all(module: str, lines: list[list[str]]) -> list[tuple[int, str]]:
         given = tmp_path / "lines.json"
@@ -134,7 +134,7 @@ def start_in_turn(start: Any, tmp_path: Path) -> Any:
 
 @pytest.fixture(scope="module")
 def start_for_module(tmp_path_factory: Any) -> Any:
-    """As `start`, for the tests of one module together; in a domain of its own."""
+    """As `start`, for all tests of one module; in a domain of its own."""
     before = os.environ["ROS_DOMAIN_ID"]
     domain = reserve_domain()
     os.environ["ROS_DOMAIN_ID"] = str(domain.number)
@@ -145,7 +145,7 @@ def start_for_module(tmp_path_factory: Any) -> Any:
 
 @pytest.fixture
 def limit_of_files() -> Any:
-    """limit_of_files(size): a context in which no file of this process may become larger [bytes]."""
+    """limit_of_files(size): a context in which no file of this process may exceed `size` [bytes]."""
 
     @contextlib.contextmanager
     def limited(size: int) -> Iterator[None]:

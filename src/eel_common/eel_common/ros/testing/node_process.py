@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A ROS node as a process of its own, which ends when its owner does, whatever way the owner ends."""
+"""A ROS node in a process of its own, which ends with its owner, however the owner ends."""
 
 import contextlib
 import ctypes
@@ -10,14 +10,14 @@ import subprocess
 import time
 from pathlib import Path
 
-PR_SET_PDEATHSIG = 1  # linux/prctl.h: the signal that the child gets when its parent has died
-PROMPT = 4.0  # s: far above what a good end takes (under 1 s), below any wait for the network (5 s and more)
-PATIENCE = 30.0  # s: a busy machine takes long, and a killed node may leave shared memory locked, for others to wait on
-MIDDLEWARE = "RTPS_TRANSPORT_SHM"  # Fast DDS: shared memory that is held by a process that does not answer
+PR_SET_PDEATHSIG = 1  # linux/prctl.h: the signal sent to the child when its parent dies
+PROMPT = 4.0  # s: far above a good end (under 1 s), below any wait for the network (5 s or more)
+PATIENCE = 30.0  # s: a busy machine is slow, and a killed node may leave locks in shared memory
+MIDDLEWARE = "RTPS_TRANSPORT_SHM"  # in Fast DDS's message on shared memory held by a stopped process
 
 
 def found_executable(name: str) -> str:
-    """Path of an executable of ours where `ros2 run` looks, or of a program on the PATH; `name` if it is nowhere."""
+    """Path of one of our executables, found as by `ros2 run`, or of a program on the PATH; else `name`."""
     prefixes = [Path(prefix) for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(":") if prefix]
     ours = (str(path) for prefix in prefixes for path in prefix.glob(f"lib/eel_*/{name}"))
     return next(ours, None) or shutil.which(name) or name
@@ -35,7 +35,7 @@ class NodeProcess:
 
         def prepare() -> None:
             libc.prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
-            signal.signal(signal.SIGINT, signal.SIG_DFL)  # a background job's children would ignore it
+            signal.signal(signal.SIGINT, signal.SIG_DFL)  # children of a background job ignore it by default
 
         with log.open("w") as output:
             self.process = subprocess.Popen(
@@ -54,16 +54,16 @@ class NodeProcess:
         return self.process.poll()
 
     def output(self) -> str:
-        """All it has said so far; not what the middleware says when some process on the machine has been stopped."""
+        """All its output so far, without the middleware's lines about stopped processes on the machine."""
         said = self.log.read_text(errors="replace").splitlines(keepends=True)
         return "".join(line for line in said if MIDDLEWARE not in line)
 
     def wait(self, timeout: float) -> int:
-        """Its exit status; `subprocess.TimeoutExpired` after `timeout` [s]."""
+        """Wait for the exit status and return it. `subprocess.TimeoutExpired` after `timeout` [s]."""
         return self.process.wait(timeout)
 
     def wait_for_output(self, text: str, timeout: float = 90.0) -> None:
-        """Until `text` stands in its output; AssertionError if it ends or `timeout` [s] passes without."""
+        """Wait until `text` is in its output. AssertionError if it ends first, or after `timeout` [s]."""
         deadline = time.monotonic() + timeout
         while text not in self.output():
             assert self.status is None, f"{self.name} ended with {self.status} before {text!r}:\n{self.output()}"
@@ -77,12 +77,12 @@ class NodeProcess:
         return self.process.wait(timeout)
 
     def time_to_end(self, sent: signal.Signals = signal.SIGINT, timeout: float = 60.0) -> float:
-        """[s] from a signal to the end, less what its threads waited for a processor that others had: so long as it
-        would take on a machine of its own. AssertionError after `timeout` [s]."""
+        """Time [s] from a signal to the end, less the time its threads waited for a processor: so it estimates the
+        time on a free machine. AssertionError after `timeout` [s]."""
         before = self._waited()
         waited, began = dict(before), time.monotonic()
         self.process.send_signal(sent)
-        ended = os.WEXITED | os.WNOWAIT | os.WNOHANG  # what is not yet fetched can still be asked
+        ended = os.WEXITED | os.WNOWAIT | os.WNOHANG  # without reaping it, so that it can still be queried
         while os.waitid(os.P_PID, self.process.pid, ended) is None:
             assert time.monotonic() - began < timeout, f"{self.name} has not ended {timeout} s after {sent.name}"
             waited |= self._waited()
@@ -93,7 +93,7 @@ class NodeProcess:
         return max(0.0, took - sum(delay - before.get(thread, 0.0) for thread, delay in waited.items()))
 
     def _waited(self) -> dict[str, float]:
-        """By thread, how long [s] it has been ready to run and had no processor (Linux's `schedstat`)."""
+        """For each thread, the time [s] that it was ready to run but had no processor (Linux's `schedstat`)."""
         found = {}
         for path in Path(f"/proc/{self.process.pid}/task").glob("*/schedstat"):
             with contextlib.suppress(OSError):  # it has just ended
@@ -101,8 +101,8 @@ class NodeProcess:
         return found
 
     def end(self, *, descendants: bool = True, patience: float = PATIENCE) -> None:
-        """Make sure that it is gone, asking first, and killing it after `patience` [s]; `descendants`: so are the
-        processes that it has started."""
+        """Make sure that it is gone: ask first, and kill it after `patience` [s]. descendants: include processes that
+        it has started."""
         try:
             self.interrupt(timeout=patience)
         except subprocess.TimeoutExpired:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What each package shows of its own files: a licence line in every source, a manifest that follows its schema.
+"""Checks of a package's own files: a licence line in every source, and a manifest that follows its schema.
 
-`ament_copyright` knows no SPDX lines, so that `sources_without_licence` stands in its place.
+`ament_copyright` does not know SPDX lines. `sources_without_licence` replaces it.
 """
 
 from pathlib import Path
@@ -13,7 +13,7 @@ SOURCES = (".py", ".pyi", ".hpp", ".cpp", ".cmake")
 
 
 def sources_without_licence(package: Path) -> list[Path]:
-    """The source files in the folder of a `package` that do not name their licence in one of the first two lines."""
+    """The source files of a `package` without a licence in their first two lines."""
     sources = [path for path in package.rglob("*") if path.suffix in SOURCES]
     assert sources, f"no sources in {package}"
     return [path for path in sources if LICENCE not in "".join(path.read_text().splitlines()[:2])]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A ROS domain that no other program on this machine uses, so that runs side by side do not discover each other."""
+"""A ROS domain that no other program on this machine uses, so that parallel test runs do not discover each other."""
 
 import os
 import random
@@ -8,14 +8,14 @@ import socket
 from dataclasses import dataclass
 from pathlib import Path
 
-DOMAINS = range(60, 100)  # above 101 the ports meet Linux's own range for outgoing connections
+DOMAINS = range(60, 100)  # above 101 the ports overlap Linux's range for outgoing connections
 PORT_BASE, PORTS_PER_DOMAIN = 7400, 250  # of the RTPS standard: discovery listens on UDP 7400 + 250 * domain
 SHARED_MEMORY = Path("/dev/shm")
 
 
 @dataclass(frozen=True)
 class Domain:
-    """A domain id [-], kept from other callers of `reserve_domain` for as long as this object lives."""
+    """A domain id [-], reserved against other callers of `reserve_domain` while this object lives."""
 
     number: int
     claim: socket.socket
@@ -44,9 +44,9 @@ def reserve_domain() -> Domain:
 
 
 def forget_the_killed(number: int, folder: Path = SHARED_MEMORY) -> None:
-    """Remove what processes in a domain have left of their ports in shared memory, where none runs any more.
+    """Remove what ended processes of a domain have left of their ports in shared memory, if none runs any more.
 
-    A killed process leaves them, at times locked; Fast DDS then finds the next one in the domain but hands it nothing
+    A killed process leaves them, sometimes locked. Fast DDS then finds the next node in the domain, but sends nothing
     (eProsima/Fast-DDS issues 1144, 5053).
     """
     ports = range(PORT_BASE + PORTS_PER_DOMAIN * number, PORT_BASE + PORTS_PER_DOMAIN * (number + 1))
@@ -55,5 +55,5 @@ def forget_the_killed(number: int, folder: Path = SHARED_MEMORY) -> None:
         if match and int(match[1]) in ports:
             try:
                 path.unlink(missing_ok=True)
-            except PermissionError:  # another user's: not ours to mend
+            except PermissionError:  # another user's: left alone
                 continue

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A call of a service that is answered on a busy machine too.
+"""A service call that gets its answer on a busy machine too.
 
 A node drops its reply to a client that it has not matched within 0.1 s, with "client will not receive response"
-(ros2/rmw_fastrtps issue 842). Such a client waits for ever, so the request is sent again.
+(ros2/rmw_fastrtps issue 842). That client would wait for ever, so the request is sent again.
 """
 
 import time
@@ -13,7 +13,7 @@ REPEAT = 20.0  # s without an answer
 
 
 def answer_of(service: Any, request: Any) -> Callable[[], object]:
-    """Send the `request` with the client `service`; the result gives the answer, or None as long as there is none."""
+    """Send the `request` with the client `service`. The result returns the answer, or None until it has come."""
     sent, last = [service.call_async(request)], time.monotonic()
 
     def answer() -> Any:
