@@ -58,4 +58,4 @@ __all__ = [
     "turning",
 ]
 
-load_gaits()  # they import what stands above
+load_gaits()  # last: they import the names above

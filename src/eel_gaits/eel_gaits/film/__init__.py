@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Filmed swimmers, as biologists publish them: tracked points, their repair, and the mean beat that they give."""
+"""Filmed swimmers in biologists' file formats: tracked points, their repair, and the mean beat fitted to them."""

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which tracks of a file are the swimmer: trackers give one animal a new name where they lose it.
+"""Selects the tracks of one swimmer: a tracker that loses an animal gives it a new name.
 
-Tracks that share no frame are one animal where each goes on about where the other would have come to. Of several
-such animals the one that is seen in most frames counts. Tracks that share frames need a choice.
+Tracks without a common frame are one animal if each starts near the place that the other was moving to. Of several such
+animals, the one seen in most frames is taken. Tracks with common frames need the user's choice.
 """
 
 from collections.abc import Iterable
@@ -12,17 +12,17 @@ from eel_common.wording import shown
 
 from eel_gaits.film.forms import Tracks
 
-APART, LOST = 0.25, 0.5  # of the length, and of the way since, by which a track may be beside where it is expected
+APART, LOST = 0.25, 0.5  # largest distance from the expected place: of the length, and of the way since
 NAMED = 8  # names in a message
 MOST_SCORE = 2.0  # peaks of SLEAP's maps go a little beyond 1
 
 
 def of_one(tracks: Tracks, animal: str | None, likely: float) -> tuple[np.ndarray, np.ndarray, list[str], list[str]]:
-    """Points (N, n, 2) of one animal, which of them are left out (N, n) as their scores are below `likely`, their names
-    (n,), and notes.
+    """Points (N, n, 2) of one animal, the mask (N, n) of points with scores below `likely`, the points' names (n,), and
+    notes.
 
-    animal: its name, or the names of its tracks with commas between them; where they share a frame, the one with most
-    points counts, of equals the first.
+    animal: its name, or the names of its tracks with commas between them. In a common frame the track with most points
+    is taken, of equals the first.
     """
     given = {name: points for name, points in tracks.animals.items() if _there(points).any()}
     tracks = tracks._replace(animals={name: _sure(tracks, name, likely) for name in tracks.animals})
@@ -67,7 +67,7 @@ def _sure(tracks: Tracks, name: str, likely: float) -> np.ndarray:
 
 
 def _is_one(tracks: Tracks, group: list[str], name: str) -> bool:
-    """Whether the `group` of tracks and another go on, at each change between them, where the other ended."""
+    """Whether each track, of the `group` and the named one, starts about where the one before it was moving to."""
     one, other = _merged(tracks.animals, group), tracks.animals[name]
     mine, both = _there(one), np.flatnonzero(_there(one) | _there(other))
     length = np.nanmedian(np.nansum(np.linalg.norm(np.diff(one[mine], axis=1), axis=2), axis=1))
@@ -84,18 +84,18 @@ def _is_one(tracks: Tracks, group: list[str], name: str) -> bool:
 
 
 def _way(before: np.ndarray, after: np.ndarray) -> np.ndarray:
-    """The mean way (2,) of the points (n, 2) that are there before and after; NaN where there is none."""
+    """The mean displacement (2,) of the points (n, 2) seen both before and after; NaN without any."""
     ways = (after - before)[np.isfinite(after - before).all(axis=1)]
     return np.asarray(ways.mean(axis=0)) if len(ways) else np.full(2, np.nan)
 
 
 def _there(points: np.ndarray) -> np.ndarray:
-    """In which frames (N,) any of the points (N, n, 2) is seen."""
+    """The frames (N,) in which any of the points (N, n, 2) is seen."""
     return np.asarray(np.isfinite(points).any(axis=(1, 2)))
 
 
 def _merged(tracks: dict[str, np.ndarray], names: list[str]) -> np.ndarray:
-    """The points (N, n, 2) of tracks with these `names`, in each frame of the first that has most."""
+    """The points (N, n, 2) of the tracks with these `names`; in each frame the track with most points, or the first."""
     found = tracks[names[0]].copy()
     most = np.isfinite(found).sum(axis=(1, 2))
     for name in names[1:]:

@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """The mean beat of a filmed swimmer: a period, harmonics in time, smooth functions along the body.
 
-The angle of each segment between two points, less the mean over the body, holds no rigid motion. It is fitted, weighted
-by the segment's length, by
+The angle of each segment between two points, less its mean over the body, is free of rigid motion. This function is
+fitted to it, weighted by the segment's length:
 
     theta(t, s) = sum over h = 0 ... H of (a_h(s) cos 2 pi h t / T + b_h(s) sin 2 pi h t / T),   K = d theta / ds
 
-where the curvatures of a_h and b_h are natural cubic splines through `knots` equally spaced knots. H and
-the number of knots are those that predict a beat best from the other beats: each whole beat is left out in turn, or
-one of 40 parts of many beats
-(cross-validation by blocks, Burman, Chow and Nolan, Biometrika 81 (1994), doi:10.1093/biomet/81.2.351). So errors that
-last for several frames, which a smoothing spline takes for motion, do not count unless they come with each beat. Of the
-fits whose error is within one standard error of the least, the one with fewest numbers counts (Breiman et al.,
-Classification and Regression Trees, 1984). The fits without each beat give the bands (jackknife).
+where the curvatures of a_h and b_h are natural cubic splines through `knots` equally spaced knots. H and the number of
+knots are chosen by block cross-validation (Burman, Chow and Nolan, Biometrika 81 (1994), doi:10.1093/biomet/81.2.351):
+they must best predict each beat from the others. Each whole beat, or one of 40 parts of a film with many, is left out
+in turn. So errors that last several frames, which a smoothing spline takes for motion, have no influence unless they
+recur with each beat. Of the fits within one standard error of the least error, the one with fewest numbers is taken
+(Breiman et al., Classification and Regression Trees, 1984). The fits without each beat give the confidence bands
+(jackknife).
 
-A missing point stands where the beat has it, moved along with its neighbours; the beat is fitted anew until that no
-longer changes (expectation and maximisation), without each beat too. Only what was seen judges a fit; bands are wider
-by what was not.
+A missing point is placed by the fitted beat, moved along with its neighbours. Fit and filling alternate until the
+points stop moving (expectation maximisation), also without each beat. Only observed segments judge a fit. Missing ones
+widen the bands.
 """
 
 import itertools
@@ -33,16 +33,16 @@ from eel_gaits.laws.law import Law
 from eel_gaits.laws.spline import natural_spline
 from eel_gaits.laws.term import Term
 
-FEWEST_BEATS, MOST_PARTS = 3, 40  # beats in a film, and parts of it that are left out in turn
+FEWEST_BEATS, MOST_PARTS = 3, 40  # fewest beats of a film, and most parts that are left out in turn
 LEAST_FRAMES = 4.0  # in a beat
 HARMONICS = 5  # at most
 LEAST_KNOTS, KNOTS = 2, 12  # along the body
-CONDITION = 100.0  # singular values below a part of 1 / 100 do not count: uneven points do not tell those shapes
-TRAVELS = 1.0  # rad of phase along the body, less of which counts as standing
+CONDITION = 100.0  # ratio of singular values, beyond which they are dropped: uneven points do not resolve those shapes
+TRAVELS = 1.0  # rad: a wave with less phase along the body counts as standing
 LEAST_SHARE = 0.5  # of the variance that the other beats must predict
-ROUNDS, FILLINGS = 4, 40  # of choosing, and of filling, at most
-STILL = 1e-4  # part of the length by which a filled point may still move
-THIN = 10.0  # times the frames that are seen, beyond which the beats of a film cannot be counted
+ROUNDS, FILLINGS = 4, 40  # most rounds of choosing, and of filling
+STILL = 1e-4  # part of the length: filling ends when points move less
+THIN = 10.0  # times the seen frames' spacing: beats cannot be counted across a longer gap
 FINE = 257  # places along the body at which splines are integrated
 OF_LAW = 65  # knots of the law's splines, where a part of the body is rigid
 QUANTILE = 0.975  # of Student's t, for the bands: 95 %
@@ -50,7 +50,7 @@ QUANTILE = 0.975  # of Student's t, for the bands: 95 %
 
 @dataclass(frozen=True, eq=False)
 class Beat:
-    """The beat of a `film`. Two fits (without a beat, or with another number of harmonics) differ in `curvature`."""
+    """The beat of a `film`. Fits without one beat, or with other harmonics, are further `Beat`s."""
 
     film: Film
     period: float  # s
@@ -59,13 +59,13 @@ class Beat:
     rigid: float  # part of the length from the head on that does not bend
     curvature: np.ndarray  # (1 + 2 harmonics, FINE) rad/m, at equal distances along the body: mean, cos, sin, cos ...
     share: float  # of the variance of the angles that the fit explains
-    predicted: float  # of it that is predicted from the other beats
+    predicted: float  # of that variance, predicted from the other beats
     residual: float  # m, root mean square distance of the points, rigid motion removed
     others: tuple["Beat", ...] = ()  # the fits without each of the beats
 
     @property
     def most_harmonics(self) -> int:
-        """As many as the frames in a beat can tell: fewer than half of their number."""
+        """The most harmonics that the frames in a beat resolve: fewer than half of their number."""
         return most_harmonics(self.film, self.period)
 
     @property
@@ -75,14 +75,14 @@ class Beat:
 
     @property
     def band(self) -> float:
-        """Half of the 95 % band of the curvature, mean over the body, by the greatest amplitude."""
+        """Half of the curvature's 95 % band, mean over the body, divided by the greatest amplitude."""
         size = np.max(np.hypot(self.curvature[1], self.curvature[2]))
         return float(np.mean(self.half_band([each.curvature[1:3] for each in self.others])) / size)
 
     def half_band(self, values: Any) -> np.ndarray:
-        """Half of the 95 % band of a figure from its `values` (n, ...) by the `others` (jackknife).
+        """Half of the 95 % band of a figure with the `values` (n, ...) in the `others` (jackknife).
 
-        It is wider where less was seen, like an error by the square root of the number of data.
+        With missing points it grows as the square root of the number of data falls.
         """
         from scipy.stats import t
 
@@ -93,11 +93,11 @@ class Beat:
 
     @property
     def doubts(self) -> list[str]:
-        """What in the film no body does, in sentences."""
+        """What the film shows that no real body does, in sentences."""
         return doubts_of(self.film, self.period, self.measured.stride)
 
     def law(self, length: float, name: str | None = None) -> Law:
-        """The beat for ever, on a body of `length` [m]: bends by the same angles, so curvature goes like 1 / length."""
+        """The beat repeated for ever on a body of `length` [m]. The angles are kept: curvature scales as 1 / length."""
         ratio, count = self.film.length / length, OF_LAW if self.rigid else self.knots
         place = np.linspace(0.0, length, count)
         values = ratio * natural_spline(np.linspace(0.0, length, FINE), self.curvature, place)
@@ -109,7 +109,7 @@ class Beat:
         return Law(terms, name=name or self.film.name.rpartition(".")[0] or "beat")
 
     def about(self) -> list[tuple[str, str]]:
-        """What was read and how it was smoothed: names and sentences."""
+        """How the film was read and smoothed: names and sentences."""
         film, seen = self.film, self.measured
         rigid = f", rigid up to {self.rigid:g} of the length" if self.rigid else ""
         beats = (film.time[-1] - film.time[0]) / self.period
@@ -135,14 +135,14 @@ class Beat:
 def beat_of(film: Film, *, harmonics: int | None = None, rigid: float = 0.0) -> Beat:
     """The mean beat of a `film`.
 
-    harmonics: None: as many as predict best. rigid: part of the length from the head on that does not bend.
-    `ValueError` for a motion that does not repeat, and for points in an order that is not plausible.
+    harmonics: None: the number that predicts best. rigid: part of the length, from the head, that does not bend.
+    `ValueError` for a motion that does not repeat, and for points in an implausible order.
     """
     if not 0.0 <= rigid <= 0.9:
         raise ValueError(f"rigid must be a part of the length from 0 to 0.9, got {rigid:g}")
     fit = _Fit(film, rigid)
     found = fit.best(harmonics)
-    if not rigid and _phase(found) > TRAVELS:  # a rigid part tells which end is the head
+    if not rigid and _phase(found) > TRAVELS:  # a rigid part marks the head
         seen = found.measured.excursion
         if seen[0] <= seen[-1]:
             raise ValueError(
@@ -159,7 +159,7 @@ def beat_of(film: Film, *, harmonics: int | None = None, rigid: float = 0.0) -> 
 
 
 def most_harmonics(film: Film, period: float) -> int:
-    """Harmonics that the frames in a beat of this `period` [s] can tell: fewer than half of their number."""
+    """The most harmonics that the frames in a beat of this `period` [s] resolve: fewer than half of their number."""
     frames = (len(film.time) - 1) * period / float(film.time[-1] - film.time[0])
     return max(1, min(HARMONICS, math.ceil(0.5 * frames) - 1))
 
@@ -175,7 +175,7 @@ class _Fit:
 
     def __init__(self, film: Film, rigid: float) -> None:
         self.film, self.rigid, self.arc = film, rigid, film.arc
-        self.weight = np.diff(self.arc) / np.mean(np.diff(self.arc))  # an error of a point turns a short segment more
+        self.weight = np.diff(self.arc) / np.mean(np.diff(self.arc))  # a point's error turns a short segment further
         self.missing = np.zeros(film.points.shape[:2], dtype=bool) if film.missing is None else film.missing
         self.seen = ~unseen_segments(self.missing)
         self.points = film.points
@@ -187,27 +187,27 @@ class _Fit:
         self.period = self._first_period()
         self.beats = np.floor(self.time / self.period + 1e-6).astype(int)
         self.beats = np.minimum(self.beats, max(0, round(self.time[-1] / self.period + 1e-6) - 1))
-        self.beats = np.unique(self.beats, return_inverse=True)[1]  # of those that are seen
+        self.beats = np.unique(self.beats, return_inverse=True)[1]  # only beats that were seen
         count = int(self.beats[-1]) + 1
-        self.beats = self.beats * min(count, MOST_PARTS) // count  # of many, some go together
+        self.beats = self.beats * min(count, MOST_PARTS) // count  # many beats are grouped
         if count < FEWEST_BEATS:
             raise ValueError(
                 f"{film.name}: there must be {FEWEST_BEATS} beats or more, got {count} of {self.period:.3g} s"
             )
-        told = int(np.sum(self.arc[1:] > rigid * self.arc[-1])) - (0 if rigid else 1)  # angles, less the whole turn
+        told = int(np.sum(self.arc[1:] > rigid * self.arc[-1])) - (0 if rigid else 1)  # angles without rigid rotation
         if told < LEAST_KNOTS:
             raise ValueError(f"{film.name}: rigid up to {rigid:g} of the length leaves {told} points to bend, too few")
         self.bases = {knots: self._basis(knots) for knots in range(LEAST_KNOTS, min(KNOTS, told) + 1)}
 
     def best(self, harmonics: int | None) -> Beat:
-        """The fit that predicts best, with those without each beat."""
+        """The fit that predicts best, together with the fits without each beat."""
         most = most_harmonics(self.film, self.period)
         if harmonics is not None and not 1 <= harmonics <= most:
             raise ValueError(f"harmonics must be 1 to {most} with this film, got {harmonics}")
         orders = range(1, most + 1) if harmonics is None else [harmonics]
         chosen = None
         for turn in range(ROUNDS):
-            some = orders if turn or not np.any(self.missing) else orders[:1]  # gaps at one phase tell no harmonics
+            some = orders if turn or not np.any(self.missing) else orders[:1]  # gaps at one phase hide harmonics
             tried = {each: self._errors(*each) for each in itertools.product(some, self.bases)}
             least = min(tried.values(), key=np.mean)
             good = [each for each, errors in tried.items() if _within_one_error(errors, least)]
@@ -246,19 +246,19 @@ class _Fit:
         return Beat(film, period, order, knots, self.rigid, *fit)
 
     def _angles_of(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The weighted angles (N, n - 1) of the segments between points, without the turn (N, 1) of the whole body."""
+        """The weighted angles (N, n - 1) of the segments, without the rotation (N, 1) of the whole body."""
         steps = np.diff(points, axis=1)
         angles = np.unwrap(np.arctan2(steps[..., 1], steps[..., 0]), axis=1)
         mean = self._mean(angles)
         return self.weight * (angles - mean), mean
 
     def _squares(self, angles: np.ndarray, frames: np.ndarray | None = None) -> float:
-        """The sum of the squares of these `angles` (N, n - 1) in the `frames`, of segments that were seen."""
+        """The sum of squares of these `angles` (N, n - 1) in the `frames`, over observed segments."""
         squares = np.where(self.seen, angles, 0.0) ** 2
         return float(np.sum(squares if frames is None else squares[frames]))
 
     def _errors(self, order: int, knots: int) -> np.ndarray:
-        """Sums of squares by which each beat is missed by the fit of the others."""
+        """The sum of squared errors of each beat, predicted by the fit of the others."""
         angles, _ = self.bases[knots]
         design, found = self._in_time(self.period, order), []
         for beat in range(self.beats[-1] + 1):
@@ -320,21 +320,21 @@ class _Fit:
         return np.column_stack([np.ones_like(turns), *harmonics(turns, order)])
 
     def _shape(self, fitted: np.ndarray, mean: np.ndarray) -> np.ndarray:
-        """The points (N, n, 2) [m] from the first on that the `fitted` angles (N, n - 1) and a whole turn give."""
+        """The points (N, n, 2) [m] from the `fitted` angles (N, n - 1) and a rotation of the whole body."""
         whole = fitted / self.weight + mean
         steps = np.diff(self.arc)[:, None] * np.stack((np.cos(whole), np.sin(whole)), axis=-1)
         return np.concatenate((np.zeros((len(whole), 1, 2)), np.cumsum(steps, axis=1)), axis=1)
 
     def _distance(self, shape: np.ndarray) -> float:
-        """Root mean square distance [m] of the points that were seen from a `shape` (N, n, 2)."""
+        """Root mean square distance [m] between the observed points and a `shape` (N, n, 2)."""
         apart = np.where(self.missing[..., None], np.nan, shape - self.film.points)
         apart = apart - np.nanmean(apart, axis=1, keepdims=True)
         return float(np.sqrt(np.nanmean(np.sum(apart**2, axis=2))))
 
 
 def _solved(design: np.ndarray, values: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """The coefficients C (2 H + 1, P) with which design C along^T comes nearest to the `values`."""
-    basis, root = np.linalg.qr(design)  # a small matrix is left, which takes no threads
+    """The coefficients C (2 H + 1, P) that minimise the distance of design C along^T from the `values`."""
+    basis, root = np.linalg.qr(design)  # leaves a small matrix, which needs no threads
     rows = np.linalg.lstsq(root, basis.T @ values, rcond=None)[0]
     return np.asarray(np.linalg.lstsq(along, rows.T, rcond=1.0 / CONDITION)[0].T)
 

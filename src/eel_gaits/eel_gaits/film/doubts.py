@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Films that lie: what tracked points do that no body does.
+"""Implausible films: tracked points that do what no body does.
 
-A body does not stretch. So the distance of two neighbours must not follow the beat, as where a part of the points is
-seen moved sideways as a whole, nor change slowly, as where a tracker slips along the body. Of each distance the part
-counts that means over whole beats and the first harmonic of the beat explain, less what all have in common (a camera
-that comes nearer): noise has little of it, and the chords of a bent body change at twice the beat. A slip for a time
-shows as frames far outside the distance's robust spread.
+A body does not stretch. So the distance of two neighbours must not follow the beat, as happens if some points are
+shifted sideways together. It must not drift either, as happens if a tracker slips along the body. Each distance is
+fitted by means over whole beats and the first harmonic of the beat, less what all distances share (a camera that moves
+closer). Noise has little of that, and the chords of a bending body change at twice the beat. A temporary slip shows as
+frames far outside the distance's robust spread.
 
-Points that are moved as a whole where the body hardly turns show as a segment that is askew between parallel ones.
+Points that are shifted together where the body hardly turns show as an oblique segment between parallel ones.
 
-A body that is bent in the mean swims in a curve: in this model it turns by 1.07 to 2.5 times its bend in a length of
-way, on three bodies at bends of 0.1 to 1.2 rad.
+A body with a mean bend swims in a curve. In this model it turns by 1.07 to 2.5 times its bend per length travelled, on
+three bodies at bends of 0.1 to 1.2 rad.
 """
 
 import math
@@ -22,19 +22,19 @@ from eel_gaits.film.film import SPREADS, Film, unseen_segments, usual_of
 from eel_gaits.film.kinematics import harmonics
 from eel_gaits.sources.order import FOLD
 
-STRETCH, OTHERS, SURE = 0.08, 3.0, 4.0  # RMS part of a distance, times that of steady ones, and standard errors
+STRETCH, OTHERS, SURE = 0.08, 3.0, 4.0  # RMS change of a distance: relative, by steady ones, by standard errors
 STEADY, PARTS = 0.25, 8  # quantile of the distances that count as steady; most parts of a film with a mean each
-ASKEW, PARALLEL = 0.25, 0.5  # rad, of a segment in the mean; part of it by which those beside it may differ
-BRIEF, OFTEN = 0.25, 0.05  # part of a distance by which it may differ, and of the frames; or beyond robust spreads
-FOLDED = 0.1  # part of the frames in which a point may fold the line back
-BENT, TURNED, STILL = 0.18, 0.5, 0.1  # rad, of a mean bend; part of it that the path must turn a length; L a beat
-WINDOW, PLACES = 0.25, 61  # of the length, over which the body's angle is averaged, and where along it
+ASKEW, PARALLEL = 0.25, 0.5  # rad: mean angle of a segment; part of it by which its neighbours may differ
+BRIEF, OFTEN = 0.25, 0.05  # allowed change of a distance, and the part of the frames with more
+FOLDED = 0.1  # part of the frames in which a point may fold the line
+BENT, TURNED, STILL = 0.18, 0.5, 0.1  # rad: mean bend; part of it that the path turns per length; L per beat
+WINDOW, PLACES = 0.25, 61  # of the length: window of the body's mean angle; places along the body
 
 
 def doubts_of(film: Film, period: float, stride: float | None = None) -> list[str]:
-    """What a `film` whose beat has this `period` [s] shows that no body does, in sentences.
+    """The implausible features of a `film` with a beat of this `period` [s], in sentences.
 
-    stride: way in a beat, by the length; without it the mean bend is not looked at.
+    stride: distance per beat, in lengths; without it the mean bend is not checked.
     """
     segments = np.diff(film.points, axis=1)
     angles = np.unwrap(np.arctan2(segments[..., 1], segments[..., 0]), axis=1)
@@ -48,7 +48,7 @@ def doubts_of(film: Film, period: float, stride: float | None = None) -> list[st
 
 
 def _stretched(film: Film, beats: np.ndarray) -> tuple[list[str], np.ndarray]:
-    """Which points are moved along the body or aside, and which segments (n - 1,) tell so."""
+    """The points that are shifted along the body or sideways, and the segments (n - 1,) that show it."""
     part, length = _stretches(film, beats)
     size = np.sqrt(np.mean(part**2, axis=0))
     odd = (size > STRETCH) & (size * length > OTHERS * np.quantile(size * length, STEADY))
@@ -68,7 +68,7 @@ def _stretched(film: Film, beats: np.ndarray) -> tuple[list[str], np.ndarray]:
 
 
 def _stretches(film: Film, beats: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Part (N, n - 1) by which each distance of neighbours is longer or shorter, 0 where that is not sure, and the mean
+    """The relative change (N, n - 1) of each distance between neighbours, 0 where it is not significant, and the mean
     distances (n - 1,) [m]."""
     steps = np.linalg.norm(np.diff(film.points, axis=1), axis=2)
     seen = np.ones(steps.shape, dtype=bool)
@@ -97,7 +97,7 @@ def _stretches(film: Film, beats: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _folding(film: Film, angles: np.ndarray) -> list[str]:
-    """Which points fold the line back in some frames; angles (N, n - 1) [rad]: of the segments."""
+    """The points that fold the line in some frames. angles (N, n - 1) [rad]: of the segments."""
     often = np.sum(np.abs(np.diff(angles, axis=1)) > FOLD, axis=0)
     places = np.flatnonzero(often > FOLDED * len(angles)) + 1
     if not len(places):
@@ -106,7 +106,7 @@ def _folding(film: Film, angles: np.ndarray) -> list[str]:
 
 
 def _askew(film: Film, bends: np.ndarray, known: np.ndarray) -> list[str]:
-    """Which points stand aside by their mean angles `bends` (B, n - 1) [rad] in each beat; not the segments `known`."""
+    """The points that stand aside, from the mean angles `bends` (B, n - 1) [rad] per beat; without segments `known`."""
     aside = bends[:, 1:-1] - 0.5 * (bends[:, 2:] + bends[:, :-2])
     mean, error = np.abs(aside.mean(axis=0)), aside.std(axis=0) / math.sqrt(len(bends))
     odd = (mean > np.maximum(ASKEW, SURE * error)) & ~known[1:-1]
@@ -119,7 +119,7 @@ def _askew(film: Film, bends: np.ndarray, known: np.ndarray) -> list[str]:
 
 
 def _bent(film: Film, bends: np.ndarray, whole: np.ndarray, beats: np.ndarray, stride: float) -> list[str]:
-    """Whether the body is bent in the mean, by `bends` (B, n - 1) [rad], and its angle `whole` (N,) hardly turns."""
+    """Whether the mean bend is large, from `bends` (B, n - 1) [rad], but the body's angle `whole` (N,) hardly turns."""
     ways = np.insert(np.cumsum(bends * np.diff(film.arc), axis=1), 0, 0.0, axis=1)
     starts, width = np.linspace(0.0, (1.0 - WINDOW) * film.length, PLACES), WINDOW * film.length
     angles = (
@@ -141,7 +141,7 @@ def _bent(film: Film, bends: np.ndarray, whole: np.ndarray, beats: np.ndarray, s
 
 
 def _moved(film: Film, place: int) -> str:
-    """That the points behind a `place` and those up to it are moved."""
+    """The sentence that the points before and behind a `place` are shifted against each other."""
     ahead, behind = range(place + 1), range(place + 1, film.points.shape[1])
     return f"{_names(film, behind)} moved as a whole against {_names(film, ahead)}"
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A filmed swimmer: tracked points in metres, repaired where that can be done safely, or refused in a sentence.
+"""A filmed swimmer: tracked points in metres, repaired where that is safe, or refused with a reason.
 
-Empty frames are left out. A point that is missing, unlikely, or has jumped is filled in between its neighbours, and
-later by the beat; a frame without an end point, or without a quarter of its points, is left out. Drift and turns of the
-swimmer need no repair: the body's bending does not contain them. Points that do not stand along the body in their order
+Empty frames are left out. A point that is missing, unlikely, or has jumped is interpolated between its neighbours, and
+later placed by the fitted beat. A frame without an end point, or without a quarter of its points, is left out. Drift
+and turns of the swimmer need no repair: the body's bending does not contain them. Points out of order along the body
 are refused.
 """
 
@@ -27,12 +27,12 @@ from eel_gaits.sources.order import FOLD, check_order
 
 FEWEST_POINTS, FEWEST_FRAMES = 5, 16
 MOST_MISSING = 0.25  # part of a frame's points that may be missing
-OFTEN, ENDS = 0.5, 0.2  # part of the frames in which a point must be seen to count; the same of the two ends
-JUMP, SPREADS = 0.5, 6.0  # of a segment's median length, and of its robust spread, beyond which a point has jumped
-CUT, STEPS = 0.25, 10.0  # of the length, and of the median step, beyond which the whole body has jumped
-CLOSE = 0.3  # of the median distance between neighbours, below which two points are one
-LONGEST = 100.0  # m, of a swimmer
-LIKELY = 0.6  # a tracker's likelihood or score of a point, below which it counts as missing; as in DeepLabCut
+OFTEN, ENDS = 0.5, 0.2  # least part of the frames with a point; the same for the two ends
+JUMP, SPREADS = 0.5, 6.0  # a point has jumped beyond these multiples of a segment's median length and robust spread
+CUT, STEPS = 0.25, 10.0  # the body has jumped beyond these multiples of its length and median step
+CLOSE = 0.3  # of the median distance between neighbours: closer points are one
+LONGEST = 100.0  # m: longest swimmer
+LIKELY = 0.6  # least likelihood or score of a tracker's point, as in DeepLabCut; others count as missing
 
 
 class Film(NamedTuple):
@@ -68,14 +68,14 @@ def read_film(
     points: Sequence[str] | None = None,
     likely: float | None = None,
 ) -> Film:
-    """The swimmer in a file of tracked points, in a form of `eel_gaits.film.forms`.
+    """The swimmer in a file of tracked points, in a format of `eel_gaits.film.forms`.
 
-    units: of length: m, cm, mm or px; None: those that the columns tell. scale: metres in the file's unit, for pixels.
-    time: the column of times, by name or number, where its name does not tell. rate: frames per second, where the file
+    units: of length: m, cm, mm or px; None: the columns' own. scale: metres per unit of the file, for pixels.
+    time: the column of times, by name or number, if its name is not recognised. rate: frames per second, if the file
     counts frames. animal: which of several, or names of its tracks with commas between them. points: names of those
     along the body, from head to tail, or patterns such as spine*, whose points come in the file's order; None: all.
-    likely: a tracker's likelihood or score below which a point counts as missing; None: 0.6, where it has scores.
-    `ValueError` in one line for what does not fit, and for points that do not stand along the body in their order.
+    likely: least likelihood or score of a tracker's point, others count as missing; None: 0.6, if it has scores.
+    `ValueError` in one line for unsuitable input, and for points out of order along the body.
     """
     path = Path(path)
     with reading(shown(str(path))):
@@ -121,7 +121,7 @@ def _metres(tracks: Tracks, units: str | None, scale: float | None) -> float:
 
 
 def _chosen(names: list[str], points: Sequence[str] | None) -> tuple[list[int], list[str]]:
-    """The places in the file of the points that are chosen from these `names`, and a note of those left out."""
+    """The places in the file of the points chosen from these `names`, and a note about those left out."""
     if points is None:
         return list(range(len(names))), []
     if isinstance(points, str):
@@ -140,7 +140,7 @@ def _chosen(names: list[str], points: Sequence[str] | None) -> tuple[list[int], 
 
 
 def _names_of(names: list[str], which: np.ndarray) -> str:
-    """The `names` (n,) of points that occur in `which` (N, n)."""
+    """The `names` (n,) of the points with any true value in `which` (N, n)."""
     return ", ".join(names[place] for place in np.flatnonzero(which.any(axis=0)))
 
 
@@ -189,13 +189,13 @@ def _repaired(name: str, time: np.ndarray, points: np.ndarray, names: list[str],
     if np.any(missing):
         notes.append(f"{np.sum(missing)} of {missing.size} points filled in")
         steps = usual_of(np.linalg.norm(np.diff(points, axis=1), axis=2))[0]
-        steps = np.where(np.isfinite(steps), steps, np.nanmedian(steps))  # of neighbours that are never seen together
+        steps = np.where(np.isfinite(steps), steps, np.nanmedian(steps))  # NaN for neighbours never seen together
         points = filled(points, missing, np.concatenate(([0.0], np.cumsum(steps))))
     return Film(name, time, points, tuple(notes), tuple(names), missing=missing)
 
 
 def _apart(points: np.ndarray) -> list[int]:
-    """The places without those that lie on the one ahead: two marks that were mixed up have no direction."""
+    """The places without points that coincide with the one ahead: a segment between them has no direction."""
     usual = usual_of(usual_of(np.linalg.norm(np.diff(points, axis=1), axis=2))[0][:, None])[0]
     kept = [0]
     for place in range(1, points.shape[1]):
@@ -205,8 +205,8 @@ def _apart(points: np.ndarray) -> list[int]:
 
 
 def _unswapped(points: np.ndarray, names: list[str]) -> tuple[np.ndarray, list[str]]:
-    """The points with those exchanged whose exchange makes all distances of a frame usual and takes its folds away; and
-    notes of these."""
+    """The points, with pairs exchanged where that makes all distances of a frame usual and removes its folds; and notes
+    of the exchanges."""
     steps = np.linalg.norm(np.diff(points, axis=1), axis=2)
     usual, spread = usual_of(steps)
     frames, notes = np.flatnonzero(_off(steps, usual, spread).any(axis=1) & _folded(points)), []
@@ -223,7 +223,7 @@ def _unswapped(points: np.ndarray, names: list[str]) -> tuple[np.ndarray, list[s
 
 
 def _folded(points: np.ndarray) -> np.ndarray:
-    """In which frames (N,) the line through the points (N, n, 2) folds back at one."""
+    """The frames (N,) in which the line through the points (N, n, 2) folds back at a point."""
     steps = np.diff(points, axis=1)
     along = np.sum(steps[:, 1:] * steps[:, :-1], axis=2)
     with np.errstate(invalid="ignore"):
@@ -234,12 +234,12 @@ def _folded(points: np.ndarray) -> np.ndarray:
 
 
 def unseen_segments(missing: np.ndarray) -> np.ndarray:
-    """The segments (N, n - 1) of which an end is `missing` (N, n)."""
+    """The segments (N, n - 1) with an end that is `missing` (N, n)."""
     return np.asarray(missing[:, 1:] | missing[:, :-1])
 
 
 def usual_of(steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The median (n - 1,) of distances (N, n - 1), and their robust spread; NaN for those that are never known."""
+    """The median (n - 1,) of distances (N, n - 1), and their robust spread; NaN for distances never seen."""
     found, known = np.full((2, steps.shape[1]), np.nan), np.isfinite(steps).any(axis=0)
     found[0, known] = np.nanmedian(steps[:, known], axis=0)
     found[1, known] = 1.4826 * np.nanmedian(np.abs(steps - found[0])[:, known], axis=0)
@@ -247,13 +247,13 @@ def usual_of(steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _off(steps: np.ndarray, usual: np.ndarray, spread: np.ndarray) -> np.ndarray:
-    """Which distances (N, n - 1) are far from the usual (n - 1,); not those that are not known."""
+    """The distances (N, n - 1) that are far from the usual (n - 1,). Unknown distances are not."""
     with np.errstate(invalid="ignore"):
         return np.asarray(np.abs(steps - usual) > np.maximum(JUMP * usual, SPREADS * spread))
 
 
 def _jumps(points: np.ndarray) -> np.ndarray:
-    """(N, n), whether both distances of a point to its neighbours, or the one of an end, are far from the usual."""
+    """(N, n): whether both distances of a point to its neighbours, or an end's only one, are far from the usual."""
     steps = np.linalg.norm(np.diff(points, axis=1), axis=2)
     off, found = _off(steps, *usual_of(steps)), np.zeros(points.shape[:2], dtype=bool)
     found[:, 1:-1] = off[:, 1:] & off[:, :-1]
@@ -263,9 +263,9 @@ def _jumps(points: np.ndarray) -> np.ndarray:
 
 
 def filled(points: np.ndarray, missing: np.ndarray, arc: np.ndarray, shape: np.ndarray | float = 0.0) -> np.ndarray:
-    """The points (N, n, 2), those `missing` (N, n) as a `shape` (N, n, 2) has them, moved along with their neighbours.
+    """The points (N, n, 2), with those `missing` (N, n) placed by a `shape` (N, n, 2), moved along with neighbours.
 
-    arc: of the points (n,). The ends are there.
+    arc: of the points (n,). The ends must not be missing.
     """
     place = np.arange(len(arc))
     ahead = np.maximum.accumulate(np.where(missing, 0, place), axis=1)
@@ -277,7 +277,7 @@ def filled(points: np.ndarray, missing: np.ndarray, arc: np.ndarray, shape: np.n
 
 
 def _check_whole(film: Film) -> None:
-    """`ValueError` where the whole body jumps from one frame to the next: a cut, or another animal."""
+    """`ValueError` if the whole body jumps between two frames: a cut, or another animal."""
     centre = film.points.mean(axis=1)
     steps = np.linalg.norm(np.diff(centre, axis=0), axis=1)
     pace = steps / np.diff(film.time)

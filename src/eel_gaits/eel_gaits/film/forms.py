@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The forms of files of tracked points. Each gives points by animal, in the file's unit of length.
+"""File formats of tracked points. Each gives points by animal, in the file's unit of length.
 
     time_s, point, x_mm, y_mm                  a row for each point; all rows of one time are a frame, head first
     time_s, x0_m, y0_m, x1_m, y1_m ...         a row for each frame
     scorer / bodyparts / coords                DeepLabCut (.csv, and .h5 where h5py is installed)
-    scorer / individuals / bodyparts / coords  the same, of several animals
+    scorer / individuals / bodyparts / coords  the same, for several animals
     track, frame_idx, instance.score, nose.x   SLEAP's analysis (.csv, and .h5 likewise)
 
-A unit after the last _ of a column counts as the file's. The trackers' points are in pixels, and their time in frames.
+A unit after the last _ of a column's name applies to the file. Trackers give points in pixels, and time in frames.
 """
 
 import itertools
@@ -26,13 +26,13 @@ from eel_gaits.film.hdf5 import Columns, read_hdf5
 from eel_gaits.sources.frames import check_rising, check_steps, frame_starts
 
 LENGTHS = {unit: metres for unit, (si, metres) in UNITS.items() if si == "m"}  # NaN for pixels, which have no length
-SHORT = ", ".join(words.split()[0] for words in LISTED["m"].values())  # of them, for messages
-COORDINATE = re.compile(  # x, x0, head_x, x_head, each before a unit; mxmm of fishmechr
+SHORT = ", ".join(words.split()[0] for words in LISTED["m"].values())  # their names, for messages
+COORDINATE = re.compile(  # x, x0, head_x, x_head, each before a unit; mxmm in fishmechr
     rf"m?(?P<axis>[xy])_?(?P<number>[0-9]*)(?P<unit>{'|'.join(LENGTHS)})?|"
     r"(?P<name>.+)[._](?P<last>[xy])|(?P<first>[xy])[._](?P<part>.+)"
 )
 SCORE = re.compile(r"(?:(?P<before>.+?)[._]?)?(?:likelihood|score|confidence)(?:[._]?(?P<after>.+))?")
-FRAMES = "frame", "frames", "image"  # names of a column that counts them
+FRAMES = "frame", "frames", "image"  # names of a column of frame numbers
 TRACK = "track"  # SLEAP's column of names
 
 
@@ -41,17 +41,17 @@ class Tracks(NamedTuple):
 
     time: np.ndarray  # (N,) s; frame numbers where `frames`
     animals: dict[str, np.ndarray]  # (N, n, 2) of each, NaN where missing
-    names: dict[str, list[str]]  # of its points, in the file's order
-    unit: str  # of length; "" where the file does not tell
-    frames: bool  # whether time is a number of frames, and the points are parts of a tracker's skeleton
-    scores: dict[str, np.ndarray]  # (N, n) of each: likelihoods of DeepLabCut, scores of SLEAP; NaN where not told
+    names: dict[str, list[str]]  # names of its points, in the file's order
+    unit: str  # of length; "" if unknown
+    frames: bool  # whether time counts frames; then points belong to a tracker's skeleton
+    scores: dict[str, np.ndarray]  # (N, n) of each: likelihoods of DeepLabCut, scores of SLEAP; NaN without one
     read: str = ""  # what was guessed of the file's form, in words
 
 
 def read_tracks(path: Path, time: str = "") -> Tracks:
-    """The points in a table of text or an .h5 file. `ValueError` names line, column and value of what does not fit.
+    """The points in a table of text or an .h5 file. `ValueError` names line, column and value of an error.
 
-    time: the column of times, where its name does not tell.
+    time: the column of times, if its name is not recognised.
     """
     if path.suffix.lower() == ".h5":
         return _counted(time, _of_hdf(path))
@@ -65,7 +65,7 @@ def read_tracks(path: Path, time: str = "") -> Tracks:
 
 
 def _counted(time: str, tracks: Tracks) -> Tracks:
-    """A tracker's `tracks`. `ValueError` where a column of times is named, a frame has no number, or names repeat."""
+    """A tracker's `tracks`, checked. `ValueError` for a column of times, a frame without number, or repeated names."""
     if time:
         raise ValueError(f"a tracker's file counts frames: a column of times has no place, got {shown(time)}")
     if len(bad := np.flatnonzero(~np.isfinite(tracks.time))):
@@ -89,7 +89,7 @@ def _of_columns(table: Table, column: str) -> Tracks:
         if first != place:
             twice[mark] = [table.head[first], table.head[place]]
     marks = [mark for axis, mark in places if axis == "x" and ("y", mark) in places]
-    marks = [mark for mark in marks if not mark or mark.isdigit()] or marks  # names may be of a mean or an error
+    marks = [mark for mark in marks if not mark or mark.isdigit()] or marks  # other names may be means or errors
     if not marks or ("" in marks and len(marks) > 1):
         raise ValueError(
             "its columns must be time, x, y (perhaps with a unit: time_s, x_mm), or time, x0, y0, x1, y1 ..., "
@@ -126,7 +126,7 @@ def _of_columns(table: Table, column: str) -> Tracks:
 
 
 def _scores(table: Table, marks: list[str], used: list[int]) -> np.ndarray:
-    """Scores (rows, marks) in the columns that are not `used`; NaN for a mark without one. Others go into the notes."""
+    """Scores (rows, marks) in the columns not `used`; NaN for a mark without one. Other columns go into the notes."""
     found, told, other = np.full((len(table), len(marks)), np.nan), dict[str, int](), list[str]()
     for place, name in enumerate(table.head):
         if place in used or not (m := SCORE.fullmatch(split_name(name)[0])):
@@ -144,10 +144,10 @@ def _scores(table: Table, marks: list[str], used: list[int]) -> np.ndarray:
 
 
 def _by_point(table: Table, time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[str]]:
-    """Instants (N,), the `values` x, y, score (rows, 3) of points as (N, n, 3), NaN where a row is left out, and the
-    points' names in the order of the fullest frame.
+    """Instants (N,), the `values` x, y, score (rows, 3) of points as (N, n, 3), NaN for missing rows, and the points'
+    names in the order of the fullest frame.
 
-    `ValueError` where the time of a point does not rise.
+    `ValueError` if the time of a point does not rise.
     """
     names, last = table.texts(table.places("point")[0]), dict[str, int]()
     for row, name in enumerate(names):
@@ -180,7 +180,7 @@ def _of_deeplabcut(table: Table, rows: dict[str, list[str]]) -> Tracks:
 
 
 def _of_parts(frames: np.ndarray, names: list[tuple[str, str, str]], values: np.ndarray) -> Tracks:
-    """Tracks of DeepLabCut's columns, each with the names of (animal, body part, x, y or likelihood)."""
+    """Tracks from DeepLabCut's columns, whose `names` are (animal, body part, x, y or likelihood)."""
     column = {name: index for index, name in enumerate(names)}
     if len(column) < len(names):
         twice = next(name for index, name in enumerate(names) if column[name] != index)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tracked points in HDF5: DeepLabCut's tables, as pandas writes them by PyTables, and SLEAP's analysis files.
 
-A table of pandas holds its numbers in blocks, which are plain data sets. In the form `fixed` the names of columns are
-plain too: levels and, for each column, a number of each level. In the form `table` they are a pickled list in an
-attribute, which is read as a text and never unpickled.
+A pandas table holds its numbers in blocks, which are plain data sets. In the `fixed` format the column names are plain
+too: levels, and for each column an index into each level. In the `table` format they are a pickled list in an
+attribute, which is read as text and never unpickled.
 """
 
 import json
@@ -16,8 +16,8 @@ from eel_common.files.hdf5 import MOST_NAMES, attribute_text, members, names_in,
 from eel_common.files.tables import MOST_BYTES
 from eel_common.wording import shown
 
-LEVELS = 3, 4  # of the names of columns: scorer, perhaps individuals, bodyparts, coords
-MATLAB = "track", "xy", "node", "frame"  # axes of SLEAP's points, where the file does not say
+LEVELS = 3, 4  # levels of the column names: scorer, perhaps individuals, bodyparts, coords
+MATLAB = "track", "xy", "node", "frame"  # axes of SLEAP's points, if the file does not name them
 EXPORT = "export it as .csv"
 
 
@@ -38,7 +38,7 @@ class Skeletons(NamedTuple):
 
 
 def read_hdf5(path: Path) -> Columns | Skeletons:
-    """What the .h5 file holds. `ValueError` for anything else, and for parts that only unpickling would tell."""
+    """The contents of the .h5 file. `ValueError` for anything else, and for parts that need unpickling."""
     with opened_hdf5(path, MOST_BYTES) as file:
         found = members(file)
         if {"tracks", "node_names"} <= set(found):
@@ -64,7 +64,7 @@ def _of_sleap(found: dict[str, Any]) -> Skeletons:
     if points.shape[1] != 2 or points.shape[2] != len(parts):
         raise ValueError(f"tracks must be of x and y of {len(parts)} nodes, got the shape {points.shape}")
     names = texts_of(found["track_names"]) if "track_names" in found else []
-    names = names or [""] * min(1, len(points))  # without tracking there is one
+    names = names or [""] * min(1, len(points))  # without tracking there is one unnamed track
     if len(names) != len(points) or len(set(names)) < len(names):
         raise ValueError(f"each track must have a name of its own, got {len(points)} tracks and {shown(names)}")
     tracks = {name: each.transpose(2, 1, 0) for name, each in zip(names, points, strict=True)}
@@ -107,7 +107,7 @@ def _of_blocks(group: Any) -> tuple[np.ndarray, list[tuple[str, ...]], np.ndarra
 
 
 def _frames(index: np.ndarray | None, count: int) -> np.ndarray:
-    """The frames' numbers (N,): those of the index, where they are numbers."""
+    """The frame numbers (N,): the index, if it holds numbers."""
     return np.arange(count, dtype=float) if index is None or index.shape != (count,) else index.astype(float)
 
 
@@ -120,7 +120,7 @@ def _side_by_side(blocks: list[np.ndarray]) -> np.ndarray:
 
 
 def _of_columns(frames: np.ndarray, names: list[tuple[str, ...]], values: np.ndarray) -> Columns:
-    """`ValueError` unless each column has a name of DeepLabCut's levels."""
+    """The columns, checked. `ValueError` unless each has a name of DeepLabCut's levels."""
     if len(names) != values.shape[1] or any(len(name) not in LEVELS for name in names):
         rule = "a DeepLabCut table must have columns of scorer, (individuals,) bodyparts and coords"
         raise ValueError(f"{rule}, got {shown(names[:3])}: {EXPORT}")

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What biologists measure on a steady swimmer, from points along its body: of a film, or of a run likewise.
+"""The kinematics that biologists measure on a steady swimmer, from points along its body in a film or a run.
 
-The path is a polynomial in time of degree 2 through the points' mean, with harmonics of the beat beside it. Sideways
-is across the path. The wave's length follows from the slope of the phase along the body, weighted by the square of
-the amplitude.
+The path is a quadratic in time through the points' mean, fitted together with harmonics of the beat. Sideways means
+across the path. The wavelength follows from the slope of the phase along the body, weighted by the square of the
+amplitude.
 """
 
 import math
@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-HARMONICS = 2  # of the beat, beside the path
-STANDING = 1e-2  # of the length in a beat: a slower swimmer has no direction of its own
+HARMONICS = 2  # of the beat, fitted with the path
+STANDING = 1e-2  # of the length per beat: a slower swimmer has no direction
 
 
 @dataclass(frozen=True)
@@ -21,30 +21,30 @@ class Kinematics:
 
     length: float  # m
     period: float  # s
-    speed: float  # m/s, of the points' mean along the path
+    speed: float  # m/s, speed of the points' mean along the path
     ahead: bool  # whether it moves head first
-    excursion: np.ndarray  # (n,) L, of each point from side to side
-    wavelength: float  # L, of the sideways motion; inf where it stands
-    yaw: float  # rad, amplitude of the first segment's angle
+    excursion: np.ndarray  # (n,) L, peak-to-peak, of each point
+    wavelength: float  # L, of the sideways motion; inf for a standing wave
+    yaw: float  # rad, amplitude of the first segment
 
     @property
     def stride(self) -> float:
-        """Way in a beat, by the length."""
+        """Distance per beat, in lengths."""
         return self.speed * self.period / self.length
 
     @property
     def slip(self) -> float:
-        """Speed of swimming by that of the wave."""
+        """Swimming speed divided by the wave's speed."""
         return self.stride / self.wavelength
 
     @property
     def strouhal(self) -> float:
-        """Frequency times the tail's excursion by the speed."""
+        """Frequency times the tail's excursion, divided by the speed."""
         return float(self.excursion[-1]) / self.stride if self.stride else math.inf
 
 
 def arc_of(points: np.ndarray, missing: np.ndarray | None = None) -> np.ndarray:
-    """Mean arc lengths (n,) [m] of the points (N, n, 2) [m], by distances of those that are not `missing` (N, n)."""
+    """Mean arc lengths (n,) [m] of the points (N, n, 2) [m], from distances between points not `missing` (N, n)."""
     steps = np.linalg.norm(np.diff(points, axis=1), axis=2)
     if missing is not None:
         seen = ~(missing[:, 1:] | missing[:, :-1])
@@ -86,7 +86,7 @@ def kinematics(time: np.ndarray, points: np.ndarray, period: float) -> Kinematic
 
 
 def harmonics(turns: np.ndarray, order: int) -> list[np.ndarray]:
-    """cos and sin (N,) of 1 to `order` times the `turns` (N,) [rad]."""
+    """cos and sin (N,) of 1 to `order` times the phase `turns` (N,) [rad]."""
     return [f(h * turns) for h in range(1, order + 1) for f in (np.cos, np.sin)]
 
 

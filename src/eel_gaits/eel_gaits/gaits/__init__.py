@@ -7,5 +7,5 @@ The numbers of a gait are the fields of a frozen dataclass. Each has a unit, a d
     falling(period=2.0)               # with one number changed
     gait("turning", left_bend=0.5)    # by name
 
-A new gait is a function beside these, with `register` (registry.py), and a name in eel_gaits/__init__.py.
+A new gait is a function in a file here, with the decorator `register` (registry.py). eel_gaits/__init__.py names it.
 """

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A central pattern generator: a chain of phase oscillators. Its curvature follows every change of numbers smoothly.
+"""A central pattern generator: a chain of phase oscillators. Its curvature follows every new number smoothly.
 
 Oscillator i at X_i has a phase theta_i and an amplitude r_i, and the curvature there is K3 = b - r_i sin(theta_i):
 
     theta_i' = 2 pi f + w sum over neighbours j of sin(theta_j - theta_i + k (X_j - X_i))
     r_i''    = a (a / 4 (A(X_i) - r_i) - r_i')        b'' = a (a / 4 (B - b) - b')
 
-after Ijspeert, Crespi, Ryczko and Cabelguen, Science 315 (2007), 1416-1420, doi:10.1126/science.1138353. The numbers
-f = 1 / period, k = 2 pi / wavelength, those of A(X) = a0 + a1 X + a2 X^2, and B = -left_bend follow what is set:
+after Ijspeert, Crespi, Ryczko and Cabelguen, Science 315 (2007), 1416-1420, doi:10.1126/science.1138353. The numbers p,
+which are f = 1 / period, k = 2 pi / wavelength, those of A(X) = a0 + a1 X + a2 X^2, and B = -left_bend, follow theirs:
 
     p'' = g^2 (p_set - p) - 2 g p'
 
-So curvature, rate and acceleration never jump. Once all has settled, the curvature is one wave term and a bend.
+So curvature, rate and acceleration never jump. In the settled state, the curvature is one wave term and a bend.
 """
 
 import math
@@ -34,7 +34,7 @@ LONGEST_SAMPLE = 0.02  # s
 
 @dataclass(frozen=True, kw_only=True)
 class Oscillation(Wave):
-    """The numbers of a chain of oscillators. The node streams its curvature; a law has the settled wave."""
+    """The numbers of a chain of oscillators. The node streams its curvature; a law holds only the settled wave."""
 
     left_bend: float = left_quantity(0.0, "yaw curvature of a turn")
     convergence: float = quantity(8.0, "1/s", "rate at which amplitudes settle, a", 0.01, 1e3)
@@ -47,7 +47,7 @@ class Oscillation(Wave):
         return min(LONGEST_SAMPLE, self.period / SAMPLES_PER_PERIOD)
 
     def targets(self) -> np.ndarray:
-        """What the oscillators are to settle at: f [Hz], k [rad/m], a0, a1, a2, B, shape (6,)."""
+        """The target values of the oscillators: f [Hz], k [rad/m], a0, a1, a2, B, shape (6,)."""
         wave = self.amplitude_0, self.amplitude_1, self.amplitude_2
         return np.array((1.0 / self.period, 2.0 * math.pi / self.wavelength, *wave, -self.left_bend))
 
@@ -59,11 +59,11 @@ def cpg(numbers: Oscillation) -> tuple[Term, ...]:
 
 
 class Oscillators:
-    """The chain in motion, from rest at `time` [s]. numbers: `Oscillation`, of which `length` is that of the start.
+    """The chain in motion, from rest at `time` [s]. numbers: `Oscillation`; its `length` is fixed at the start.
 
     Attributes:
-        numbers: those that are followed from the present on.
-        time: [s], the present.
+        numbers: the present targets.
+        time: [s], the present time.
         x: (21,) m, places of the oscillators.
     """
 
@@ -130,5 +130,5 @@ class Oscillators:
 
 
 def _pull(apart: np.ndarray) -> np.ndarray:
-    """What the neighbours `apart` (n - 1,) from one another do to each of n oscillators."""
+    """The coupling of n oscillators from the differences `apart` (n - 1,) between neighbours."""
     return np.asarray(COUPLING * (np.append(apart, 0.0) - np.append(0.0, apart)))

@@ -3,7 +3,7 @@
 
 Dives and climbs: the forward wave with bends in pitch. Source: Boyer, Porez and Leroyer, J. Nonlinear Sci. 20 (2010),
 section 7.2.2, doi:10.1007/s00332-009-9050-5.
-Rolls: bends whose direction turns about the backbone, equal motions in pitch and yaw, a quarter of a period apart.
+Rolls: equal bends in pitch and yaw, a quarter of a period apart, so that the bend turns about the backbone.
 """
 
 import math
@@ -117,7 +117,7 @@ def spiral(numbers: Spiral) -> tuple[Term, ...]:
     middle, end = start + time, start + 2.0 * time
     lasting = (Ramp(middle, end, 1.0),)
     return (
-        numbers.term().scaled(math.copysign(1.0, 0.0 - numbers.left_bend)),  # so that left and right are mirror images
+        numbers.term().scaled(math.copysign(1.0, 0.0 - numbers.left_bend)),  # left and right are mirror images
         *constant_bend("pitch", numbers.first_pitch_bend, (Ramp(start, middle, 1.0), Ramp(middle, end, -1.0))),
         *left_turn(numbers.left_bend, lasting),
         *constant_bend("pitch", numbers.pitch_bend, lasting),
@@ -135,7 +135,7 @@ def rolling(numbers: Roll) -> tuple[Term, ...]:
 
 @register(RollOver)
 def roll_over(numbers: RollOver) -> tuple[Term, ...]:
-    """Half a turn about the backbone: while a bend turns about it, body and water turn the other way."""
+    """Half a turn about the backbone: while a bend rotates about it, body and water rotate the other way."""
     start, end = numbers.start_periods * numbers.period, numbers.hold_periods * numbers.period
     end += start
     envelope = (Ramp(0.0, start, 1.0), Ramp(end, end + start, -1.0))

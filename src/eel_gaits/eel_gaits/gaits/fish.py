@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fish. By midline: the lateral displacement h(X, t) that was measured on fish, as a curvature (`laws.midline`).
+"""Fish. By midline: the lateral displacement h(X, t) measured on fish, converted to a curvature (`laws.midline`).
 
     h(X, t) = a(X) sin(2 pi (waves X / L - t / T)),   X: arc length from the nose, L: body length
 
@@ -113,7 +113,7 @@ def carangiform(numbers: Carangiform) -> tuple[Term, ...]:
 
 @register(Anguilliform)
 def anguilliform(numbers: Anguilliform) -> tuple[Term, ...]:
-    """A lamprey or an eel: the whole body moves sideways, and more towards the tail."""
+    """A lamprey or an eel: the whole body moves sideways, increasingly towards the tail."""
 
     def amplitude(x: np.ndarray) -> tuple[np.ndarray, ...]:
         a = numbers.lateral_tail * np.exp(numbers.growth * (x - 1.0))

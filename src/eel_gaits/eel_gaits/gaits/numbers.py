@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Numbers that several gaits have, their smooth start from rest, and bends of the whole body.
+"""Numbers shared by several gaits, their smooth start from rest, and bends of the whole body.
 
-A number that has a side is positive to the left.
+A number with a side is positive to the left.
 """
 
 import math
@@ -54,7 +54,7 @@ def duration_quantity(default: float, description: str) -> float:
 
 
 def instant_quantity(default: float, description: str, after: str = "") -> float:
-    """A time of the law, which may have to lie after another one."""
+    """A time of the law. after: the name of a number that it must exceed."""
     return quantity(default, "s", f"{description}, in the law's own time", 0.0, 1e6, after=after)
 
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Gaits by name, and those of other packages.
+"""Gaits by name, of this package and others.
 
 A gait is written as a function that makes terms from its numbers. `register` lists it, and turns it into a function
-that takes the numbers as keywords and returns a `Law`. `load_gaits` imports all files of this folder, so that no gait
-is left out; `eel_gaits/__init__.py` has the names for users of the library. A package that is installed adds its own by
-an entry point, whose value is a function with the decorator `eel_gaits.register`:
+that takes the numbers as keywords and returns a `Law`. `load_gaits` imports all files of this folder.
+`eel_gaits/__init__.py` has the names for users of the library. Another installed package adds a gait by an entry point,
+whose value is a function with the decorator `eel_gaits.register`:
 
     [project.entry-points."eel_gaits.gaits"]
     wiggle = "my_package.gaits:wiggle"
@@ -29,19 +29,19 @@ from eel_gaits.laws.law import Law
 
 @dataclass(frozen=True, kw_only=True)
 class Transition(Quantities):
-    """How a receiver that is already moving takes over the law."""
+    """How a swimmer that is already moving changes to the law."""
 
     transition: float = quantity(0.0, "s", "duration of the blend into the law; 0: the receiver's default", 0.0, 1e4)
 
 
-GROUP = "eel_gaits.gaits"  # of entry points
-GAITS: dict[str, Any] = {}  # name of the gait: its function, whose attribute `numbers` is the class of its numbers
+GROUP = "eel_gaits.gaits"  # the group of entry points
+GAITS: dict[str, Any] = {}  # name: the gait's function; its attribute `numbers` is the class of its numbers
 
 
 def gait(name: str, *, transition: float = 0.0, **numbers: float) -> Law:
     """The law of the gait called `name`. `numbers` replace its defaults.
 
-    transition [s]: that of the law. `ValueError` for an unknown gait lists the known ones.
+    transition: [s], of the law. `ValueError` for an unknown gait lists the known ones.
     """
     law: Law = find(name)(transition=transition, **numbers)
     return law
@@ -56,7 +56,7 @@ def find(name: object) -> Any:
 
 
 def named_instead(name: str, known: Collection[str]) -> str:
-    """What a message says after a number `name` that is not `known`: those that there are."""
+    """The end of an error about an unknown number `name`: the names that are `known`."""
     return f"{did_you_mean(name, known)}, it has: {', '.join(known) or 'none'}"
 
 
@@ -78,7 +78,7 @@ def register(numbers_class: type[Quantities]) -> Callable[[Callable[..., Any]], 
             return Law(*terms_of(numbers_class(**numbers)), name=name, transition=transition)
 
         keyword = inspect.Parameter("transition", inspect.Parameter.KEYWORD_ONLY, default=0.0)
-        make: Any = made  # it gets a signature and a class of numbers of its own
+        make: Any = made  # it gets its own signature and class of numbers
         make.__signature__ = inspect.Signature(
             [keyword, *inspect.signature(numbers_class).parameters.values()], return_annotation=Law
         )
@@ -94,9 +94,9 @@ def register(numbers_class: type[Quantities]) -> Callable[[Callable[..., Any]], 
 
 
 def load_gaits() -> None:
-    """Load the gaits of this folder, and those of other packages: each lists itself.
+    """Load the gaits of this folder, and those of other packages. Each registers itself.
 
-    One of another package that cannot be loaded gives a warning.
+    A gait of another package that cannot be loaded causes a warning.
     """
     for module in pkgutil.iter_modules([os.path.dirname(__file__)], "eel_gaits.gaits."):
         importlib.import_module(module.name)
@@ -105,5 +105,5 @@ def load_gaits() -> None:
             function = entry.load()
             if GAITS.get(entry.name) is not function:
                 raise ValueError(f"{entry.value} is no function of that name with the decorator eel_gaits.register")
-        except Exception as error:  # it is the code of others
+        except Exception as error:  # foreign code
             warnings.warn(f"gait {entry.name!r} is left out: {one_line(error)}", stacklevel=2)

@@ -3,7 +3,7 @@
 
     sequence([(straight(), 8.0), (turning(), 4.0), (still(), None)], blend=0.5)
 
-    name: patrol              # of the law; the file's name where it is left out
+    name: patrol              # of the law; the file's name by default
     blend: 0.5                # s, from one step to the next (0.5)
     steps:
       - gait: straight        # any gait, with `set` as in `eel simulate --set`
@@ -15,14 +15,14 @@
         blend: 1.0            # into this step
         scale: 0.8            # times the curvature (1)
         mirror: yaw           # or pitch
-        delay: 0.5            # s, by which the gait's own time begins later (0)
+        delay: 0.5            # s, by which the gait starts later (0)
       - together:             # the sum of several
           - gait: straight
           - gait: rolling
             scale: 0.2
         duration: 3.0
       - repeat: 2             # times (1)
-        steps:                # steps of their own, each with a duration
+        steps:                # nested steps, each with a duration
           - {gait: straight, duration: 2.0}
           - {gait: still, duration: 1.0}
 
@@ -50,17 +50,17 @@ STEP = (*PART, "steps", "repeat", "duration", "blend")
 
 
 def sequence(steps: Iterable[Sequence[Any]], *, blend: float = BLEND, name: str = "sequence") -> Law:
-    """The law in which the `steps` follow one another.
+    """The law that plays the `steps` one after the other.
 
     steps: rows (law, duration [s]) or (law, duration [s], blend [s] into this step). The last duration may be None: the
     step then lasts. Otherwise the body becomes straight at its end.
-    blend: [s], into each step without one of its own, and at the end. `ValueError` names the step that does not fit.
+    blend: [s], into each step without its own, and at the end. `ValueError` names the step at fault.
     """
     listed = enumerate(checked_instance("steps", steps, Iterable))
     rows = [(*checked_instance(f"steps[{index}]", step, Sequence), blend)[:3] for index, step in listed]
     for index, (_, _, into) in enumerate(rows):
         positive(f"steps[{index}]: blend", into)
-    fades = [float(into) for _, _, into in rows[1:]] + [positive("blend", blend)]  # out of each step
+    fades = [float(into) for _, _, into in rows[1:]] + [positive("blend", blend)]  # the blend out of each step
     terms: list[Term] = []
     at = 0.0
     for index, (law, duration, into) in enumerate(rows):
@@ -91,13 +91,13 @@ def sequence_from_file(path: str | os.PathLike[str]) -> Law:
 
 
 class SequenceReader:
-    """Makes a law of a YAML document."""
+    """Makes a law from a YAML document."""
 
     def __init__(self) -> None:
         self._steps = 0  # so far
 
     def law(self, root: Any, name: str) -> Law:
-        """The law of the document. name: where it gives none."""
+        """The law of the document. name: used if the document gives none."""
         if not isinstance(root, Entries):
             raise Misplaced("line 1", f"a sequence must have the key steps, got {shown(root)}")
         check_keys(root, FILE)
@@ -127,7 +127,7 @@ class SequenceReader:
         return law, None if duration is None else tried(step, "duration", positive, "duration", duration), into
 
     def _repeated(self, step: Entries, blend: float, depth: int) -> tuple[Law, float]:
-        """The law and the duration of a step that has steps of its own."""
+        """The law and the duration of a step with nested steps."""
         for key in (*PART, "duration"):
             if key in step:
                 fail(step, key, "does not go with steps")
@@ -138,7 +138,7 @@ class SequenceReader:
         return tried(step, "steps", sequence, rows, blend=blend), sum(row[1] for row in rows)
 
     def _part(self, part: Entries, depth: int) -> Law:
-        """The law of a step, or of one of those together."""
+        """The law of a step, or of one part of a step `together`."""
         if ("gait" in part) == ("together" in part):
             fail(part, "gait", "must be given, or together or steps in its place, and only one of them")
         law = self._together(part, depth) if "together" in part else self._gait(part)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The settings of the gait generator: a gait, its numbers and the transition. They give the law.
+"""The settings of the gait generator: a gait, its numbers and the transition. Together they make the law.
 
-Settings never change. `changed` returns new ones, or raises a `ValueError` that gives the reason. Numbers are kept by
-name. A number that the user has set carries over to another gait that has a number of that name. Defaults do not.
+Settings never change. `changed` returns new ones, or raises a `ValueError` with the reason. Numbers are kept by name: a
+number that the user has set carries over to another gait with a number of that name. Defaults do not.
 """
 
 from collections.abc import Mapping
@@ -25,23 +25,23 @@ SEQUENCES = (".yaml", ".yml")  # suffixes of files of sequences
 
 @dataclass(frozen=True, kw_only=True)
 class MeasuredBody(Quantities):
-    """The numbers of the gait `file`, for a motion that was measured."""
+    """The numbers of the gait `file`, for a measured motion."""
 
     length: float = quantity(1.0, "m", "body length L", 1e-4, 1e3)
     scale: float = quantity(1.0, "", "metres in the file's unit of length", 1e-9, 1e9)
 
 
-FILE_GAITS: dict[str, type[Any]] = {"file": MeasuredBody, "sequence": Quantities}  # that a file gives: their numbers
+FILE_GAITS: dict[str, type[Any]] = {"file": MeasuredBody, "sequence": Quantities}  # of gaits in files
 
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """A gait and the numbers that the user has set. `ValueError` where they give no law.
+    """A gait and the numbers that the user has set. `ValueError` if they make no law.
 
     Attributes:
         gait: name of the gait, or one of `FILE_GAITS`.
         chosen: the numbers that the user has set, by name, including those of other gaits.
-        file: of a sequence or a motion. It is read when the settings are made.
+        file: a sequence or a motion, read when the settings are made.
     """
 
     gait: str = "falling"
@@ -61,13 +61,13 @@ class Settings:
 
     @classmethod
     def start(cls, overrides: Mapping[str, Any]) -> "Settings":
-        """The settings at start, from a mapping of name to value. Names that no gait has are ignored."""
+        """The settings at start, from a mapping of name to value. Names unknown to all gaits are ignored."""
         names = cls.known_names()
         known = {name: value for name, value in overrides.items() if name in names}
         return cls(gait=known.pop("gait", cls.gait), file=known.pop("file", cls.file), chosen=known)
 
     def changed(self, changes: Mapping[str, Any]) -> "Settings":
-        """The settings after `changes`, a mapping of name to value. `ValueError` where one of them does not fit."""
+        """The settings after `changes`, a mapping of name to value. `ValueError` if one does not fit."""
         changes = dict(changes)
         gait, file = changes.pop("gait", self.gait), changes.pop("file", self.file)
         own_names = ["transition", *(entry.name for entry in fields(numbers_of(gait)))]
@@ -77,11 +77,11 @@ class Settings:
         return Settings(gait=gait, file=file, chosen={**self.chosen, **changes})
 
     def groups(self) -> tuple[Any, ...]:
-        """The transition and the gait's numbers: two `Quantities`. The user's numbers replace the defaults."""
+        """The transition and the gait's numbers: two `Quantities`, with the user's numbers over the defaults."""
         return Transition.among(self.chosen), numbers_of(self.gait).among(self.chosen)
 
     def numbers(self) -> dict[str, Any]:
-        """The value of each number that can be set with this gait, by name."""
+        """The value of each number of this gait, by name."""
         return {entry.name: getattr(group, entry.name) for group in self.groups() for entry in fields(group)}
 
     def law(self) -> Law | SampledLaw:
@@ -89,7 +89,7 @@ class Settings:
         return self._law
 
     def oscillation(self) -> Oscillation | None:
-        """The numbers of the oscillators whose curvature the node streams; None for a gait that is a law."""
+        """The numbers of the oscillators whose curvature the node streams; None for any other gait."""
         return Oscillation.among(self.chosen) if self.gait == "cpg" else None
 
     def _made_law(self) -> Law | SampledLaw:
@@ -106,6 +106,6 @@ class Settings:
 
 
 def numbers_of(gait: str) -> type[Any]:
-    """The class of the numbers of a `gait`. `ValueError` for an unknown gait."""
+    """The class of a gait's numbers. `ValueError` for an unknown gait."""
     kind: type[Any] = FILE_GAITS[gait] if isinstance(gait, str) and gait in FILE_GAITS else find(gait).numbers
     return kind

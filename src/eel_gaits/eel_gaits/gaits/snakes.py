@@ -45,7 +45,7 @@ class JointWave(PeriodicBody):
 
 @register(Serpenoid)
 def serpenoid(numbers: Serpenoid) -> tuple[Term, ...]:
-    """The serpenoid curve of Hirose, which travels from head to tail."""
+    """The serpenoid curve of Hirose, travelling from head to tail."""
     amplitude = 2.0 * math.pi * numbers.waves / numbers.length * numbers.winding_angle
     wave = Term(
         amplitude=(amplitude,),
@@ -59,7 +59,7 @@ def serpenoid(numbers: Serpenoid) -> tuple[Term, ...]:
 
 @register(JointWave)
 def joint_wave(numbers: JointWave) -> tuple[Term, ...]:
-    """A wave of joint angles, as snake robots swim: lateral undulation (eel_like = 0) or eel-like motion (1)."""
+    """A wave of joint angles, as of snake robots: lateral undulation (eel_like = 0) or eel-like motion (1)."""
     n, segment = numbers.joints, numbers.length / numbers.joints
     # i - 1 = n - 1/2 - X / segment at joint i, so its angle is (first + growth X) sin(2 pi t / T + phase + k X)
     first = numbers.joint_amplitude * (1.0 - numbers.eel_like + numbers.eel_like * (-0.5) / (n + 1.0))
@@ -73,7 +73,7 @@ def joint_wave(numbers: JointWave) -> tuple[Term, ...]:
     else:
         share = half / math.sin(half) / segment
         shift = 1.0 / wave_number - 0.5 * segment / math.tan(half)
-    # sin(2 pi t / T + b) = sin(-2 pi t / T + pi - b), and the wave number of a term goes with -2 pi t / T
+    # sin(2 pi t / T + b) = sin(-2 pi t / T + pi - b), and a term has -2 pi t / T beside its wave number
     wavelength = -2.0 * math.pi / wave_number if wave_number else 0.0
     shared: dict[str, Any] = {"wavelength": wavelength, "period": numbers.period, "envelope": numbers.start}
     wave = Term(amplitude=(share * first, share * growth), phase=math.pi - phase, **shared)

@@ -4,10 +4,10 @@
 The wave: Boyer, Porez and Leroyer, J. Nonlinear Sci. 20 (2010), section 7.2.2, doi:10.1007/s00332-009-9050-5.
 
 c_start: a bend B(t) of the whole body, positive to the left, and a wave: K3 = wave(t, X) - B(t). The body bends into a
-C, and the wave begins while it straightens. The form, a bend plus a wave, is that of Gazzola, van Rees and
-Koumoutsakos, J. Fluid Mech. 698 (2012), 5-18, doi:10.1017/jfm.2011.558. The numbers are our own, for a robot of 1 m.
+C, and the wave begins while it straightens. A bend plus a wave is the form of Gazzola, van Rees and Koumoutsakos,
+J. Fluid Mech. 698 (2012), 5-18, doi:10.1017/jfm.2011.558. The numbers are our own, for a robot of 1 m.
 
-burst_and_coast: the forward wave comes and goes; between two bursts the straight body coasts (Weihs, J. Theor. Biol. 48
+burst_and_coast: the forward wave starts and stops; between bursts the straight body coasts (Weihs, J. Theor. Biol. 48
 (1974), 215-229, doi:10.1016/0022-5193(74)90192-1).
 """
 
@@ -31,7 +31,7 @@ from eel_gaits.laws.term import Term
 
 @dataclass(frozen=True, kw_only=True)
 class Wave(Periodic):
-    """A travelling wave of the amplitude a2 X^2 + a1 X + a0 (eq. 65). It starts smoothly over some periods (eq. 63)."""
+    """A travelling wave of amplitude a2 X^2 + a1 X + a0 (eq. 65). It starts smoothly over some periods (eq. 63)."""
 
     wavelength: float = wavelength_quantity(1.0)
     amplitude_0: float = bend_quantity(1.0, "amplitude of the wave at the nose, a0")
@@ -83,7 +83,7 @@ class Bursts(Wave):
 
 @register(Quantities)
 def still(numbers: Quantities) -> tuple[Term, ...]:
-    """The straight body, whose shape does not move. Use it to coast, or to push the body."""
+    """The straight body at rest in its shape. Use it to coast, or to push the body."""
     return ()
 
 
@@ -116,5 +116,5 @@ def c_start(numbers: Start) -> tuple[Term, ...]:
 
 @register(Bursts)
 def burst_and_coast(numbers: Bursts) -> tuple[Term, ...]:
-    """Forward swimming in bursts, with a straight body that coasts in between."""
+    """Forward swimming in bursts. In between, the body is straight and coasts."""
     return (replace(numbers.term(), envelope=numbers.envelope()),)

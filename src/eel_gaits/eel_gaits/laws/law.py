@@ -35,11 +35,11 @@ MAXIMUM_NAME = 200  # characters
 class Law:
     """A curvature law: the sum of its terms. A law without terms is the straight body.
 
-    Law(one, two) and Law([one, two]) are the same law of two terms. `ValueError` names an attribute that does not fit.
+    Law(one, two) and Law([one, two]) are the same law of two terms. `ValueError` names a bad attribute.
 
     Attributes:
         terms: at most 1000.
-        name: the law's name in messages and plots, at most 200 characters.
+        name: its name in messages and plots, at most 200 characters.
         transition: [s], duration of the blend from a swimmer's present motion to the law; 0 for the receiver's default.
     """
 
@@ -59,7 +59,7 @@ class Law:
         object.__setattr__(self, "name", checked_name(name))
         object.__setattr__(self, "transition", number("transition", transition, "s", minimum=0.0))
 
-    def __hash__(self) -> int:  # kept: tables are looked up by it
+    def __hash__(self) -> int:  # cached: tables are looked up by it
         found = self.__dict__.get("_hash")
         if found is None:
             found = hash((self.terms, self.name, self.transition))
@@ -67,14 +67,14 @@ class Law:
         return found
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name != "_hash"}  # of this process's strings
+        return {name: value for name, value in self.__dict__.items() if name != "_hash"}  # valid in this process only
 
     def __repr__(self) -> str:
         count = f"{len(self.terms)} term{'' if len(self.terms) == 1 else 's'}"
         return f"Law({shown(self.name)}, {count}{f', transition={self.transition:g} s' if self.transition else ''})"
 
     def plot(self, length: float = 1.0) -> Any:
-        """A matplotlib figure: the curvature along a body of `length` [m] over a period, when all ramps have ended.
+        """A matplotlib figure: the curvature along a body of `length` [m] over a period, after all ramps.
 
         `ImportError` without matplotlib.
         """
@@ -87,7 +87,7 @@ class Law:
 
     @property
     def in_plane(self) -> bool:
-        """Whether the body bends only in yaw."""
+        """Whether the body bends in yaw only."""
         return all(term.axis == "yaw" for term in self.terms)
 
     @property
@@ -144,15 +144,15 @@ class Law:
         return self._of(term.scaled(-1.0) if term.axis == axis else term for term in self.terms)
 
     def ramped_in(self, start: float, end: float) -> "Law":
-        """The law that is straight before `start` [s] and unchanged after `end` [s].
+        """The law, straight before `start` [s] and unchanged after `end` [s].
 
-        A term that is 0 until `start` by itself stays as it is.
+        A term that is 0 until `start` anyway is not changed.
         """
         start, end = _interval(start, end)
         return self._of(replace(term, envelope=begun(term.envelope, start, end)) for term in self.terms)
 
     def ramped_out(self, start: float, end: float) -> "Law":
-        """The law that is unchanged before `start` [s] and straight after `end` [s]."""
+        """The law, unchanged before `start` [s] and straight after `end` [s]."""
         start, end = _interval(start, end)
         envelopes = [ended(term.envelope, start, end) for term in self.terms]
         pairs = zip(self.terms, envelopes, strict=True)
@@ -161,8 +161,8 @@ class Law:
     def followed_by(self, other: "Law", at: float, blend: float = 0.5) -> "Law":
         """This law until `at` [s], then `other`, whose own t = 0 lies there.
 
-        From `at` on this law fades out over `blend` [s]. The terms of `other` that do not start from rest fade in
-        meanwhile. The curvature is twice differentiable in time.
+        From `at` on this law fades out over `blend` [s]. Terms of `other` that do not start from rest fade in during
+        that time. The curvature is twice differentiable in time.
         """
         if not isinstance(other, Law):
             raise ValueError(f"the law that follows must be a Law, got {shown(other)}")
@@ -182,7 +182,7 @@ def _interval(start: float, end: float) -> tuple[float, float]:
 
 
 def checked_name(value: object) -> str:
-    """`value`, if it is a text that can be the name of a law."""
+    """`value`, if it is a valid name of a law."""
     if not isinstance(value, str):
         raise ValueError(f"name must be a text, got {shown(value)}")
     if len(value) > MAXIMUM_NAME:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads a law from the message `eel_msgs/CurvatureLaw`, of ROS or of a bag: by the names of its fields."""
+"""Reads a law from a message `eel_msgs/CurvatureLaw`, from ROS or a bag, by the names of its fields."""
 
 from collections.abc import Callable
 from typing import Any, TypeVar
@@ -12,15 +12,15 @@ Made = TypeVar("Made")
 
 AXIS_NUMBERS = {name: column + 1 for name, column in SECTION_COLUMN.items()}  # as in CurvatureTerm
 AXIS_NAMES = {number: name for name, number in AXIS_NUMBERS.items()}
-WAVE = "amplitude", "knots", "wavelength", "period", "phase"  # of terms and their messages alike
+WAVE = "amplitude", "knots", "wavelength", "period", "phase"  # fields of both `Term` and its message
 RAMP = "start", "end", "delta", "factor"
 
 
 def law_from_message(message: Any) -> Law:
-    """The `Law` in a CurvatureLaw, of ROS or of a bag. The caller reads the header.
+    """The `Law` in a CurvatureLaw, from ROS or a bag. The caller reads the header.
 
-    `ValueError`, such as "terms[2].period must be >= 0 s, got -1.0", where the law is not finite, its arrays do not
-    fit, a period is negative, an axis is unknown, or there are more than 1000 terms.
+    `ValueError`, such as "terms[2].period must be >= 0 s, got -1.0", for a law that is not finite, arrays that do not
+    fit together, a negative period, an unknown axis, or more than 1000 terms.
     """
     if len(message.terms) > MAXIMUM_TERMS:
         raise ValueError(f"terms must be at most {MAXIMUM_TERMS}, got {len(message.terms)}")
@@ -42,7 +42,7 @@ def _term_from_message(term: Any, place: str) -> Term:
 
 
 def _made(kind: Callable[..., Made], place: str, **values: Any) -> Made:
-    """What `kind` makes of the values; its `ValueError` begins with the `place`."""
+    """Call `kind` on the values. Its `ValueError` begins with the `place`."""
     try:
         return kind(**values)
     except ValueError as error:

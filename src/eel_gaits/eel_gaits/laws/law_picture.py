@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from eel_common.cell import BLUE, ORANGE, figure
 
-INSTANTS = 8  # of a period
+INSTANTS = 8  # per period
 POINTS = 121
-MOST_SHOWN = 6  # terms, or numbers of one, in a cell
+MOST_SHOWN = 6  # terms, or numbers of a term, in a cell
 NAMES = {1: ("pitch $K_2$", ORANGE), 2: ("yaw $K_3$", BLUE)}  # column: name and colour
 
 

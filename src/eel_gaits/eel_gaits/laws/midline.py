@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The curvature of a midline that is given by its lateral displacement h(X, t).
+"""The curvature of a midline given by its lateral displacement h(X, t).
 
 X is the arc length from the nose, and h [m] the displacement along section axis 2 from the line on which the fish
 swims. The slope is dh/dX = sin(theta), with the angle theta of the midline to that line. So the curvature is
@@ -25,14 +25,13 @@ from eel_gaits.laws.term import Term
 STEEPEST = 0.95  # slope |dh/dX| of a midline, of 1 at most
 INSTANTS = 256  # of a period
 POINTS, DEGREE = 65, 10  # along the body: points of the fit, and degree of the polynomials A_m and B_m
-TOLERANCE = 1e-3  # greatest curvature of a multiple that is left out, relative to the greatest curvature
+TOLERANCE = 1e-3  # multiples with less curvature, relative to the greatest, are left out
 
 
 def curvature_of_lateral(slope: Any, bend: Any) -> np.ndarray:
     """The curvature K3 [rad/m] of a midline with the `slope` dh/dX [1] and the `bend` d2h/dX2 [1/m].
 
-    All three are arrays of one shape. `ValueError` where a slope reaches 1, because no midline of that arc length has
-    it.
+    All three are arrays of one shape. `ValueError` if a slope reaches 1: no midline of that arc length exists.
     """
     slope, bend = numbers("slope", slope), numbers("bend", bend)
     steepest = float(np.max(np.abs(slope), initial=0.0))
@@ -49,17 +48,17 @@ def lateral_wave(
     period: float,
     envelope: tuple[Ramp, ...] = (),
 ) -> tuple[Term, ...]:
-    """Terms in yaw of the wave h = a(X) sin(2 pi (X / wavelength - t / period)), which begins with an `envelope`.
+    """Terms in yaw of the wave h = a(X) sin(2 pi (X / wavelength - t / period)), with an `envelope`.
 
-    The multiples that are left out are below 1/1000 of the greatest curvature, each.
+    Each multiple that is left out is below 1/1000 of the greatest curvature.
 
     Args:
         amplitude: function of X [m], shape (n,), that returns a [m], da/dX [1] and d2a/dX2 [1/m], each of shape (n,).
         length: [m], of the body. wavelength: [m]. period: [s].
-        envelope: ramps, as `Term` has them. They multiply the curvature.
+        envelope: ramps, as in `Term`; they multiply the curvature.
 
     Returns:
-        the terms. `ValueError` where the midline is steeper than 0.95.
+        the terms. `ValueError` for a midline steeper than 0.95.
     """
     x = 0.5 * length * (1.0 - np.cos(np.pi * (np.arange(POINTS) + 0.5) / POINTS))
     a, a_x, a_xx = amplitude(x)

@@ -2,8 +2,8 @@
 """Envelopes of terms: products of sums of C2 ramps, with their time derivatives.
 
 A ramp is eq. (64) of Boyer, Porez and Leroyer, J. Nonlinear Sci. 20 (2010), doi:10.1007/s00332-009-9050-5, times a
-number. The ramps of one factor add up from 0, and the factors multiply. The paper's envelopes are one factor. A second
-one is needed where a term fades out while a ramp is still under way.
+number. Ramps of one factor add up from 0, and the factors multiply. The paper's envelopes have one factor. A second
+factor is needed where a term fades out while a ramp is still under way.
 """
 
 import math
@@ -14,15 +14,15 @@ import numpy as np
 from eel_common.quantity import number
 
 MOST_FACTORS = 256
-ALWAYS = -1e6  # s, the time from which a term without ramps counts as begun, once it is to end
+ALWAYS = -1e6  # s: assumed start of a term without ramps that is to end
 
 
 @dataclass(frozen=True)
 class Ramp:
     """`delta` times the C2 ramp f_r(t; start, end) of eq. (64), which is 0 before `start` and 1 after `end`, in s.
 
-    `factor` is a whole number from 0 to 255: the ramps of one factor of an envelope add up, and the factors multiply.
-    `ValueError` where `end` does not lie after `start`, or where a rate would not be finite.
+    `factor`, a whole number from 0 to 255: ramps of one factor of an envelope add up, and the factors multiply.
+    `ValueError` if `end` is not after `start`, or if a rate would not be finite.
     """
 
     start: float
@@ -87,9 +87,9 @@ def height_of(ramps: tuple[Ramp, ...]) -> float:
 
 
 def begun(ramps: tuple[Ramp, ...], start: float, end: float) -> tuple[Ramp, ...]:
-    """The envelope of `ramps` that is 0 before `start` [s] and unchanged after `end` [s].
+    """The envelope of `ramps`, but 0 before `start` [s] and unchanged after `end` [s].
 
-    It stays as it is where it is 0 until `start` by itself.
+    It is not changed if it is 0 until `start` anyway.
     """
     if any(all(ramp.start >= start for ramp in each) for each in factors_of(ramps)):
         return ramps
@@ -97,7 +97,7 @@ def begun(ramps: tuple[Ramp, ...], start: float, end: float) -> tuple[Ramp, ...]
 
 
 def ended(ramps: tuple[Ramp, ...], start: float, end: float) -> tuple[Ramp, ...] | None:
-    """The envelope of `ramps` that is unchanged before `start` [s] and 0 after `end` [s]; None where it is 0 always.
+    """The envelope of `ramps`, but 0 after `end` [s] and unchanged before `start` [s]; None if it is always 0.
 
     Ramps that begin after `end` are dropped.
     """
@@ -112,6 +112,6 @@ def ended(ramps: tuple[Ramp, ...], start: float, end: float) -> tuple[Ramp, ...]
 
 
 def _multiplied(ramps: tuple[Ramp, ...], others: tuple[Ramp, ...]) -> tuple[Ramp, ...]:
-    """The product of the envelope of `ramps` with that of `others`, which have factor 0."""
+    """The product of the envelope of `ramps` and that of `others`, which have factor 0."""
     factor = 1 + max((ramp.factor for ramp in ramps), default=-1)
     return (*ramps, *(replace(ramp, factor=factor) for ramp in others))

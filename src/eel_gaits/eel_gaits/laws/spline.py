@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Natural cubic splines through whole rows of values at once.
+"""Natural cubic splines through many rows of values at once.
 
 The spline s through the knots x_0 < ... < x_(n-1) is a piecewise cubic. s, s' and s'' are continuous, and s'' = 0 at
 both end knots. Its second derivatives M_i at the knots ("moments") solve the tridiagonal system
@@ -18,7 +18,7 @@ from eel_common.wording import shown
 
 
 def natural_spline(knots: Any, values: Any, x: Any) -> np.ndarray:
-    """Evaluate the natural cubic splines through (knots, values) at x. `ValueError` names what does not fit.
+    """Evaluate the natural cubic splines through (knots, values) at x. `ValueError` names a bad argument.
 
     The result is linear in the values. So `natural_spline(knots, numpy.eye(n), x).T` is the matrix, shape (m, n), that
     takes values at the knots to values at x.
@@ -61,7 +61,7 @@ def natural_spline(knots: Any, values: Any, x: Any) -> np.ndarray:
 def _moments(spacing: Any, slopes: np.ndarray) -> np.ndarray:
     """Second derivatives at the knots, shape (..., n), by elimination without pivoting (diagonally dominant).
 
-    The loops run over numbers of Python where there is one spline: NumPy's take ten times as long.
+    The loops use Python floats for a single spline: NumPy would take ten times as long.
     """
     rows: Any = np.moveaxis(6.0 * np.diff(slopes, axis=-1), -1, 0)
     rows, zero = (rows.tolist(), 0.0) if rows.ndim == 1 else (list(rows), np.zeros(slopes.shape[:-1]))

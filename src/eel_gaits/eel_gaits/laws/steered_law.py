@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A law whose size and speed, and whose bends, change while it swims.
+"""A law whose size, tempo and bends change while the swimmer moves.
 
     K3(t, X) = amplitude(t) law3(tau(t), X) - left_bend(t)
     K2(t, X) = amplitude(t) law2(tau(t), X) - up_bend(t) + tilt(t) wave3(tau(t), X) + swirl(t) wave3(tau(t) - T/4, X)
     d tau / dt = tempo(t)
 
-wave3 is the part of the law that travels in yaw, each wave with its own period T. Each number follows its target as a
-critically damped oscillator, so the curvature, its rate and its acceleration never jump.
+wave3 is the travelling part of the law in yaw, each wave with its own period T. Each number follows its target as a
+critically damped oscillator. So the curvature, its rate and its acceleration never jump.
 """
 
 import copy
@@ -24,9 +24,9 @@ Jet = tuple[Any, Any, Any]  # value, rate and acceleration, of one swimmer or se
 
 
 class Number(NamedTuple):
-    """A number of the law."""
+    """A number of the steered law."""
 
-    rest: float  # without a target
+    rest: float  # value without a target
     unit: str
     description: str
 
@@ -44,35 +44,35 @@ ROLLING = {"tilt": (1.0, 0.0), "swirl": (0.0, 1.0)}  # cosine and sine of the de
 
 
 class SteeredLaw:
-    """The curvature of a steered law, step by step. The ramps of the law's envelopes count as complete.
+    """The curvature of a steered law, advanced step by step. The ramps of the law's envelopes count as complete.
 
-    It steers one swimmer, or N side by side: its own time, its numbers and their targets are then (N,) each.
+    It steers one swimmer, or N in parallel: its own time, its numbers and their targets then have shape (N,).
 
     Args:
         law: its waves; terms without a period are constant bends.
-        response: [s], time constant with which a number follows its target.
+        response: [s], time constant of a number's response to its target.
         length: [m], of the body.
-        points: along the body.
+        points: number of points along the body.
     """
 
     def __init__(self, law: Law, *, response: float = 0.2, length: float = 1.0, points: int = 21):
         self.law, self.x, self._rate = law, np.linspace(0.0, length, points), 1.0 / response
         self._rows = np.concatenate([_rows(term, self.x) for term in law.terms] + [np.ones((1, points))])
-        self._waves = [  # with the places of cosine and sine
+        self._waves = [  # each with the slots of its cosine and sine
             (term.angular_frequency, term.axis, self._places(term.axis, 2 * k), self._places(term.axis, 2 * k + 1))
             for k, term in enumerate(law.terms)
         ]
         self._rest = {name: (number.rest, 0.0, 0.0) for name, number in NUMBERS.items()}
         self.period = min((term.period for term in law.terms if term.period), default=1.0)  # s, of the fastest wave
-        self.values: dict[str, Any] = dict(self._rest)  # of each number: value, rate, acceleration
+        self.values: dict[str, Any] = dict(self._rest)  # by number: value, rate, acceleration
         self.greatest_curvature = float(np.max(sum(np.hypot(*_rows(term, self.x)) for term in law.terms)))  # rad/m
         self.own_time: Any = 0.0  # s, tau
-        self._swimmers: tuple[int, ...] = ()  # (N,), or () of one
+        self._swimmers: tuple[int, ...] = ()  # (N,), or () for one
         self.begin()
 
     def begin(self, own_time: Any = 0.0, **values: float) -> np.ndarray:
-        """Start anew with the law at its `own_time` [s], or (N,) of N swimmers, and all numbers at rest, or at these
-        `values`; the curvature as of `advance`."""
+        """Restart at the law's `own_time` [s], or (N,) for N swimmers. All numbers are at rest, or have these `values`.
+        Returns the curvature as `advance` does."""
         self.own_time, self._swimmers = own_time, np.shape(own_time)
         self.values = dict(self._rest)
         for name, value in values.items():
@@ -81,7 +81,7 @@ class SteeredLaw:
         return self._curvature()
 
     def begin_some(self, swimmers: list[int], own_times: np.ndarray) -> np.ndarray:
-        """Start anew with K of N swimmers, all their numbers at rest; their curvature (K, 6, points)."""
+        """Restart K of N swimmers with all their numbers at rest. Returns their curvature (K, 6, points)."""
         self.own_time[swimmers] = own_times
         for name, rest in self._rest.items():
             if self.values[name] is not rest:
@@ -90,10 +90,10 @@ class SteeredLaw:
         return copy.copy(self).begin(own_times)
 
     def advance(self, targets: Mapping[str, Any], step: float, response: float | None = None) -> np.ndarray:
-        """The curvature at the end of a step of `step` [s] with these `targets` by name; other numbers stay.
+        """The curvature after a step of `step` [s] towards these `targets`, by name; other targets stay.
 
-        response [s]: replaces that of the law in this step. Returns (6, points), or (N, 6, points): pitch, its rate and
-        its acceleration, then yaw: rad/m, rad/m/s, rad/m/s^2.
+        response [s]: replaces the law's in this step. Returns (6, points), or (N, 6, points): pitch, its rate and its
+        acceleration, then yaw: rad/m, rad/m/s, rad/m/s^2.
         """
         rate = 1.0 / response if response else self._rate
         speed, wanted = self.values["tempo"], targets.get("tempo")
@@ -107,7 +107,7 @@ class SteeredLaw:
         size, speed = self.values["amplitude"], self.values["tempo"]
         as_it_is = size is self._rest["amplitude"] and speed is self._rest["tempo"]
         count, points = self._rows.shape
-        # of the rows, axis by axis and derivative by derivative: floats in a list, which are faster, or (., N)
+        # factors of the rows, by axis and derivative: a list of floats, which are faster, or (., N)
         factors: Any = np.zeros((*self._swimmers, 6 * count)).T if self._swimmers else [0.0] * (6 * count)
         for k, (frequency, axis, of_cosine, of_sine) in enumerate(self._waves):
             angle = frequency * self.own_time
@@ -115,7 +115,7 @@ class SteeredLaw:
             if not self._swimmers:
                 s, c = float(s), float(c)
             fs, fc = -frequency * s, -frequency * c
-            if as_it_is:  # of which there is the most
+            if as_it_is:  # the most frequent case
                 square = frequency * frequency
                 factors[of_cosine] = c, fs, -square * c
                 factors[of_sine] = -s, fc, square * s
@@ -138,13 +138,13 @@ class SteeredLaw:
         return rows.reshape(*self._swimmers, 6, points)
 
     def _places(self, axis: str, row: int) -> slice:
-        """Where factors of a row are: those of the value, the rate and the acceleration about an axis."""
+        """The slots of a row's factors: value, rate and acceleration about an axis."""
         first = 3 * LAW_ROW[axis] * len(self._rows) + row
         return slice(first, first + 3 * len(self._rows), len(self._rows))
 
 
 def _product(number: Jet, f: Any, f1: Any, frequency: float, speed: Jet) -> tuple[Any, Any, Any]:
-    """Value, rate and acceleration of a `number` times f(tau), where f'' = -frequency^2 f and tau' is the `speed`."""
+    """Value, rate and acceleration of a `number` times f(tau), with f'' = -frequency^2 f and tau' the `speed`."""
     rate = f1 * speed[0]
     acceleration = -frequency * frequency * f * speed[0] ** 2 + f1 * speed[1]
     return (
@@ -155,7 +155,7 @@ def _product(number: Jet, f: Any, f1: Any, frequency: float, speed: Jet) -> tupl
 
 
 def _rows(term: Term, x: np.ndarray) -> np.ndarray:
-    """Rows (2, len(x)) of a term with its ramps complete: those of the cosine and the sine of its time."""
+    """Rows (2, len(x)) of a term with complete ramps: factors of the cosine and the sine in time."""
     end = max((ramp.end for ramp in term.envelope), default=0.0)
     size = term.amplitude_at(x) * term.envelope_at(end)[0]
     angle = term.wave_number * x + term.phase
@@ -163,9 +163,9 @@ def _rows(term: Term, x: np.ndarray) -> np.ndarray:
 
 
 def _followed(jet: Jet, target: Any, rate: float, step: float) -> Jet:
-    """Value, rate and acceleration after `step` [s] of a critically damped oscillator that goes to its `target`.
+    """Value, rate and acceleration of a critically damped oscillator after `step` [s] towards its `target`.
 
-    jet: the same before. rate [1/s]: of the oscillator.
+    jet: the same before the step. rate: [1/s], of the oscillator.
     """
     away = jet[0] - target
     slope, left = jet[1] + rate * away, math.exp(-rate * step)
@@ -175,7 +175,7 @@ def _followed(jet: Jet, target: Any, rate: float, step: float) -> Jet:
 
 
 def _travelled(jet: Jet, target: Any, rate: float, step: float) -> Any:
-    """The integral of such an oscillator's value over the step."""
+    """The integral of that oscillator's value over the step."""
     away = jet[0] - target
     slope, left = jet[1] + rate * away, math.exp(-rate * step)
     integral = away * (1.0 - left) / rate + slope * (1.0 - left * (1.0 + rate * step)) / rate**2

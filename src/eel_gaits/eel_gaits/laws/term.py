@@ -13,7 +13,7 @@ from eel_gaits.laws.ramp import Ramp, envelope_at
 from eel_gaits.laws.spline import natural_spline
 
 SECTION_COLUMN = {"pitch": 1, "yaw": 2}  # name of the axis: its column in a curvature array
-LAW_ROW = {"pitch": 0, "yaw": 1}  # name of the axis: its place in the rows of a law
+LAW_ROW = {"pitch": 0, "yaw": 1}  # name of the axis: its index in the rows of a law
 MAXIMUM_VALUES = 1000  # coefficients or knots of a term, ramps of an envelope
 
 
@@ -21,7 +21,7 @@ MAXIMUM_VALUES = 1000  # coefficients or knots of a term, ramps of an envelope
 class Term:
     """One wave or bend: envelope(t) amplitude(X) sin(2 pi (X / wavelength - t / period) + phase).
 
-    `ValueError` names an attribute that does not fit.
+    `ValueError` names a bad attribute.
 
     Attributes:
         axis: "yaw" (K3) or "pitch" (K2).

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the pilot knows of the swimmer from the head's motion alone: means without the swing of the beat, and the water.
+"""The pilot's estimate of the swimmer, from the head's motion: means without the swing of the beat, and the water.
 
-The body swims in a plane that the beat keeps: all of its sections move across it alike. The head's up axis is normal to
-it and does not swing, so the roll and the climb of that plane are known at once, about the mean heading. Heading and
-velocity need a mean over a period of the gait, whose length changes with its tempo: over a whole period of the gait's
-own time the swings cancel. The lag of half a period is made up for by the rate of change.
+The body swims in a plane that the beat preserves: all sections move the same way across it. The head's up axis is
+normal to it and does not swing. So the roll and the climb of that plane are known at once, about the mean heading.
+Heading and velocity need a mean over a period of the gait. That period depends on the tempo, so the mean is taken over
+a period of the gait's own time, in which the swings cancel. The rate of change corrects the lag of half a period.
 
-The water's velocity is the mean velocity over ground less the one that the gait gives through the water, followed with
-a time constant. So it also takes in what the swimmer does other than expected: it is the integral action of the pilot.
+The water's velocity is the mean velocity over ground less the gait's velocity through the water, filtered with a time
+constant. It also contains every other deviation from the expected speed: it is the integral action of the pilot.
 """
 
 import math
@@ -20,7 +20,7 @@ from eel_common.head_motion import HeadMotion, wrapped
 
 
 class Estimate(NamedTuple):
-    """The swimmer at present, REP-103 axes."""
+    """The present state of the swimmer, in REP-103 axes."""
 
     time: float  # s
     position: np.ndarray  # (3,) m, of the head, without its swing
@@ -32,15 +32,15 @@ class Estimate(NamedTuple):
     roll_rate: float  # rad/s
     climb_rate: float  # rad/s
     rise: float  # m/s, velocity of the head along its up axis
-    water: np.ndarray  # (2,) m/s, horizontal velocity of the water, as far as known
+    water: np.ndarray  # (2,) m/s, estimated horizontal velocity of the water
     settled: bool  # whether a whole period has passed
 
 
 class Estimator:
     """Takes in one `HeadMotion` after another.
 
-    period: [s], of the gait at tempo 1. speed_time: [s], in which the speed follows the gait. water_time: [s], in which
-    the estimate of the water's velocity follows.
+    period: [s], of the gait at tempo 1. speed_time: [s], time constant of the speed through the water. water_time: [s],
+    time constant of the water's estimated velocity.
     """
 
     def __init__(self, *, period: float, speed_time: float, water_time: float) -> None:
@@ -51,12 +51,12 @@ class Estimator:
         self._speed, self._water = 0.0, np.zeros(2)
 
     def restart(self) -> None:
-        """Forget all but the water."""
+        """Reset the estimate, but keep the water's velocity."""
         self._means.clear()
         self._time, self._speed = -math.inf, 0.0
 
     def add(self, time: float, head: HeadMotion, own_time: float, gait_speed: float) -> Estimate:
-        """The estimate at `time` [s]. own_time [s]: of the gait; gait_speed [m/s]: that it gives in still water."""
+        """The estimate at `time` [s]. own_time: [s], of the gait. gait_speed: [m/s], of the gait in still water."""
         step = time - self._time if math.isfinite(self._time) else 0.0
         self._heading += wrapped(head.heading - self._heading)
         self._speed += (gait_speed - self._speed) * (1.0 - math.exp(-step / self._speed_time))
@@ -84,7 +84,7 @@ def plane_of(head: HeadMotion, heading: float) -> dict[str, float]:
     """Roll and climb [rad] of the plane normal to the head's up axis about a level frame of this `heading` [rad], and
     their rates [rad/s]."""
     forward, left, up = world_from_body(head.orientation).T
-    turning = head.angular_velocity[0] * forward + head.angular_velocity[1] * left  # without that about `up`
+    turning = head.angular_velocity[0] * forward + head.angular_velocity[1] * left  # without the part about `up`
     c, s = math.cos(heading), math.sin(heading)
     level = np.array(((c, s), (-s, c)))
     (ahead, aside), (ahead_rate, aside_rate) = level @ up[:2], level @ turning[:2]
@@ -94,10 +94,10 @@ def plane_of(head: HeadMotion, heading: float) -> dict[str, float]:
 
 
 class Means(NamedTuple):
-    """Of signals over the last period."""
+    """Means of signals over the last period."""
 
     mean: np.ndarray  # (n,) of each signal
-    rate: np.ndarray  # (n,) per s: change over the period, by its length
+    rate: np.ndarray  # (n,) per s: change over the period, divided by its length
     span: float  # s, length of that period
     whole: bool  # whether a whole period has passed
 
@@ -115,7 +115,7 @@ class PeriodMeans:
         self._rows.clear()
 
     def add(self, time: float, own_time: float, signals: Any) -> Means:
-        """Add the `signals` (n,) at `time` [s], when the gait's own time is `own_time` [s]; the means since then."""
+        """Add the `signals` (n,) at `time` [s] and the gait's own time `own_time` [s]; return the present means."""
         signals = np.asarray(signals, dtype=float)
         if not self._rows:
             self._rows.append((time, own_time, signals, self._empty))
@@ -131,7 +131,7 @@ class PeriodMeans:
         return Means((integral - start[2]) / span, (signals - start[1]) / span, span, first[1] <= begin)
 
     def _row_at(self, own_time: float) -> tuple[Any, ...]:
-        """Time, signals and integrals at `own_time` [s], which lies in the oldest interval or before it."""
+        """Time, signals and integrals at `own_time` [s], which must lie in the oldest interval or before it."""
         (t0, tau0, signals0, integral0), (t1, tau1, signals1, _) = self._rows[0], self._rows[1]
         share = (own_time - tau0) / (tau1 - tau0) if own_time > tau0 else 0.0
         time, signals = t0 + share * (t1 - t0), signals0 + share * (signals1 - signals0)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Goals of the pilot: a course to hold, a path of way points, a station. All in REP-103 axes, world frame.
+"""Goals of the pilot: hold a course, follow a path of way points, or stay at a station. REP-103 axes, world frame.
 
-`ValueError` says why a goal is refused: it is not finite, or no swimmer with these `Limits` can reach it.
+`ValueError` if a goal is not finite, or out of reach of a swimmer with these `Limits`.
 """
 
 import math
@@ -14,12 +14,12 @@ from eel_common.quantity import number
 from eel_common.wording import shown
 
 FARTHEST = 1e5  # m from the origin
-MOST_POINTS = 10_000  # of a path
+MOST_POINTS = 10_000  # in a path
 
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """What the swimmer can do."""
+    """The swimmer's limits."""
 
     greatest_speed: float  # m/s, through the water
     turning_radius: float  # m, of the tightest turn
@@ -27,13 +27,13 @@ class Limits:
     reach: float  # m, within which a way point counts as reached
 
     def checked_speed(self, speed: float) -> float:
-        """`speed` [m/s], if the swimmer can have it."""
+        """`speed` [m/s], if the swimmer can reach it."""
         return number("speed", speed, "m/s", minimum=0.0, maximum=self.greatest_speed, exclusive=True)
 
     def check_turn(self, point: int, where: str, leg: np.ndarray, forward: Sequence[float] | np.ndarray) -> None:
-        """`ValueError` where the way point with this number lies within a turning circle.
+        """`ValueError` if the way point with this number lies within a turning circle.
 
-        leg (3,) [m]: to it. forward (2,): horizontal direction in which the swimmer comes to where the leg begins.
+        leg (3,) [m]: the vector to it. forward (2,): the swimmer's horizontal direction at the beginning of the leg.
         """
         ahead = leg[0] * forward[0] + leg[1] * forward[1]
         aside = abs(leg[1] * forward[0] - leg[0] * forward[1])
@@ -70,13 +70,13 @@ class Station:
 
 
 def course(heading: float, depth: float, speed: float, limits: Limits) -> Course:
-    """A course that is possible."""
+    """A course, checked against the limits."""
     depth = number("depth", depth, "m", minimum=-FARTHEST, maximum=FARTHEST)
     return Course(math.remainder(number("heading", heading), 2.0 * math.pi), depth, limits.checked_speed(speed))
 
 
 def path(points: Any, speed: float, limits: Limits) -> Path:
-    """A path whose legs the swimmer can follow from the second point on; how it gets to the first is its affair."""
+    """A path, checked: the swimmer can follow its legs from the second point on. Any way to the first is allowed."""
     check_count(len(points))
     points = _points("path", points)
     if len(points) < 1:
@@ -98,18 +98,18 @@ def path(points: Any, speed: float, limits: Limits) -> Path:
 
 
 def check_count(points: int) -> None:
-    """`ValueError` for more `points` than a path may have."""
+    """`ValueError` if a path may not have so many `points`."""
     if points > MOST_POINTS:
         raise ValueError(f"path must have at most {MOST_POINTS} points, got {points}")
 
 
 def station(point: Any, speed: float, limits: Limits) -> Station:
-    """A station that is possible."""
+    """A station, checked against the limits."""
     return Station(_points("station", [point])[0], limits.checked_speed(speed))
 
 
 def way_points(goal: Course | Path | Station) -> np.ndarray:
-    """The points (n, 3) [m] that the goal leads to; a course has none."""
+    """The points (n, 3) [m] of the goal; none for a course."""
     if isinstance(goal, Path):
         return goal.points
     return goal.point[None] if isinstance(goal, Station) else np.empty((0, 3))

@@ -5,11 +5,11 @@ On a path this is line-of-sight guidance: the swimmer aims at the point of the l
 
     course = bearing of the leg - atan(e / D),   climb = slope of the leg + atan(h / D)
 
-with e the distance to the left of the leg and h that of the leg above the swimmer. Within D of the end of the leg it
-aims at that end. D above two body lengths keeps the loop stable: a rule of thumb of Kelasidi and others, IEEE Robotics
-and Automation Magazine, March 2016. Integral action against a current is due to Kelasidi, Liljeback, Pettersen and
-Gravdahl, Integral Line-of-Sight Guidance for Path Following Control of Underwater Snake Robots, IEEE Trans. Robotics.
-Here it is the estimate of the water's velocity, which is taken off the wanted velocity over ground.
+with e the distance to the left of the leg and h the height of the leg above the swimmer. Within D of the end of the leg
+it aims at that end. D above two body lengths keeps the loop stable: a rule of thumb of Kelasidi and others, IEEE
+Robotics and Automation Magazine, March 2016. Integral action against a current is due to Kelasidi, Liljeback, Pettersen
+and Gravdahl, Integral Line-of-Sight Guidance for Path Following Control of Underwater Snake Robots, IEEE Trans.
+Robotics. Here the estimate of the water's velocity, subtracted from the demanded velocity over ground, has that role.
 """
 
 import math
@@ -22,29 +22,29 @@ from eel_gaits.pilot.estimate import Estimate
 from eel_gaits.pilot.goals import Course, Path, Station
 from eel_gaits.pilot.settings import PilotSettings
 
-STANDOFF = 2.2  # turning radii: what lies behind and nearer than this is swum away from first
+STANDOFF = 2.2  # turning radii: the swimmer first swims away from a nearer point behind it
 BEHIND = 1.2  # rad to either side of ahead
-CLOSE = 0.5  # reaches: a way point that is so close is left for the next one
+CLOSE = 0.5  # reaches: closer to a way point, the swimmer aims at the next one
 
 
 class Demand(NamedTuple):
-    """What guidance wants."""
+    """The output of guidance."""
 
     heading: float  # rad
     speed: float  # m/s, through the water
     climb: float  # rad
-    height: float  # m, of the wanted depth at present, z up
-    possible: bool  # whether the water lets the swimmer make way
+    height: float  # m, present demand, z up
+    possible: bool  # whether the swimmer makes way against the water
 
 
 class CourseGuidance:
-    """Holds heading and depth. Each guidance is made of its `goal`, which may change its speed, and the `settings`."""
+    """Holds heading and depth. A guidance has a `goal`, whose speed may change, and the `settings`."""
 
     def __init__(self, goal: Course, settings: PilotSettings, start: np.ndarray) -> None:
         self.goal, self._settings = goal, settings
 
     def demand(self, estimate: Estimate, greatest_speed: float) -> Demand:
-        """The demand at present. greatest_speed [m/s]: through the water."""
+        """The present demand. greatest_speed: [m/s], through the water."""
         goal, water = self.goal, estimate.water
         along = water[0] * math.cos(goal.heading) + water[1] * math.sin(goal.heading)
         speed = goal.speed - float(along)
@@ -56,8 +56,8 @@ class PathGuidance:
     """Follows the legs from `start` (3,) through the points of a path.
 
     Attributes:
-        target: index of the point that is aimed at; the number of points when all are passed.
-        last_miss: [m], the head's least distance to the point that was passed last.
+        target: index of the next point; the number of points when all are passed.
+        last_miss: [m], least distance of the head from the last point passed.
     """
 
     def __init__(self, goal: Path, settings: PilotSettings, start: np.ndarray) -> None:
@@ -71,9 +71,9 @@ class PathGuidance:
         return self.target == len(self._points) - 1
 
     def pass_points(self, estimate: Estimate, head: np.ndarray) -> bool:
-        """Go on to the next point where this one is passed, or closer to the `head` (3,) than `close`; whether it is.
+        """Aim at the next point if this one is passed, or is closer to the `head` (3,) than `close`. Returns whether.
 
-        A point is passed where the swimmer crosses the plane through it that is normal to the leg.
+        A point is passed when the swimmer crosses the plane through it that is normal to the leg.
         """
         point = self._points[self.target + 1]
         self._least = min(self._least, float(np.linalg.norm(head - point)))
@@ -85,7 +85,7 @@ class PathGuidance:
         return True
 
     def demand(self, estimate: Estimate, greatest_speed: float) -> Demand:
-        """The demand at present, on the leg to the target. greatest_speed [m/s]: through the water."""
+        """The present demand, on the leg to the target. greatest_speed: [m/s], through the water."""
         begin, end = self._points[self.target : self.target + 2]
         leg, away = end - begin, estimate.position - begin
         length = math.hypot(leg[0], leg[1])
@@ -110,7 +110,7 @@ class StationGuidance:
         self.goal, self._settings, self._limits, self._resting = goal, settings, settings.limits, False
 
     def demand(self, estimate: Estimate, greatest_speed: float) -> Demand:
-        """The demand at present. greatest_speed [m/s]: through the water."""
+        """The present demand. greatest_speed: [m/s], through the water."""
         away, gain, rest = self.goal.point - estimate.position, self._settings.station_gain, self._limits.reach
         distance, height = math.hypot(away[0], away[1]), float(self.goal.point[2])
         climb = math.atan(away[2] / self._settings.ahead)
@@ -131,8 +131,8 @@ GUIDANCE: dict[type, Any] = {Course: CourseGuidance, Path: PathGuidance, Station
 def against_water(course: float, speed: float, water: np.ndarray, greatest: float) -> tuple[float, float, bool]:
     """Heading [rad] and speed through the water [m/s] that give the `course` [rad] and the `speed` [m/s] over ground.
 
-    water (2,) [m/s]. Where that takes more than the `greatest` speed, the speed over ground is less, or the course
-    cannot be kept. Returns also whether the swimmer makes way on its course.
+    water (2,) [m/s]. If that needs more than the `greatest` speed, the speed over ground is less, or the course is not
+    kept. Also returns whether the swimmer makes way on its course.
     """
     along = float(water[0] * math.cos(course) + water[1] * math.sin(course))
     across = float(water[1] * math.cos(course) - water[0] * math.sin(course))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The pilot: from the motion of the head, sample by sample, to the curvature of the body that leads it to a goal.
+"""The pilot: turns the motion of the head, sample by sample, into the curvature of the body that leads it to a goal.
 
-Each step estimates the swimmer (estimate.py), guides it (guidance.py) and regulates it (regulator.py). The outcome are
-targets of a steered law (laws/steered_law.py), which makes curvature of them that is twice differentiable in time. A
-pilot sends samples rather than laws: it decides at each step, and a law in closed form would need a blend each time.
+Each step estimates the swimmer (estimate.py), guides it (guidance.py) and regulates it (regulator.py). The result are
+targets of a steered law (laws/steered_law.py), whose curvature is twice differentiable in time. A pilot sends samples
+rather than laws: it decides at each step, and a law in closed form would need a blend each time.
 """
 
 import math
@@ -22,13 +22,13 @@ from eel_gaits.pilot.guidance import GUIDANCE, Demand, PathGuidance
 from eel_gaits.pilot.regulator import Gains, Regulator
 from eel_gaits.pilot.settings import PilotSettings
 
-RESPONSE = 0.2  # periods of the gait in which the numbers of the law follow their targets
-NEARER = 0.98  # of a goal's least error: what counts as nearer
-ON_COURSE = 0.1  # error of the heading [rad] and of the depth [m] together, below which a course counts as held
+RESPONSE = 0.2  # periods of the gait: time constant of the law's numbers
+NEARER = 0.98  # a smaller error than this part of the least one is progress
+ON_COURSE = 0.1  # error of the heading [rad] plus that of the depth [m]: below it a course is held
 
 
 class News(NamedTuple):
-    """Something that the pilot reports."""
+    """A report of the pilot."""
 
     text: str
     good: bool = False  # False: a warning
@@ -37,7 +37,7 @@ class News(NamedTuple):
 class Pilot:
     """Steers one swimmer. Call `begin` at the start of a run, then `step` for each sample of the head's motion.
 
-    `see` and `steer` are the two parts of `step`, where the times of motion and curvature differ.
+    `see` and `steer` are the two parts of `step`, for use where motion and curvature have different times.
 
     Args:
         settings: numbers of swimmer and pilot.
@@ -45,11 +45,11 @@ class Pilot:
         gains: of the regulator.
 
     Attributes:
-        goal: what is swum to.
-        estimate: the last one; None before the first step.
-        demand: the last one.
-        misses: [m], least distances of the head to the points of the present path that have been passed.
-        news: what is to be reported, the oldest first; whoever reports it empties the list.
+        goal: the present goal.
+        estimate: the last estimate; None before the first step.
+        demand: the last demand.
+        misses: [m], least distance of the head from each passed point of the present path.
+        news: reports, the oldest first. The caller empties the list.
     """
 
     def __init__(
@@ -64,25 +64,25 @@ class Pilot:
         self._regulator = Regulator(self.settings, gains)
         self._progress = Progress(self.settings.patience)
         self.goal: Course | Path | Station = Course(0.0, 0.0, 0.0)
-        self._guidance: Any = None  # to the goal, as of `GUIDANCE`
+        self._guidance: Any = None  # the guidance to the goal, from `GUIDANCE`
         self.estimate: Estimate | None = None
         self.demand: Demand | None = None
         self.misses: list[float] = []
         self.news: list[News] = []
 
     def begin(self) -> np.ndarray:
-        """Begin a run: the straight body at rest. The curvature (6, points) as of `SteeredLaw.advance`."""
+        """Begin a run with the straight body at rest. Returns the curvature (6, points), as `SteeredLaw.advance`."""
         self._estimator.restart()
         self._regulator.restart()
         self._guidance, self.estimate = None, None
         return self.law.begin(0.0, amplitude=0.0, tempo=self.settings.slowest_tempo)
 
     def follow(self, goal: Course | Path | Station) -> None:
-        """Change the goal. It is begun with at the next step."""
+        """Change the goal, from the next step on."""
         self.goal, self._guidance = goal, None
 
     def checked_path(self, goal: Path) -> Path:
-        """The path, if its first point can be reached from where the swimmer is. `ValueError` otherwise."""
+        """The path, if its first point can be reached from the present position. `ValueError` otherwise."""
         if self.estimate is not None:
             forward = math.cos(self.estimate.heading), math.sin(self.estimate.heading)
             self.settings.limits.check_turn(1, "of the swimmer", goal.points[0] - self.estimate.position, forward)
@@ -96,22 +96,22 @@ class Pilot:
 
     @property
     def target(self) -> int:
-        """Index of the way point that is aimed at; 0 without a path."""
+        """Index of the next way point; 0 without a path."""
         return self._guidance.target if isinstance(self._guidance, PathGuidance) else 0
 
     def limit_torque(self, torque: float, limit: float, time: float) -> None:
-        """Slow down where the internal `torque` [N m] at `time` [s] exceeds the `limit` [N m]; 0: there is none."""
+        """Slow down if the internal `torque` [N m] at `time` [s] exceeds the `limit` [N m]; 0: no limit."""
         if self._regulator.torque.exceeded(torque, limit, time, self.law.values["tempo"][0]):
             text = f"the torque of {torque:.3g} N m exceeds the limit of {limit:.3g} N m at the slowest beat too"
             self.news.append(News(text))
 
     def step(self, time: float, head: HeadMotion, step: float) -> np.ndarray:
-        """See the `head` at `time` [s], and steer for a `step` [s]: the curvature (6, points) at its end."""
+        """Take the `head` at `time` [s] and steer for a `step` [s]. Returns the curvature (6, points) at its end."""
         self.see(time, head)
         return self.steer(step)
 
     def see(self, time: float, head: HeadMotion) -> None:
-        """Take in the motion of the `head` at `time` [s], and guide the swimmer. Times must rise."""
+        """Take the motion of the `head` at `time` [s], and guide the swimmer. Times must rise."""
         values = self.law.values
         through = self.settings.cruise_speed * values["tempo"][0] * min(1.0, values["amplitude"][0])
         self.estimate = estimate = self._estimator.add(time, head, self.law.own_time, through)
@@ -120,14 +120,14 @@ class Pilot:
         self._watch(time, head, estimate, demand)
 
     def steer(self, step: float) -> np.ndarray:
-        """The curvature (6, points) `step` [s] after that of the last call, or of `begin`."""
+        """The curvature (6, points) `step` [s] after the last call, or after `begin`."""
         assert self.demand is not None and self.estimate is not None, "`see` comes first"
         targets = self._regulator.targets(self.demand, self.estimate, self.law, step)
         tempo = max(self.law.values["tempo"][0], self.settings.slowest_tempo)
         return self.law.advance(targets, step, RESPONSE * self.law.period / tempo)
 
     def _guide(self, estimate: Estimate, head: HeadMotion) -> None:
-        """Find the guidance to the present goal. When a path is done, its last point is the station to stay at."""
+        """Find the guidance to the present goal. After a path, its last point becomes the station."""
         if self._guidance is None:
             self.misses = [] if isinstance(self.goal, Path) else self.misses
             self._guidance = GUIDANCE[type(self.goal)](self.goal, self.settings, estimate.position)
@@ -145,7 +145,7 @@ class Pilot:
                 self._guide(estimate, head)
 
     def _watch(self, time: float, head: HeadMotion, estimate: Estimate, demand: Demand) -> None:
-        """Report where the goal does not come nearer."""
+        """Report a goal that does not come nearer."""
         goal = self.goal
         if isinstance(goal, Course):
             error = abs(wrapped(goal.heading - estimate.heading)) + abs(-goal.depth - estimate.position[2])
@@ -163,7 +163,7 @@ class Pilot:
 
 
 class Progress:
-    """Watches the error of a goal. patience: [s] without progress after which it counts as out of reach."""
+    """Watches the error of a goal. patience: [s] without progress; then the goal counts as out of reach."""
 
     def __init__(self, patience: float) -> None:
         self._patience = patience
@@ -171,11 +171,11 @@ class Progress:
         self._since, self._said = 0.0, False
 
     def restart(self, time: float) -> None:
-        """Watch another goal from `time` [s] on."""
+        """Watch a new goal from `time` [s] on."""
         self.least, self._since, self._said = math.inf, time, False
 
     def stalled(self, time: float, error: float, close: float) -> bool:
-        """Whether it has just become clear that the error stays above `close`. It is said once for each goal."""
+        """Whether it has just become clear that the error stays above `close`. True at most once for each goal."""
         if error < NEARER * self.least or error <= close:
             self.least, self._since = min(error, self.least), time
         if self._said or time - self._since <= self._patience:

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Regulator: from what guidance wants to the numbers of the steered law. State feedback in the gait's own time.
+"""Regulator: from guidance's demand to the numbers of the steered law. State feedback in the gait's own time.
 
-Bends in pitch turn the plane of the beat up and down. A wave in pitch a quarter of a period behind the one in yaw (the
-number `swirl`) rolls it; this is how the body can hold its roll without a keel. Both see the plane at once, without a
-mean over a period. In the gait's own time the swimmer is the same at any tempo, as drag grows with the square of speed;
-so rates are divided by the tempo, and the numbers follow their targets in a time that goes with the period. The
-internal torque goes with the square of the tempo: where it is too great, the beat slows down.
+Bends in pitch turn the plane of the beat up and down. A wave in pitch, a quarter of a period behind the wave in yaw
+(the number `swirl`), rolls it, so the body can hold its roll without a keel. Both act on the present plane, which needs
+no mean over a period. In the gait's own time the swimmer behaves the same at any tempo, as drag grows with the square
+of speed. So rates are divided by the tempo, and the response times of the numbers scale with the period. The internal
+torque grows with the square of the tempo: where it is too large, the beat slows down.
 """
 
 import math
@@ -18,31 +18,31 @@ from eel_gaits.pilot.estimate import Estimate
 from eel_gaits.pilot.guidance import Demand
 from eel_gaits.pilot.settings import PilotSettings
 
-KEEL = 0.004  # metacentric height by length and by tempo squared, about which the gains of the roll change
-NEAR = 0.1  # body lengths from the wanted depth within which the error of the height is integrated: no windup on a dive
-MOST_CLIMB_OFFSET = 0.1  # rad, that this integral may add to the climb
-RECOVERY = 0.02  # 1/s, by which the greatest tempo grows again
-LONGEST_STEP = 1.0  # s, that count of a longer gap between two torques
-AT_SLOWEST = 1.05  # times the slowest tempo: a beat that is no faster has no room left
-SHARE_OF_BEND = 0.5  # of the limit of the bend, that the integral of the error of the climb may take
+KEEL = 0.004  # metacentric height / (length tempo^2) around which the roll gains change
+NEAR = 0.1  # body lengths: a larger error of the height is not integrated, against windup on a dive
+MOST_CLIMB_OFFSET = 0.1  # rad: most that this integral adds to the climb
+RECOVERY = 0.02  # 1/s: growth of the greatest tempo after a limit
+LONGEST_STEP = 1.0  # s: a longer gap between two torques counts as this
+AT_SLOWEST = 1.05  # times the slowest tempo: a beat below this cannot slow down
+SHARE_OF_BEND = 0.5  # of the bend's limit: most that the integral of the climb error takes
 
 
 @dataclass(frozen=True, kw_only=True)
 class Gains:
     """Feedback for a body of 1 m and a gait with a period of 1 s, found from the motion linearised over a period."""
 
-    heading: float = 1.3  # bend by error, rad/m per rad
+    heading: float = 1.3  # rad/m per rad: bend / error
     heading_rate: float = 0.7  # s/m
     climb: float = 13.4  # rad/m per rad
     climb_rate: float = 7.34  # s/m
     rise: float = -4.28  # rad/m per m/s
-    up_bend: float = 21.6  # of the bend itself, and of its rate [s]
+    up_bend: float = 21.6  # feedback of the bend itself, and of its rate [s]
     up_bend_rate: float = -2.09
-    climb_integral: float = 0.05  # rad/m per rad s, integral action: bend by error of the climb and time
-    height: float = 0.01  # 1/m/s, integral action: climb by error of the height and time
-    roll: float = 4.16  # swirl by error, 1/rad
+    climb_integral: float = 0.05  # rad/m per rad s, integral action: bend / integral of the climb error
+    height: float = 0.01  # 1/m/s, integral action: climb / integral of the height error
+    roll: float = 4.16  # 1/rad: swirl / error
     roll_rate: float = 0.135  # s/rad
-    roll_with_keel: float = 1.0  # the same two where weight and buoyancy right the body faster than it beats
+    roll_with_keel: float = 1.0  # the same two if weight and buoyancy right the body faster than it beats
     roll_rate_with_keel: float = 0.5
     swirl: float = 4.8
     swirl_rate: float = 0.35  # s
@@ -59,17 +59,17 @@ class Regulator:
         self.torque = TorqueLimiter(settings.slowest_tempo, settings.fastest_tempo)
 
     def restart(self) -> None:
-        """Forget the integrals and the torques."""
+        """Reset the integrals and the torques."""
         self._climb_offset = self._bend_offset = 0.0
         self.torque.restart()
 
     @property
     def greatest_speed(self) -> float:
-        """Greatest speed [m/s] through the water at present."""
+        """The present greatest speed [m/s] through the water."""
         return self._settings.cruise_speed * self.torque.tempo
 
     def targets(self, demand: Demand, estimate: Estimate, law: SteeredLaw, step: float) -> dict[str, float]:
-        """The targets of the numbers, for a `step` [s]."""
+        """The targets of the numbers for a step of `step` [s]."""
         settings, gains = self._settings, self._gains
         tempo, amplitude = self._beat(demand.speed)
         bend_limit = max(0.0, settings.greatest_curvature - amplitude * law.greatest_curvature)
@@ -113,7 +113,7 @@ class Regulator:
         }
 
     def _beat(self, speed: float) -> tuple[float, float]:
-        """Tempo and amplitude for a `speed` [m/s] through the water: the speed goes with the tempo."""
+        """Tempo and amplitude for a `speed` [m/s] through the water, which is proportional to the tempo."""
         settings = self._settings
         wanted = speed / settings.cruise_speed
         tempo = min(max(wanted, settings.slowest_tempo), self.torque.tempo)
@@ -138,16 +138,16 @@ class TorqueLimiter:
         self.tempo, self._time, self._said = self._fastest, -math.inf, False
 
     def exceeded(self, torque: float, limit: float, time: float, tempo: float) -> bool:
-        """Take in the `torque` [N m] at `time` [s] of a beat of this `tempo`; 0: there is no `limit`.
+        """Take the `torque` [N m] at `time` [s] of a beat of this `tempo`; `limit` 0: no limit.
 
-        Returns whether the torque exceeds the limit at the slowest tempo; it is said once in a run.
+        Returns whether the torque exceeds the limit at the slowest tempo; True at most once in a run.
         """
         if limit <= 0.0:
             self.tempo = self._fastest
             return False
         step = min(LONGEST_STEP, max(0.0, time - self._time))
         self._time = time
-        if not torque > limit:  # nor NaN
+        if not torque > limit:  # also for NaN
             self.tempo = min(self._fastest, self.tempo * (1.0 + RECOVERY * step))
             return False
         self.tempo = max(self._slowest, min(self.tempo, tempo * math.sqrt(limit / torque)))

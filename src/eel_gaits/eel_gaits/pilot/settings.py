@@ -11,13 +11,13 @@ from eel_common.quantity import Quantities, documented, quantity
 
 from eel_gaits.pilot.goals import Limits
 
-CIRCLE = 0.95  # radius of a turn times the bend of the body that gives it
+CIRCLE = 0.95  # radius of a turn times the body's bend
 
 
 @documented
 @dataclass(frozen=True, kw_only=True)
 class PilotSettings(Quantities):
-    """Numbers of the swimmer and of the pilot. Lengths that are given in lengths have the body's own for their unit."""
+    """Numbers of the swimmer and of the pilot. The unit "lengths" means body lengths."""
 
     length: float = quantity(1.0, "m", "body length", 1e-3, 1e3)
     cruise_speed: float = quantity(0.653, "m/s", "speed of the gait in still water", 1e-4, 1e2)
@@ -36,7 +36,7 @@ class PilotSettings(Quantities):
 
     @property
     def limits(self) -> Limits:
-        """What a goal may ask for."""
+        """The limits of a goal."""
         return Limits(
             greatest_speed=self.cruise_speed * self.fastest_tempo,
             turning_radius=CIRCLE / self.greatest_bend if self.greatest_bend else float("inf"),
@@ -52,7 +52,7 @@ class PilotSettings(Quantities):
 
 @dataclass(frozen=True, kw_only=True)
 class GoalParameters(Quantities):
-    """What may change while the node runs."""
+    """Parameters that may change while the node runs."""
 
     heading: float = quantity(0.0, "rad", "heading to hold; positive: left", -1e3, 1e3, changeable=True)
     depth: float = quantity(0.0, "m", "depth to hold, below z = 0", -1e5, 1e5, changeable=True)
@@ -69,7 +69,7 @@ class GoalParameters(Quantities):
 
 @dataclass(frozen=True, kw_only=True)
 class TimingParameters(Quantities):
-    """When the pilot sends what."""
+    """The times of the samples that the pilot sends."""
 
     sample_period: float = quantity(0.02, "s", "time from one sample of the curvature to the next", 1e-3, 0.2)
     lead: float = quantity(

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A heading controller: it reads the heading from /odom, and answers each sample with the curvature some time ahead.
 
-It swims straight, and bends the whole body towards the target heading. Its answers are `curvature_samples`, so that a
-simulation as fast as possible (`real_time_factor:=0`) keeps in step with it. docs/howto/controllers.md tells how.
+It swims straight, and bends the whole body towards the target heading. Its answers are `curvature_samples`, so a
+simulation that runs as fast as possible (`real_time_factor:=0`) keeps in step with it. See docs/howto/controllers.md.
 """
 
 import math
@@ -27,7 +27,7 @@ from eel_msgs.msg import CurvatureSamples
 
 NAME = "heading_controller"
 ABOUT = "Swims towards a heading: answers each sample on odom with one on curvature_samples."
-FOLLOWING = 3.0  # rad/s, with which the bend follows what the heading wants
+FOLLOWING = 3.0  # rad/s: bandwidth of the bend's response to the heading error
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,8 +66,8 @@ class HeadingController(ParameterNode):
         self.create_subscription(Odometry, "odom", self.receive, keep_all())
 
     def receive(self, odometry: Odometry) -> None:
-        """Answer one sample: the curvature up to `lead` later. A stamp that is repeated gets the same answers."""
-        now, head = seconds_of(odometry.header.stamp), head_motion(odometry)  # bad values are errors, and left out
+        """Answer one sample with the curvature up to `lead` later. A repeated stamp gets the same answers."""
+        now, head = seconds_of(odometry.header.stamp), head_motion(odometry)  # bad values raise: the message is dropped
         if now != self.last:
             self.last, self.answers = now, []
             if self.lead.begins(now):
@@ -81,7 +81,7 @@ class HeadingController(ParameterNode):
             self.publisher.publish(answer)
 
     def next_bend(self, present: float) -> np.ndarray:
-        """The bend of the body one period on, at the `present` heading [rad]: K3 [rad/m], its rate and acceleration.
+        """The bend of the body one period later at the `present` heading [rad]: K3 [rad/m], its rate and acceleration.
         K3 > 0 turns to the right."""
         target, gain, limit = (self.get_parameter(name).value for name in ("heading", "gain", "greatest_bend"))
         wanted = -gain * math.remainder(target - present, 2.0 * math.pi)
@@ -91,7 +91,7 @@ class HeadingController(ParameterNode):
         return np.array((value + self.period * rate, rate, acceleration))
 
     def sample(self, time: float) -> CurvatureSamples:
-        """The curvature at `time` [s]: the gait and the bend."""
+        """The curvature message for `time` [s]: the gait plus the bend."""
         yaw = [rows[:, 2] + bend for rows, bend in zip(self.gait.curvature(time, self.x), self.bend, strict=True)]
         pitch = np.zeros((3, len(self.x)))
         return samples_to_message(time, self.x, np.vstack((pitch, *yaw)))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Curvature laws and their samples as messages; `laws.law_message` reads those of laws.
+"""Curvature laws and their samples as messages. `laws.law_message` reads messages of laws.
 
-Laws and messages use the paper's section axes, so nothing is turned here. K2 (pitch) > 0 bends the tail down. K3 (yaw)
+Laws and messages use the paper's section axes, so nothing is rotated here. K2 (pitch) > 0 bends the tail down. K3 (yaw)
 > 0 bends it to the right.
 """
 
@@ -39,10 +39,10 @@ def law_to_message(law: Law, *, stamp: Time | None = None, frame: str = FRAME) -
 
 
 def samples_to_message(time: float, x: np.ndarray, rows: np.ndarray, frame: str = FRAME) -> msg.CurvatureSamples:
-    """One instant of a law without a closed form as a message, at `time` [s] and the points x (n,) [m].
+    """A message for one instant of a law without a closed form, at `time` [s] and the points x (n,) [m].
 
-    rows (6, n): pitch, its rate and its acceleration, then those of yaw [rad/m, rad/m/s, rad/m/s^2]. `ValueError` for a
-    time that no stamp holds.
+    rows (6, n): pitch, its rate and its acceleration, then yaw likewise [rad/m, rad/m/s, rad/m/s^2]. `ValueError` if
+    `time` does not fit into a stamp.
     """
     arrays = {"x": x, **dict(zip(ROWS, rows, strict=True))}
     fields = {name: array("d", np.ascontiguousarray(values).tobytes()) for name, values in arrays.items()}

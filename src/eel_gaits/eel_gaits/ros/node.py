@@ -45,7 +45,7 @@ ROWS = [
     *help_rows(Transition),
     *((name, f"{text}, of the gait 'file'", default) for name, text, default in help_rows(MeasuredBody)),
 ]
-LOOK = 0.05  # s between two looks at the time: whether it went back, and how far samples must reach
+LOOK = 0.05  # s between two checks of the time, for resets and due samples
 
 
 class GaitGenerator(ParameterNode):
@@ -67,20 +67,20 @@ class GaitGenerator(ParameterNode):
         self.declare_parameter("file", self._settings.file, descriptor, ignore_override=True)
         self._declare_numbers()
         backwards = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=False)
-        self._publish_later = self.create_guard_condition(self._publish)  # after the present callback: one law of all
+        self._publish_later = self.create_guard_condition(self._publish)  # one law for all changes
         self._jump_handle = self.get_clock().create_jump_callback(backwards, post_callback=self._follow_reset)
         self._publish()
 
     def create_subscription(self, *args: Any, **kwargs: Any) -> Any:
         """Put a subscription into the group that the node polls.
 
-        The only subscription is rclpy's own, to /clock, which may tick thousands of times per second. The node needs
+        The only subscription is rclpy's own to /clock, which may tick thousands of times per second. The node needs
         only the newest tick, and only when it needs the time.
         """
         return super().create_subscription(*args, **kwargs, callback_group=self._ticks)
 
     def look_at_clock(self) -> None:
-        """Take the newest tick of /clock, if there is one."""
+        """Take the newest tick of /clock, if any."""
         for ticks in self.subscriptions:
             with ticks.handle:
                 taken = ticks.handle.take_message(ticks.msg_type, ticks.raw)
@@ -88,7 +88,7 @@ class GaitGenerator(ParameterNode):
                 ticks.callback(*taken)
 
     def look(self) -> bool:
-        """Look at the clock, and send the samples that are due. Returns True: the node continues."""
+        """Read the clock and send the samples that are due. Returns True: the node continues."""
         self.look_at_clock()
         self._stream.extend(self._now())
         self._rows.extend(self._now())
@@ -103,7 +103,7 @@ class GaitGenerator(ParameterNode):
             declare(self, group, changeable=True)
 
     def set_parameters_atomically(self, parameters: list[Parameter]) -> SetParametersResult:
-        """Set `parameters` at once; those of the gait give new settings and a new law, or are refused together."""
+        """Set all `parameters` or none. Those of the gait make new settings and a new law."""
         ours = Settings.known_names()
         others = [each for each in parameters if each.name not in ours and self.has_parameter(each.name)]
         changes = {each.name: each.value for each in parameters if each not in others}
@@ -115,7 +115,7 @@ class GaitGenerator(ParameterNode):
             self.get_logger().warning(f"refused: {error}")
             return SetParametersResult(successful=False, reason=str(error))
         stored = {"gait": settings.gait, "file": settings.file}
-        if settings.gait == self._settings.gait:  # else its numbers are declared once the set is accepted
+        if settings.gait == self._settings.gait:  # otherwise its numbers are declared after the set is accepted
             stored = {name: (stored | settings.numbers())[name] for name in changes}
         result = super().set_parameters_atomically(
             [*others, *(Parameter(name, value=value) for name, value in stored.items())]
@@ -125,7 +125,7 @@ class GaitGenerator(ParameterNode):
         return result
 
     def _follow(self, settings: Settings) -> None:
-        """Swim by these settings from now on."""
+        """Swim with these settings from now on."""
         self.look_at_clock()
         before, self._settings = self._settings, settings
         if settings.gait != before.gait:
@@ -138,7 +138,7 @@ class GaitGenerator(ParameterNode):
         self._publish_later.trigger()
 
     def _follow_reset(self, jump: Any) -> None:
-        """After time went back, the receiver's law has its own t = 0 at 0. Laws published later have it too."""
+        """After time went back, the receiver sets the law's t = 0 to 0. Later laws get that time too."""
         oscillation = self._settings.oscillation()
         if oscillation is not None:
             self._stream.restart(oscillation, self._now())
@@ -155,7 +155,7 @@ class GaitGenerator(ParameterNode):
         beginning = f"gait {shown(self._settings.gait)}, t = 0 at {began:.3f} s, published on"
         if isinstance(law, SampledLaw):
             if self._stream.running:
-                self._publish_law(still())  # so that a simulation drops the samples of one stream before another begins
+                self._publish_law(still())  # a simulation drops the old stream's samples before the new one begins
             self._rows.follow(law, began)
             self.get_logger().info(f"{beginning} {self._rows.topic_name}: {law.about}")
         elif oscillation is not None:
@@ -168,7 +168,7 @@ class GaitGenerator(ParameterNode):
             self.get_logger().info(f"{beginning} {self._publisher.topic_name}")
 
     def _publish_law(self, law: Law) -> None:
-        """Publish a law. A simulation then drops the samples that it has."""
+        """Publish a law. A simulation then drops its samples."""
         self._stream.stop()
         self._rows.stop()
         self._publisher.publish(law_to_message(law, stamp=self._stamp, frame=self._frame))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The pilot: subscribes to `odom` and goals, and answers with the curvature that leads the swimmer there.
 
-Goals are the parameters heading, depth and speed, a path on `goal_path`, a station on `goal_pose`: the last one counts.
-What cannot be reached is refused in one line, and the last goal stays. The goal in force is on the topic `goal`.
-docs/howto/pilot.md says more.
+Goals are the parameters heading, depth and speed, a path on `goal_path`, or a station on `goal_pose`; the last counts.
+A goal out of reach is refused in one line, and the last goal stays. The topic `goal` shows the present goal. See
+docs/howto/pilot.md.
 """
 
 import math
@@ -36,8 +36,8 @@ from eel_msgs.msg import CurvatureSamples, SwimState
 
 NAME = "pilot"
 ABOUT = "Swims to goals: subscribes to odom, goal_path and goal_pose, and answers on curvature_samples."
-MOST_WAITING = 50  # samples of odom that wait for the torque of the same time, and torques that wait for an odom
-LONGEST_GAP = 2.0  # s between two samples of odom: after a longer one the body is at rest, for no answer reaches so far
+MOST_WAITING = 50  # odom samples waiting for the torque of their time, and torques waiting for an odom
+LONGEST_GAP = 2.0  # s between two odom samples: after a longer gap the body is at rest, as no answer reaches so far
 
 
 class PilotNode(ParameterNode):
@@ -49,16 +49,16 @@ class PilotNode(ParameterNode):
         self._timing: TimingParameters
         self._numbers, self._timing, settings = declare_all(self, *GROUPS)
         self._pilot = Pilot(settings)
-        self._goal = self.create_publisher(Path, "goal", latched(1))  # the goal in force
+        self._goal = self.create_publisher(Path, "goal", latched(1))  # the present goal
         self._follow(self._course(self._numbers), "parameters")
         self._frames = {frame_in(self.get_namespace(), "odom"), ""}
         self._section_frame = frame_in(self.get_namespace(), FRAME)
         self._lead = Lead(self._timing.sample_period, self._timing.lead)
-        self._last = math.inf  # s, of the last odom
-        self._answers: list[CurvatureSamples] = []  # to it
+        self._last = math.inf  # s, time of the last odom
+        self._answers: list[CurvatureSamples] = []  # answers to the last odom
         self._waiting: list[tuple[float, HeadMotion, str]] = []  # time [s] and frame of each
         self._torques: dict[float, float] = {}  # time [s]: torque [N m]
-        self._torque_comes = False  # whether swim_state has come, and none has been missed since
+        self._torque_comes = False  # whether swim_state has come, and each since
         self._publisher = self.create_publisher(CurvatureSamples, "curvature_samples", keep_all())
         self.create_subscription(Odometry, "odom", self._receive, keep_all())
         self.create_subscription(Path, "goal_path", self._receive_path, 10, raw=True)
@@ -119,15 +119,15 @@ class PilotNode(ParameterNode):
         self.get_logger().info(f"{goals.described(goal)}, from {source}")
 
     def _check_frame(self, frame: str) -> None:
-        """`ValueError` for a frame that is not that of odom."""
+        """`ValueError` for a frame other than odom's."""
         if frame.lstrip("/") not in self._frames:
             known = " or ".join(shown(each) for each in sorted(self._frames - {""})) or "empty"
             raise ValueError(f"frame_id must be {known}, got {shown(frame)}")
 
-    # -- samples: a message with bad values is an error, and left out
+    # -- samples: a message with bad values raises, and is dropped
 
     def _subscribe_to_torque(self) -> None:
-        """Subscribe to swim_state while there is a limit of torque."""
+        """Subscribe to swim_state while there is a torque limit."""
         wanted = self._numbers.torque_limit > 0.0
         if wanted and self._swim_state is None:
             self._swim_state = self.create_subscription(SwimState, "swim_state", self._receive_state, keep_all())
@@ -155,9 +155,9 @@ class PilotNode(ParameterNode):
         self._answer_waiting()
 
     def _answer_waiting(self) -> None:
-        """Answer each odom once the torque of its time is known, so that a run repeats itself.
+        """Answer each odom once the torque of its time is known, so that a run is reproducible.
 
-        Nothing waits before swim_state has come, nor once it stays away.
+        Nothing waits before swim_state has come, or after it has stopped.
         """
         while self._waiting:
             now, head, frame = self._waiting[0]
@@ -174,8 +174,8 @@ class PilotNode(ParameterNode):
             self._answer(now, head, frame)
 
     def _answer(self, now: float, head: HeadMotion, frame: str) -> None:
-        """Send the samples up to `lead` after `now` [s]. A stamp that goes back is a start, and so is one after a gap;
-        one that is repeated gets the same answers."""
+        """Send the samples up to `lead` after `now` [s]. A stamp that goes back, or comes after a long gap, is a new
+        start; a repeated stamp gets the same answers."""
         if now != self._last:
             self._answers = []
             self._frames = {frame.lstrip("/"), ""}
@@ -193,7 +193,7 @@ class PilotNode(ParameterNode):
             self._publisher.publish(answer)
         for news in self._pilot.news:
             text = f"t = {now:.2f} s: {news.text}"
-            if news.good:  # rclpy takes one severity from a line of code
+            if news.good:  # rclpy allows one severity per line of code
                 self.get_logger().info(text)
             else:
                 self.get_logger().warning(text)

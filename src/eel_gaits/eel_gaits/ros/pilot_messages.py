@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the pilot reads of messages, and the goal as one."""
+"""Conversion of messages for the pilot, and the goal as a message."""
 
 import numpy as np
 from eel_common.attitude import unit_quaternion
@@ -13,7 +13,7 @@ from std_msgs.msg import Header
 
 from eel_gaits.pilot.goals import FARTHEST, check_count
 
-GREATEST = 10.0 * FARTHEST  # m, m/s, rad/s: farther than any goal, and nothing overflows
+GREATEST = 10.0 * FARTHEST  # m, m/s, rad/s: beyond any goal, but safe from overflow
 
 
 def point_of(point: Point) -> tuple[float, float, float]:
@@ -22,8 +22,8 @@ def point_of(point: Point) -> tuple[float, float, float]:
 
 
 def read_path(data: bytes) -> Path:
-    """The path that is serialised in `data`. `ValueError` for too many points, which are counted first;
-    another error for bytes that are no message."""
+    """The path serialised in `data`. `ValueError` for too many points, which are counted first; bytes that are no
+    message raise another error."""
     check_count(FieldReader(data).number())
     return read_message(data, Path)
 
@@ -36,7 +36,7 @@ def path_message(points: np.ndarray, frame: str) -> Path:
 
 
 def head_motion(odometry: Odometry) -> HeadMotion:
-    """The head's motion. `ValueError` where it is not finite, farther or faster than any, or has no orientation."""
+    """The head's motion. `ValueError` if it is not finite, too far, too fast, or has no orientation."""
     pose, twist = odometry.pose.pose, odometry.twist.twist
     q = pose.orientation
     orientation = np.array((q.x, q.y, q.z, q.w))

@@ -13,16 +13,16 @@ from eel_gaits.ros.messages import samples_to_message
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_msgs.msg import CurvatureSamples
 
-CHAIN_AHEAD = 0.5  # s of simulation time, from the present to the last sample of the oscillators
-ROWS_AHEAD = 2.0  # s of simulation time by which rows are sent ahead
-LEAD = 0.1  # s, from the present to the first sample of a simulation that already runs
-LONGEST_GAP = 2.0  # s by which the simulation may be ahead; beyond, the oscillators begin anew
-BRIDGE = 1.0  # s of simulation time from the last row of a motion to the first of the next
-MOST_SAMPLES = 500  # sent at once, so that the node hears calls and signals; the others follow with the next look
+CHAIN_AHEAD = 0.5  # s of simulation time, from the present to the oscillators' last sample
+ROWS_AHEAD = 2.0  # s of simulation time the lead of the rows
+LEAD = 0.1  # s, from the present to the first sample, for a running simulation
+LONGEST_GAP = 2.0  # s: if the simulation is further ahead, the oscillators restart
+BRIDGE = 1.0  # s of simulation time between the last row of a motion and the first of the next
+MOST_SAMPLES = 500  # sent at a time, so that the node answers calls and signals in between
 
 
 class SampleStream:
-    """A stream of a `node` on the topic `curvature_samples`, in this `frame`. Nothing is on the network until it
+    """A stream of a `node` on the topic `curvature_samples`, in this `frame`. The publisher is created when it
     begins."""
 
     def __init__(self, node: Any, frame: str) -> None:
@@ -41,7 +41,7 @@ class SampleStream:
         return str(self._publisher.topic_name)
 
     def stop(self) -> None:
-        """Send nothing more. What has been sent stays with the simulation, until a law takes over."""
+        """Stop sending. A simulation keeps the samples sent, until a law takes over."""
         if self._publisher is not None:
             self._node.destroy_publisher(self._publisher)
             self._publisher = None
@@ -51,7 +51,7 @@ class SampleStream:
             self._publisher = self._node.create_publisher(CurvatureSamples, "curvature_samples", keep_all())
 
     def _has_new_listeners(self) -> bool:
-        """Whether subscribers have come since the last call."""
+        """Whether subscribers have joined since the last call."""
         before, self._listeners = self._listeners, self._publisher.get_subscription_count()
         return self._listeners > before
 
@@ -64,7 +64,7 @@ class OscillatorStream(SampleStream):
 
     def __init__(self, node: Any, frame: str) -> None:
         super().__init__(node, frame)
-        self._chain: Any = None  # the `Oscillators`, once they have begun
+        self._chain: Any = None  # the `Oscillators`, None before they begin
         self._start, self._count = 0.0, 0  # s; samples since then
 
     def follow(self, numbers: Oscillation, now: float) -> None:
@@ -73,7 +73,7 @@ class OscillatorStream(SampleStream):
             self._begin()
             self.restart(numbers, now)
         else:
-            self._start, self._count = self._chain.time, 0  # the sample period may be another
+            self._start, self._count = self._chain.time, 0  # the sample period may have changed
             self._chain.numbers = numbers
         self.extend(now)
 
@@ -87,13 +87,13 @@ class OscillatorStream(SampleStream):
         """Send the samples up to 0.5 s after `now` [s of simulation time]."""
         if not self.running:
             return
-        if self._has_new_listeners() and now <= self._start:  # the new one has missed the first samples
+        if self._has_new_listeners() and now <= self._start:  # the new subscriber missed the first samples
             self.restart(self._chain.numbers, now)
         if now - self._chain.time > LONGEST_GAP:
             text = f"time goes on at {now:.9g} s, after samples up to {self._chain.time:.9g} s: a new start"
             self._node.get_logger().warning(text, throttle_duration_sec=1.0)
             self.restart(self._chain.numbers, now)
-        elif self._chain.time < now:  # the simulation was faster
+        elif self._chain.time < now:  # the simulation has overtaken it
             self._start, self._count = now + LEAD, 0
             self._advance()
         for _ in range(MOST_SAMPLES):
@@ -114,18 +114,18 @@ class OscillatorStream(SampleStream):
 class RowStream(SampleStream):
     """The stream of the rows of a law.
 
-    A subscriber that comes later, and a simulation that was reset, get the rows from the present on.
+    A new subscriber, and a simulation after a reset, get the rows from the present on.
     """
 
     def __init__(self, node: Any, frame: str) -> None:
         super().__init__(node, frame)
-        self._law: Any = None  # the `SampledLaw`, once it has begun
-        self._origin, self._next = 0.0, 0  # s; number of the row that is sent next
+        self._law: Any = None  # the `SampledLaw`, None before it begins
+        self._origin, self._next = 0.0, 0  # s; index of the next row
 
     @property
     def next_stamp(self) -> Time | None:
-        """The simulation time at which another motion can begin after the rows that have been sent; None where there
-        are none. Between the last row and the first of the other motion the body follows one quintic."""
+        """The simulation time at which another motion can begin after the rows sent; None if there are none. Between
+        the last row and the first of the other motion the body follows one quintic."""
         return stamp_of(self._time_of(self._next - 1) + BRIDGE) if self.running and self._next else None
 
     def follow(self, law: SampledLaw, origin: float) -> None:
@@ -139,17 +139,17 @@ class RowStream(SampleStream):
         self._origin, self._next, self._listeners = origin, 0, 0
 
     def extend(self, now: float) -> None:
-        """Send the rows up to 2 s after `now` [s of simulation time], to whoever is there."""
+        """Send the rows up to 2 s after `now` [s of simulation time]."""
         if not self.running:
             return
-        if self._has_new_listeners():  # a new one has had none of the rows
+        if self._has_new_listeners():  # a new subscriber has none of the rows
             first = now - self._origin + (LEAD if now > 0.0 else 0.0)
             self._next = int(np.searchsorted(self._law.time, first - 1e-9))
         if not self._listeners:
             return
         span = now - self._origin, now - self._origin + ROWS_AHEAD
         passed, last = np.searchsorted(self._law.time, span).tolist()
-        self._next = max(self._next, passed - 1)  # time has gone beyond those before
+        self._next = max(self._next, passed - 1)  # rows in the past
         last = min(last, self._next + MOST_SAMPLES)
         for row in range(self._next, last):
             self._send(self._time_of(row), self._law.x, self._law.values[row].reshape(6, -1))

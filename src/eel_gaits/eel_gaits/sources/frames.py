@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measured frames: fields at n points along the body at N instants, from the rows of a table, and the law of them.
+"""Measured frames: fields at n points along the body at N instants, read from a table, and the law made of them.
 
-Each frame is smoothed along the body, and the curvature that it gives in time. So each step finds noise that has no
-correlation along what it smooths, as the cross-validation supposes. The other way round, the noise that the first step
-left would be taken for motion, and the accelerations for what it does.
+Each frame is smoothed along the body, then its curvature in time. In this order the noise in each step is uncorrelated
+along the smoothed direction, as cross-validation assumes. In the other order, the noise that the first step left would
+count as motion, and would spoil the accelerations.
 """
 
 from collections.abc import Callable
@@ -19,13 +19,13 @@ from eel_gaits.sources.sampled_law import SampledLaw, points_for
 from eel_gaits.sources.smoothing import FEWEST, interpolated, smoothed, smoothed_in_time
 
 FEWEST_FRAMES = 16
-STEPS = 9e-5, 0.4  # s, of films and logs of swimmers; beyond them time is not in s
-TOLERANCE = 5e-5  # part of the greatest curvature by which the rows may miss the splines along the body
-MATERIAL = 0.02  # part of the length by which the arc length of a point may differ from frame to frame
+STEPS = 9e-5, 0.4  # s: range of steps in films and logs; otherwise time is not in s
+TOLERANCE = 5e-5  # part of the greatest curvature: error of the rows against the splines along the body
+MATERIAL = 0.02  # part of the length: variation of a point's arc length between frames
 
 
 class Frames(NamedTuple):
-    """Fields at n points and N instants. Frame i is made of the rows i n to (i + 1) n of the `table`."""
+    """Fields at n points and N instants. Frame i has the rows i n to (i + 1) n of the `table`."""
 
     table: Table
     time: np.ndarray  # (N,) s, from 0
@@ -40,11 +40,11 @@ class Frames(NamedTuple):
 def frames_of(
     table: Table, names: tuple[str, ...], unit: str, scale: float = 1.0, time: str = ""
 ) -> tuple[Frames, np.ndarray | None]:
-    """The frames of a table with times, the columns `names` and, if it has it, `arc_length`; and the arc lengths (n,)
-    of the points.
+    """The frames of a table, from its times, the columns `names` and, if present, `arc_length`; and the arc lengths
+    (n,) of the points.
 
-    Rows of one time are a frame, from nose to tail. unit: SI, of the columns. scale: metres in the file's unit of
-    length, in place of what their names tell. time: the column of times. `ValueError` names the rows that do not fit.
+    Rows of one time are a frame, from nose to tail. unit: SI unit of the columns. scale: metres per unit of length in
+    the file, instead of the units in names. time: the column of times. `ValueError` names the rows at fault.
     """
     si, length = (unit, "m") if scale == 1.0 else ("", "")
     if length:
@@ -62,8 +62,8 @@ def frames_of(
 
 
 def frame_starts(table: Table, time: np.ndarray) -> np.ndarray:
-    """The first row of each frame: of the rows of one `time` (rows,) [s]. `ValueError` where frames differ in size, or
-    time falls."""
+    """The first row of each frame, which has the rows of one `time` (rows,) [s]. `ValueError` if frames differ in
+    size, or time falls."""
     starts = np.concatenate(([0], np.flatnonzero(np.diff(time)) + 1))
     check_rising(table, time, starts)
     sizes = np.diff(np.append(starts, len(time)))
@@ -74,7 +74,7 @@ def frame_starts(table: Table, time: np.ndarray) -> np.ndarray:
 
 
 def check_rising(table: Table, time: np.ndarray, rows: np.ndarray) -> None:
-    """`ValueError` where the `time` (rows,) [s] of these `rows` does not rise."""
+    """`ValueError` if the `time` (rows,) [s] of these `rows` does not rise."""
     if len(back := np.flatnonzero(np.diff(time[rows]) <= 0.0)):
         before, after = rows[back[0]], rows[back[0] + 1]
         got = f"got {time[after]:g} s after {time[before]:g} s"
@@ -82,7 +82,7 @@ def check_rising(table: Table, time: np.ndarray, rows: np.ndarray) -> None:
 
 
 def check_steps(table: Table, instants: np.ndarray, fewest: int = FEWEST_FRAMES) -> None:
-    """`ValueError` where the `instants` (N,) [s] are too few for a motion, or not as close as those of a swimmer."""
+    """`ValueError` if the `instants` (N,) [s] are too few for a motion, or too far apart or close for a swimmer."""
     if len(instants) < fewest:
         raise table.error(f"there must be {fewest} instants or more, got {len(instants)}")
     if not STEPS[0] <= (step := float(np.median(np.diff(instants)))) <= STEPS[1]:
@@ -90,7 +90,7 @@ def check_steps(table: Table, instants: np.ndarray, fewest: int = FEWEST_FRAMES)
 
 
 def _material(frames: Frames, arc: np.ndarray) -> np.ndarray:
-    """Arc lengths (n,) of the points, which must rise, and stay the same from frame to frame."""
+    """Arc lengths (n,) of the points, which must rise along the body and stay the same in all frames."""
     falls = np.argwhere(np.diff(arc, axis=1) <= 0.0)
     if len(falls):
         frame, point = falls[0]
@@ -110,9 +110,10 @@ def _material(frames: Frames, arc: np.ndarray) -> np.ndarray:
 
 
 class SmoothedFrames:
-    """Splines along the body through each of the `frames`, whose points lie at the arc lengths `arc` (n,).
+    """Splines along the body through each of the `frames`, whose points have the arc lengths `arc` (n,).
 
-    about: what smoothing did, in words; unit: of the fields, of which `factor` make one of the frames'.
+    about: the effect of smoothing, in words. unit: of the fields, in `about`. factor: those units per unit of the
+    frames.
     """
 
     def __init__(self, frames: Frames, arc: np.ndarray, smooth: bool, unit: str, factor: float = 1.0) -> None:
@@ -137,10 +138,10 @@ def law_of_frames(
     along: str = "",
     raw: Callable[..., Any] | None = None,
 ) -> SampledLaw:
-    """The law of curvature(X) (N, 2, m) [rad/m], of pitch and yaw, at the instants of the `frames`.
+    """The law from curvature(X) (N, 2, m) [rad/m], pitch and yaw, at the instants of the `frames`.
 
-    length [m]: of the body. kind: of the data, in words. along: what smoothing along the body did. raw(): makes the law
-    without smoothing; without it, nothing is smoothed in time. `ValueError` for a gap in time.
+    length: [m], of the body. kind: of the data, in words. along: effect of smoothing along the body. raw(): makes the
+    law without smoothing; without it, nothing is smoothed in time. `ValueError` for a gap in time.
     """
     x = points_for(curvature, length, TOLERANCE)
     rows, time = curvature(x), frames.time

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A law from a function K(t, X): rows at instants and points so close together that they meet the function.
+"""A law from a function K(t, X): rows at instants and points that are close enough to represent the function.
 
-The function is looked at all along, at one random instant in each `step` of time, so that nothing that lasts two steps
-passes unseen, however long the motion is. Points along the body and rows are added until what lies between them differs
-from the function at all looks by no more than a part `tolerance` of the greatest curvature.
+The function is evaluated all along the body at one random instant in each `step` of time. So nothing that lasts two
+steps is missed, however long the motion is. Points along the body and rows are added until interpolation between them
+agrees with all these evaluations ("looks") to a part `tolerance` of the greatest curvature.
 """
 
 import math
@@ -21,12 +21,12 @@ from eel_gaits.sources.refinement import refined
 from eel_gaits.sources.sampled_law import SampledLaw, points_for
 
 TOLERANCE = 1e-5
-STEP = 0.005  # s, in each of which the function is looked at once
+STEP = 0.005  # s: there is one look in each step
 MOST_LOOKS = 1_000_000
-SEED = 1  # of the random looks
-CLOSEST = 1.0 / 64.0  # of the step, or of `STEP` if that is less: rows are no closer
-INSTANTS = 24  # at which the points along the body are chosen, and how many are added to them at once
-PLACES, SETS = 4096, 32  # random X along the body: each look has one of the sets of them, in turn
+SEED = 1  # seed of the random looks
+CLOSEST = 1.0 / 64.0  # least distance of rows, in steps, or in `STEP` if that is less
+INSTANTS = 24  # instants for choosing the points along the body, and number added at a time
+PLACES, SETS = 4096, 32  # random X along the body, and sets of them, which the looks use in turn
 
 
 def sampled(
@@ -41,11 +41,11 @@ def sampled(
     """The law of `function` from t = 0 to `duration` [s], for a body of `length` [m].
 
     function(t, X): curvature [rad/m] at the time t [s] and the points X (n,) [m], which rise. It returns yaw (n,), or
-    pitch and yaw (2, n); or, with rate [rad/m/s] and acceleration [rad/m/s^2] in time, (3, 2, n), or what
-    `Law.curvature` returns, (3, n, 3). step [s]: a bend that lasts two steps or longer is seen for certain, a shorter
-    one by chance. name: by default the function's.
+    pitch and yaw (2, n); or with rate [rad/m/s] and acceleration [rad/m/s^2] in time (3, 2, n); or (3, n, 3) like
+    `Law.curvature`. step: [s]; a bend that lasts two steps or longer is certainly seen, a shorter one by chance. name:
+    by default the function's.
 
-    `ValueError` names t and X where the function returns something else, or jumps; a warning tells where its rate does.
+    `ValueError` names t and X where the function returns anything else, or jumps. A warning says where its rate jumps.
     """
     duration, length = positive("duration", duration, "s"), positive("length", length, "m")
     tolerance, step = positive("tolerance", tolerance), positive("step", step, "s")
@@ -77,7 +77,7 @@ def sampled(
 
 
 class CheckedFunction:
-    """Calls a user's function, and checks what it returns. `given`: whether it returns derivatives too."""
+    """Calls a user's function, and checks its result. `given`: whether it returns derivatives too."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
         self._function = function
@@ -115,17 +115,17 @@ class CheckedFunction:
         return found
 
     def over(self, instants: np.ndarray, x: np.ndarray) -> np.ndarray:
-        """Curvature (N, 2, n) alone at `instants` (N,) [s] and `x` (n,) [m]."""
+        """Only the curvature (N, 2, n), at `instants` (N,) [s] and `x` (n,) [m]."""
         return np.array([self(time, x)[0] for time in instants])
 
 
 def _points(
     curvature: CheckedFunction, duration: float, length: float, tolerance: float, step: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Points x (n,) [m], the looks (M,) [s], and the curvature (M, 2, n) that they see there.
+    """Points x (n,) [m], the looks (M,) [s], and the curvature (M, 2, n) of the looks at these points.
 
-    Each look has further X of its own. Where the points miss the function there, it is one of the instants by which
-    they are chosen anew.
+    Each look also has X of its own. If interpolation is wrong there, the points are chosen again with that look among
+    the instants.
     """
     draw, count = np.random.default_rng(SEED), math.ceil(duration / step)
     looks = duration / count * (np.arange(count) + draw.random(count))

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Joint angles as robots log them, and the law of a chain of links whose joints lie where they lie.
+"""Joint angles as robots log them, and the law of a chain of links with these joints.
 
-A log is a table with or without a header, perhaps with lines before it, in degrees or radians. Rows that do not fit
-and readings that jump are left out, and told. The links are rigid, so all bending is at the joints. Joint j at X_j is
+A log is a table with or without a header, perhaps after other lines, in degrees or radians. Unusable rows and readings
+that jump are left out, with a note. The links are rigid, so all bending is at the joints. Joint j at X_j is
 spread over a width w_j to either side, the mean distance to its neighbours, or less near an end:
 
     K(t, X) = sum_j phi_j(t) (1 + cos(pi (X - X_j) / w_j)) / (2 w_j),   |X - X_j| < w_j
 
-So each angle is kept exactly, and at equal distances the angles add up smoothly. phi > 0 bends the tail to the right.
+So each angle is kept exactly, and equally spaced joints add up smoothly. phi > 0 bends the tail to the right.
 """
 
 import itertools
@@ -27,24 +27,24 @@ from eel_gaits.sources.period import long_gap
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_gaits.sources.smoothing import smoothed_in_time
 
-KNOWN = (  # what numbered columns of joints are called, the best first; # stands for the number
+KNOWN = (  # names of numbered columns of joints, the best first; # stands for the number
     r"yaw[ _.]?#.*",
     r".*(?:pos|angle|winkel|theta|phi|fbck|encoder|present|actual|measured).*",
     r".*(?:joint|gelenk|servo|motor|module|link|\b[jq]_?#).*",
 )
-OTHER = re.compile(  # columns of joints that are no angles, or not measured
+OTHER = re.compile(  # columns of joints other than measured angles
     r"vel|speed|rate|effort|torque|force|curr|volt|temp|load|pwm|goal|cmd|command|desired|target|ref|set_?point|err|acc"
 )
 FEWEST_JOINTS, FEWEST_ROWS = 2, 16
-SPREADS, FINEST = 6.0, 2e-3  # robust spreads beyond which a reading has jumped, and the least spread [rad]
+SPREADS, FINEST = 6.0, 2e-3  # a reading beyond these robust spreads has jumped; least spread [rad]
 PASSES = 3
-LARGEST = 3.2  # rad, of a joint: beyond it the file is in degrees
-MOST_LOST, MOST_SETS = 0.1, 5  # part of the rows that may be left out; times that a clock may be set back
-RARE = 0.5  # part of the rows of the joints in which a column of another topic has a value
-SINGLE = 0.75  # of a step, that is left without a row whose stamp alone is bad
-SEAM = 3.0  # greatest steps of the angles by which they may differ where the clock is set back
-FASTEST, SLOWEST, LONGEST = 50.0, 0.05, 0.5  # rad/s (RMS), of joints; s, of a step: beyond them time is not in s
-BY_WIDTH = 8  # points of the law in a joint's width
+LARGEST = 3.2  # rad: with a larger angle the file is in degrees
+MOST_LOST, MOST_SETS = 0.1, 5  # most rows left out, as a part; most times that a clock is set back
+RARE = 0.5  # a column filled in fewer of the joints' rows belongs to another topic
+SINGLE = 0.75  # of a step, left between its neighbours by a row with a bad stamp
+SEAM = 3.0  # greatest steps of the angles: allowed difference where the clock is set back
+FASTEST, SLOWEST, LONGEST = 50.0, 0.05, 0.5  # rad/s (RMS) of joints; s, a step: outside these limits time is not in s
+BY_WIDTH = 8  # points of the law per joint width
 
 
 class JointLog(NamedTuple):
@@ -67,11 +67,11 @@ def read_joint_log(
     tail_first: bool = False,
     clock: float = 1.0,
 ) -> JointLog:
-    """The log in a table, or in a file of one. `ValueError` names the file and what does not fit.
+    """The log in a table, or in a file of one. `ValueError` names the file and the fault.
 
-    columns: which hold joints: numbers from 1 ("8-13"), names with commas between them, or a pattern ("*Fbck*"); "":
-    those that look like it. time: the column of times. unit: rad or deg; "": as the columns' names say, else rad.
-    clock: true time by that of the log.
+    columns: those of the joints: numbers from 1 ("8-13"), names with commas between them, or a pattern ("*Fbck*"); "":
+    recognised by name. time: the column of times. unit: rad or deg; "": from the columns' names, or else rad.
+    clock: true time divided by the log's.
     """
     path = source.path if isinstance(source, Table) else source
     with reading(shown(str(path))):
@@ -96,7 +96,7 @@ def read_joint_log(
             mine = np.isfinite(angles[:, 0])
             read.append("joints of several topics brought to the times of the first")
         filled = [table.filled(place) for place in range(len(table.head))]
-        rare = [each for each in filled if np.mean(each[mine]) < RARE]  # of other topics, if any
+        rare = [each for each in filled if np.mean(each[mine]) < RARE]  # columns of other topics, if any
         if others := int(np.sum(~(mine := mine | ~np.any(rare, axis=0)))):
             read.append(f"{others} rows of other topics")
         seconds, angles, notes = _mended(times[mine], angles[mine], table.lines[mine], table)
@@ -117,13 +117,13 @@ def read_joint_log(
 
 
 def _check_size(angles: np.ndarray, hint: str) -> None:
-    """`ValueError` where one of the `angles` (N, n) [rad] is none of a joint."""
+    """`ValueError` if one of the `angles` (N, n) [rad] is too large for a joint."""
     if (most := np.max(np.abs(angles))) > LARGEST:
         raise ValueError(f"an angle must be at most {LARGEST} rad, got {most:.4g}{hint}")
 
 
 def _check_pace(time: np.ndarray, angles: np.ndarray) -> None:
-    """`ValueError` where no joint moves as the `angles` (N, n) [rad] would at the `time` (N,) [s]."""
+    """`ValueError` if no joint could move like the `angles` (N, n) [rad] at the `time` (N,) [s]."""
     rate = float(np.sqrt(np.mean((np.diff(angles, axis=0) / np.diff(time)[:, None]) ** 2)))
     step = float(np.median(np.diff(time)))
     if rate > FASTEST or (0.0 < rate < SLOWEST and step > LONGEST):
@@ -158,7 +158,7 @@ def law_of_links(log: JointLog, places: np.ndarray, length: float) -> SampledLaw
 
 
 def _joint_columns(table: Table) -> list[int]:
-    """The columns of joints, by their names: those that differ in one number."""
+    """The columns of joints, recognised by names that differ in one number."""
     groups: dict[str, dict[int, int]] = {}
     for place, name in enumerate(table.head):
         for number in re.finditer(r"\d+", name):
@@ -178,7 +178,7 @@ def _joint_columns(table: Table) -> list[int]:
 
 
 def _in_one_row(time: np.ndarray, angles: np.ndarray) -> np.ndarray:
-    """The angles (N, n) of joints that have rows of their own: those of the first, with splines of the others there."""
+    """The angles (N, n) of joints that each have rows of their own, interpolated at the times of the first joint."""
     from scipy.interpolate import CubicSpline
 
     found = np.full_like(angles, np.nan)
@@ -194,9 +194,9 @@ def _in_one_row(time: np.ndarray, angles: np.ndarray) -> np.ndarray:
 def _mended(
     time: np.ndarray, angles: np.ndarray, lines: np.ndarray, table: Table
 ) -> tuple[np.ndarray, np.ndarray, list[str]]:
-    """Times (N,) that rise, their angles, and what was done. `ValueError` where that would leave out much.
+    """Times (N,) that rise, their angles, and notes of the repairs. `ValueError` if too much would be left out.
 
-    A row whose stamp alone is bad is left out; where a clock is set back and the angles go on, so does the time.
+    A row is left out if only its stamp is bad. If a clock is set back and the angles go on, time goes on too.
     """
     notes, count = list[str](), len(time) + len(table.lost)
 
@@ -233,7 +233,7 @@ def _mended(
 
 
 def _without_jumps(time: np.ndarray, angles: np.ndarray) -> tuple[np.ndarray, int]:
-    """Single readings far from the cubic through their four neighbours, replaced by it, and their number."""
+    """The angles, with single readings far from the cubic through their four neighbours replaced, and their number."""
     others = np.stack([time[shift : len(time) - 4 + shift] for shift in (0, 1, 3, 4)])  # (4, N - 4)
     weights = np.ones_like(others)
     for one, other in itertools.permutations(range(4), 2):  # Lagrange

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Laws by midline: any lateral displacement h(X, t) of a fish becomes a curvature.
+"""Laws from midlines: any lateral displacement h(X, t) of a fish becomes a curvature.
 
-X is the arc length from the nose, and h the displacement across the line on which the fish swims, towards section axis
-2, as in `eel_gaits.laws.midline`, which has the formula. A wave of sines needs no rows: `lateral_wave` there.
+X is the arc length from the nose, and h the displacement across the line of swimming, towards section axis 2. The
+formula is in `eel_gaits.laws.midline`. For a sine wave, `lateral_wave` there makes a law without rows.
 """
 
 from collections.abc import Callable
@@ -15,17 +15,17 @@ from eel_common.wording import shown
 from eel_gaits.laws.midline import curvature_of_lateral
 from eel_gaits.sources.sampled_law import crowded
 
-POINTS = 129  # along the body, at which h is evaluated; at a random place between two of them it is compared
-MISSED = 1e-3  # part of the greatest h by which the spline may miss it there
+POINTS = 129  # points along the body for the spline of h, which is checked at a random place between each two
+MISSED = 1e-3  # largest error of the spline there, relative to the greatest h
 ROUND_OFF = 1e-9  # of the length
-STEEPEST = 0.99  # of a midline's slope
-SEED = 1  # of the random places
+STEEPEST = 0.99  # greatest slope of a midline
+SEED = 1  # seed of the random places
 
 
 class LateralMidline:
     """The midline of the lateral displacement h(X, t) [m] of a body of `length` [m].
 
-    h(X, t): of the points X (n,) [m] at the time t [s]. `ValueError` names t and X where it does not fit.
+    h(X, t): for the points X (n,) [m] at the time t [s]. `ValueError` names t and X where it is unsuitable.
     """
 
     def __init__(self, displacement: Callable[..., Any], length: float = 1.0) -> None:
@@ -38,7 +38,7 @@ class LateralMidline:
         return curvature_of_lateral(line(x, 1), line(x, 2))
 
     def position(self, time: float, x: np.ndarray) -> np.ndarray:
-        """Positions (n, 2) [m] of the points `x` (n,) [m], along the line of swimming from the nose, and across it."""
+        """Positions (n, 2) [m] of the points `x` (n,) [m]: along the line of swimming from the nose, and across it."""
         from scipy.interpolate import make_interp_spline
 
         line = self._line(time)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measured midlines as a law: positions of points along the body become the curvature along it.
+"""Measured midlines as a law: positions of points along the body give the curvature along it.
 
-The positions are smoothed along the body. Their derivatives along the body give the tangent t and the
-curvature vector t'. The rigid motion goes, because curvature does not contain it: the head's motion is a result of the
-simulation. In the plane K3 = t' . t2. In space t2 and t3 are carried along the body without turning about the tangent
-(Bishop, Am. Math. Mon. 82 (1975)), as the model's sections are, and K2 = -t' . t3. A midline does not tell how the head
-rolls: its axis 3 is taken as upright as the tangent allows.
+The positions are smoothed along the body. Their derivatives along the body are the tangent t and the curvature vector
+t'. Curvature does not contain the rigid motion, so that is lost: the head's motion is a result of the simulation. In
+the plane K3 = t' . t2. In space t2 and t3 are transported along the body without rotation about the tangent (Bishop,
+Am. Math. Mon. 82 (1975)), like the model's sections, and K2 = -t' . t3. A midline does not show the head's roll: its
+axis 3 is taken as upright as the tangent allows.
 """
 
 from functools import partial
@@ -17,16 +17,16 @@ from eel_gaits.sources.frames import Frames, SmoothedFrames, frames_of, law_of_f
 from eel_gaits.sources.order import check_order
 from eel_gaits.sources.sampled_law import SampledLaw
 
-FITTING = 0.05  # part of the body's length by which the midlines' may differ: they are then scaled to fit
+FITTING = 0.05  # largest difference in length from the body, as a part; midlines are scaled to fit
 UPRIGHT = 0.995  # greatest upward component of the head's tangent
 
 
 class Midlines:
     """Midlines of a `table` with the columns time [s], x, y and perhaps z, for a body of `length` [m].
 
-    A column `arc_length` gives the points' places; without it they follow from their mean distances. scale: metres in
-    the file's unit of length. time: the column of times, if its name does not tell. x, y, z are right-handed, z is up.
-    `ValueError` names the rows that do not fit, and points that do not stand along the body in their order.
+    A column `arc_length` gives the points' places. Without it they follow from their mean distances. scale: metres per
+    unit of length in the file. time: the column of times, if its name is not recognised. x, y, z are right-handed, z is
+    up. `ValueError` names the rows at fault, and points out of order along the body.
     """
 
     def __init__(self, table: Table, length: float, scale: float = 1.0, time: str = "") -> None:
@@ -48,7 +48,7 @@ class Midlines:
         return self.frames.fields
 
     def law(self, name: str, smooth: bool = True) -> SampledLaw:
-        """The law of the midlines, smoothed by generalised cross-validation; not `smooth`: through all points."""
+        """The law of the midlines, smoothed by generalised cross-validation; without `smooth` through all points."""
         fitted = SmoothedFrames(self.frames, self.arc, smooth, "mm", 1e3)
         part = self._fitting(fitted) / self.length
         if self.position.shape[2] == 3:
@@ -67,7 +67,7 @@ class Midlines:
         return law_of_frames(self.frames, curvature, self.length, name=name, kind=kind, along=fitted.about, raw=raw)
 
     def _fitting(self, fitted: SmoothedFrames) -> float:
-        """The midlines' length [m], from nose to tail. `ValueError` where it does not fit the body's."""
+        """The midlines' length [m], from nose to tail. `ValueError` if it differs too much from the body's."""
         fine = np.linspace(0.0, self.arc[-1], 8 * len(self.arc))
         speed = np.linalg.norm(fitted.at(fine, 1), axis=-1)
         lengths = np.sum(0.5 * (speed[:, 1:] + speed[:, :-1]) * np.diff(fine), axis=1)
@@ -93,9 +93,9 @@ def curvature_of(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 def _carried(tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Section axes 2 and 3 (N, m, 3) along the `tangent` (N, m, 3), without a turn about it from the nose on.
+    """Section axes 2 and 3 (N, m, 3) along the `tangent` (N, m, 3), transported from the nose without twist.
 
-    From point to point they turn by the least rotation that takes one tangent to the next.
+    Between two points they turn by the smallest rotation from one tangent to the next.
     """
     up = np.zeros_like(tangent)
     first = np.array([0.0, 0.0, 1.0]) - tangent[:, 0] * tangent[:, 0, 2:]

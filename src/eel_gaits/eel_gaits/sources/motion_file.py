@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Motions in files: measured midlines, curvature or joint angles in a table of text or an .npz file, or rows of a law
-in an .npz.
+"""Motions in files: measured midlines, curvature or joint angles in a text table or an .npz file, or rows of a law in
+an .npz.
 
-The columns tell what a file holds; all have `time` [s]:
+The kind is recognised by the columns; all have `time` [s]:
 
     x, y, perhaps z, arc_length [m]         midlines: rows of one time are a frame, from nose to tail
     arc_length [m], yaw, perhaps pitch      measured curvature [rad/m], likewise
@@ -12,9 +12,8 @@ Joint j of n stands for the segment (j - 1) l/n to j l/n, as in `Run.actuators`.
 curvature over its segment. So the curvature is the derivative of the spline through the sums of the angles.
 
 yaw > 0 bends the tail to the right, pitch > 0 down, as in messages. x, y, z are right-handed axes of the laboratory
-with z up; which way the swimmer heads in them does not matter.
-An .npz holds the same columns, or arrays (N, n) for N instants and n points; or `time`, `x` and `values` of a
-`SampledLaw`, as `save_law` writes them.
+with z up. The swimmer's direction in them does not matter. An .npz holds the same columns, or arrays (N, n) for N
+instants and n points; or `time`, `x` and `values` of a `SampledLaw`, as `save_law` writes them.
 """
 
 import os
@@ -37,12 +36,12 @@ from eel_gaits.sources.frames import Frames, SmoothedFrames, check_rising, check
 from eel_gaits.sources.midlines import Midlines
 from eel_gaits.sources.sampled_law import SampledLaw
 
-LAW = {"time", "x", "values"}  # arrays of a law's rows
+LAW = {"time", "x", "values"}  # names of the arrays with a law's rows
 ARCHIVE = ".npz"
-COLUMN = re.compile(r"(pitch|yaw)_([1-9][0-9]*)")  # of a joint
-FEWEST_JOINTS = 3  # in an axis
-LARGEST = 3.2  # rad, of a joint: beyond it the file is in degrees
-FITTING = 1e-6  # part of the body's length by which a law's rows may be shorter or longer
+COLUMN = re.compile(r"(pitch|yaw)_([1-9][0-9]*)")  # the name of a joint's column
+FEWEST_JOINTS = 3  # per axis
+LARGEST = 3.2  # rad: with a larger angle the file is in degrees
+FITTING = 1e-6  # largest difference in length of a law's rows from the body, as a part
 
 
 def read_motion(
@@ -54,11 +53,11 @@ def read_motion(
     name: str | None = None,
     time: str = "",
 ) -> SampledLaw:
-    """The law of the motion in a table of text or an .npz file, for a body of `length` [m].
+    """The law of the motion in a text table or an .npz file, for a body of `length` [m].
 
-    scale: metres in the file's unit of length. smooth: smooth measured data by generalised cross-validation; else the
-    splines go through them. name: of the law; by default that of the file. time: the column of times, if its name does
-    not tell. `ValueError` in one line names file, line, column and value of what does not fit.
+    scale: metres per unit of length in the file. smooth: smooth measured data by generalised cross-validation;
+    otherwise the splines go through them. name: of the law; by default the file's. time: the column of times, if its
+    name is not recognised. `ValueError` in one line names file, line, column and value at fault.
     """
     path = checked_path("path", path)
     length, scale = positive("length", length, "m"), positive("scale", scale)
@@ -82,8 +81,8 @@ def _motion(path: Path, length: float, scale: float, smooth: bool, name: str, ti
 
 
 def read_midlines(path: str | os.PathLike[str], *, length: float = 1.0, scale: float = 1.0) -> Midlines:
-    """The midlines in a table of text or an .npz file, as measured. `ValueError` as in `read_motion`, and for another
-    motion.
+    """The midlines in a text table or an .npz file, as measured. `ValueError` as in `read_motion`, and for other
+    motions.
     """
     with reading(shown(str(path))):
         table = read_table(path)
@@ -93,13 +92,13 @@ def read_midlines(path: str | os.PathLike[str], *, length: float = 1.0, scale: f
 
 
 def save_law(law: SampledLaw, path: str | os.PathLike[str]) -> None:
-    """Write the rows of `law` to an .npz file, which `read_motion` reads. `NotWritten` where that fails."""
+    """Write the rows of `law` to an .npz file for `read_motion`. `NotWritten` if that fails."""
     with replacing(path) as draft:
         np.savez_compressed(draft, time=law.time, x=law.x, values=law.values)
 
 
 def kind_of(table: Table) -> str:
-    """What the columns of a table tell: midlines, joints or curvature. `ValueError` for anything else."""
+    """The kind of motion by a table's columns: midlines, joints or curvature. `ValueError` for anything else."""
     if "x" in table and "y" in table:
         return "midlines"
     if joint_columns(table.head):
@@ -114,7 +113,7 @@ def kind_of(table: Table) -> str:
 
 def _law_of_curvature(table: Table, length: float, scale: float, name: str, time: str, smooth: bool) -> SampledLaw:
     frames, arc = frames_of(table, ("pitch", "yaw") if "pitch" in table else ("yaw",), "rad/m", scale, time)
-    assert arc is not None  # the file has a column arc_length
+    assert arc is not None  # `kind_of` has found the column arc_length
     if abs(arc[0]) > 0.05 * length or abs(arc[-1] - length) > 0.05 * length:
         rule = f"arc_length must reach from 0 to the body's length, {length:g} m"
         raise table.error(f"{rule}, got {arc[0]:.4g} to {arc[-1]:.4g} m", 0, len(arc) - 1)
@@ -131,7 +130,7 @@ def _law_of_curvature(table: Table, length: float, scale: float, name: str, time
 
 
 def joint_columns(names: Iterable[str]) -> dict[str, list[str]]:
-    """The columns of joints among `names`, of each axis in their order."""
+    """The columns of joints among `names`: for each axis, in their order."""
     found: dict[str, dict[int, str]] = {}
     for name in names:
         if match := COLUMN.fullmatch(split_name(name)[0]):
@@ -142,8 +141,8 @@ def joint_columns(names: Iterable[str]) -> dict[str, list[str]]:
 def _law_of_joints(table: Table, length: float, name: str, column: str, smooth: bool) -> SampledLaw:
     """The law of the joint angles in the columns yaw_1, yaw_2, ... and pitch_1, ... of `table`, over time.
 
-    length [m]: of the body. The angles are smoothed in time by generalised cross-validation, if `smooth`. `ValueError`
-    names columns and rows that do not fit.
+    length: [m], of the body. smooth: smooth the angles in time by generalised cross-validation. `ValueError` names
+    the columns and rows at fault.
     """
     from scipy.interpolate import make_interp_spline
 
@@ -178,7 +177,7 @@ def _law_of_joints(table: Table, length: float, name: str, column: str, smooth: 
 
 
 def _rows(path: Path, length: float, name: str) -> SampledLaw | None:
-    """The law whose rows an .npz file holds; None where it holds something else."""
+    """The law whose rows an .npz file holds; None if it holds something else."""
     arrays = read_archive(path)
     if not set(arrays) >= LAW:
         return None

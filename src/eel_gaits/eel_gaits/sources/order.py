@@ -1,31 +1,31 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether points stand along a body in their order: the line through them must not fold back.
+"""Checks that points stand along a body in order: the line through them must not fold back.
 
-The frames are laid on each other without their rigid motion, and the median of each point gives the mean shape: a beat,
-noise, and a bend that comes once do not show in it. A point where the line turns back is out of order or lies beside
-the body. A part of a skeleton whose absence would straighten the line lies beside the body too,
-such as one eye; a body that bends to one side turns as much without the point.
+The frames are aligned by their rigid motion, and the median of each point gives the mean shape. A beat, noise, and a
+single bend do not show in it. A point where the line turns back is out of order or beside the body. A point of a
+tracker's skeleton, such as one eye, also counts as beside the body if the line is straighter without it. A body that
+bends to one side turns as much without the point.
 """
 
 from collections.abc import Sequence
 
 import numpy as np
 
-FOLD = np.deg2rad(110.0)  # a turn of the mean shape at one point that no body has: half a circle through 3 has 90
-BESIDE = np.deg2rad(60.0)  # of turning, that the line loses without a point beside it
-SMOOTH = np.deg2rad(30.0)  # the same, of a line that is proposed
-SURE = 8.0  # standard errors of a mean that count: a tracker's errors last for several frames
-ROUNDS = 4  # of laying the frames on the mean shape
-FEWEST = 3  # points of a line that is looked for
-LONGEST = 170  # characters of a list of names in an error
+FOLD = np.deg2rad(110.0)  # too large a turn of the mean shape at one point: half a circle through 3 points turns by 90
+BESIDE = np.deg2rad(60.0)  # loss of turning by which removing a point shows that it is beside
+SMOOTH = np.deg2rad(30.0)  # the same, for a proposed line
+SURE = 8.0  # standard errors of a significant mean: a tracker's errors last for several frames
+ROUNDS = 4  # of aligning the frames with the mean shape
+FEWEST = 3  # fewest points of a line
+LONGEST = 170  # characters of an error's list of names
 
 
 def check_order(points: np.ndarray, names: Sequence[str], apart: Sequence[int], parts: bool = False) -> None:
-    """`ValueError` where the points (N, n, d) [any unit] with these `names` (n,) do not stand along a body.
+    """`ValueError` if the points (N, n, d) [any unit] with these `names` (n,) do not stand along a body in order.
 
-    NaN where a point is missing. apart: those that do not lie on another, which alone tell a fold. parts: of a
-    skeleton, some of which may lie beside the body. The error names the points, and those that stand along the body, in
-    their order.
+    NaN marks a missing point. apart: the points that coincide with no other; only these can show a fold. parts: the
+    points are of a skeleton, some of which may lie beside the body. The error names the points at fault, and those
+    along the body in order.
     """
     laid = _laid_on_each_other(points)
     known = _distinct(laid, apart)
@@ -34,7 +34,7 @@ def check_order(points: np.ndarray, names: Sequence[str], apart: Sequence[int], 
         return
     seen = np.flatnonzero(np.isfinite(laid).any(axis=(0, 2)))
     lines = [_without_odd(laid, line) for line in (seen.tolist(), seen[_shortest(_median(laid[:, seen]))].tolist())]
-    line = max(lines, key=len)  # the file's order, unless that loses a point more
+    line = max(lines, key=len)  # the file's order, unless it loses more points
     out = [place for place in seen.tolist() if place not in line]
     text = f"the line through its points folds back at {_listed(names, odd)}"
     if line and out:
@@ -44,8 +44,8 @@ def check_order(points: np.ndarray, names: Sequence[str], apart: Sequence[int], 
 
 
 def laid_on(points: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """The points (T, n, d) after the rotation and shift of each frame that bring it closest to the others, (n, d) or
-    (T, n, d): Kabsch, Acta Cryst. A32 (1976), doi:10.1107/S0567739476001873. What is NaN in either has no say."""
+    """The points (T, n, d), each frame rotated and shifted closest to the others, (n, d) or (T, n, d): Kabsch, Acta
+    Cryst. A32 (1976), doi:10.1107/S0567739476001873. Points with NaN in either have no influence."""
     both = np.isfinite(points + others).all(axis=2, keepdims=True)
     count = np.maximum(both.sum(axis=1, keepdims=True), 1)
     centre, aim = (np.where(both, each, 0.0).sum(axis=1, keepdims=True) / count for each in (points, others))
@@ -56,7 +56,7 @@ def laid_on(points: np.ndarray, others: np.ndarray) -> np.ndarray:
 
 
 def _laid_on_each_other(points: np.ndarray) -> np.ndarray:
-    """The points (N, n, d) after the rigid motion of each frame that brings it closest to the median of all."""
+    """The points (N, n, d), each frame moved rigidly closest to the median of all."""
     shape = points[np.argmax(np.isfinite(points).all(axis=2).sum(axis=1))]
     for _ in range(ROUNDS - 1):
         shape = _median(laid_on(points, shape))
@@ -64,14 +64,14 @@ def _laid_on_each_other(points: np.ndarray) -> np.ndarray:
 
 
 def _median(laid: np.ndarray) -> np.ndarray:
-    """The median (n, d) over the frames (N, n, d); NaN for a point that is never seen."""
+    """The median (n, d) over the frames (N, n, d); NaN for a point never seen."""
     shape, seen = np.full(laid.shape[1:], np.nan), np.isfinite(laid).any(axis=(0, 2))
     shape[seen] = np.nanmedian(laid[:, seen], axis=0)
     return shape
 
 
 def _distinct(laid: np.ndarray, apart: Sequence[int]) -> list[int]:
-    """Those `apart` of the points (N, n, d) whose step from the one before is not lost in its own scatter."""
+    """Those `apart` of the points (N, n, d) whose step from the previous one is larger than its scatter."""
     kept = list(apart[:1])
     for place in apart[1:]:
         if _is_sure(laid[:, place] - laid[:, kept[-1]]):
@@ -80,7 +80,7 @@ def _distinct(laid: np.ndarray, apart: Sequence[int]) -> list[int]:
 
 
 def _is_sure(steps: np.ndarray) -> bool:
-    """Whether the steps of the frames (N, d) are on the whole more than their scatter, NaN left out."""
+    """Whether the mean of the steps (N, d) is significant against their scatter. NaN is left out."""
     steps = steps[np.isfinite(steps).all(axis=1)]
     if not len(steps):
         return False
@@ -89,20 +89,20 @@ def _is_sure(steps: np.ndarray) -> bool:
 
 
 def _turns(line: np.ndarray) -> np.ndarray:
-    """Angles [rad] (n - 2,) by which a line through the points (n, d) turns at each but the ends."""
+    """Angles [rad] (n - 2,) by which a line through the points (n, d) turns at each interior point."""
     steps = np.diff(line, axis=0)
     steps = steps / np.maximum(np.linalg.norm(steps, axis=1, keepdims=True), 1e-300)
     return np.asarray(np.arccos(np.clip(np.sum(steps[1:] * steps[:-1], axis=1), -1.0, 1.0)))
 
 
 def _saved(line: np.ndarray) -> np.ndarray:
-    """Turning [rad] (n,) that the line (n, d) loses without each of its points."""
+    """For each point (n,), the turning [rad] of the line (n, d) that vanishes without it."""
     whole = np.sum(_turns(line))
     return np.array([whole - np.sum(_turns(np.delete(line, place, axis=0))) for place in range(len(line))])
 
 
 def _odd(laid: np.ndarray, most: float) -> np.ndarray:
-    """The points of the lines (N, n, d) at which the mean shape folds back, or turns by `most` [rad] for them alone."""
+    """The points of the lines (N, n, d) where the mean shape folds, or turns by `most` [rad] because of them alone."""
     if laid.shape[1] < FEWEST:
         return np.empty(0, dtype=int)
     shape = _median(laid)
@@ -114,14 +114,14 @@ def _odd(laid: np.ndarray, most: float) -> np.ndarray:
 
 
 def _without_odd(laid: np.ndarray, line: list[int]) -> list[int]:
-    """The points of a `line` that are left when none is odd; without those that turn it most."""
+    """The points of a `line` left after removing, one by one, those that turn it most, until none is odd."""
     while len(_odd(laid[:, line], SMOOTH)):
         line = np.delete(line, np.argmax(_saved(_median(laid[:, line])))).tolist()
     return line if len(line) >= FEWEST else []
 
 
 def _shortest(shape: np.ndarray) -> list[int]:
-    """A short line through all points (n, d): to the nearest left, from the best start, with parts of it reversed."""
+    """A short line through all points (n, d): nearest neighbours from the best start, improved by reversing parts."""
     apart = np.linalg.norm(shape[:, None] - shape, axis=2)
 
     def length(line: list[int]) -> float:

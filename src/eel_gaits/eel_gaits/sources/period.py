@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The period of a sampled motion, by the squared difference between the motion and itself at a later time.
+"""The period of a sampled motion, from the squared difference between the motion and its delayed copy.
 
 d(T) = mean |K(t + T) - K(t)|^2 / (2 mean |K - mean K|^2) is 0 where the motion repeats after T, and about 1 where it is
 unrelated (de Cheveigne and Kawahara, J. Acoust. Soc. Am. 111 (2002), doi:10.1121/1.1458024, likewise for sound).
@@ -12,18 +12,18 @@ import numpy as np
 from eel_gaits.laws.term import Term
 
 MOST = 1024  # instants at which motions are compared
-COLUMNS = 12  # of the values that are compared, or a few more
-REPEATED = 0.1  # d(T) below which a motion repeats
-LEFT = 0.5  # of the first rise: the period is looked for only after d(T) has risen above this
-POINTS = 64  # in a period, of the first harmonic
-STANDING = 0.1  # waves on the body below which a harmonic counts as standing
-ALIKE = 0.05  # part by which the periods of pitch and yaw may differ: they are then those of one motion
+COLUMNS = 12  # of the values compared, or a few more
+REPEATED = 0.1  # a motion repeats if d(T) is below
+LEFT = 0.5  # the search for the period starts when d(T) has risen above this
+POINTS = 64  # per period, for the first harmonic
+STANDING = 0.1  # waves on the body: below this a harmonic is standing
+ALIKE = 0.05  # relative difference of the periods of pitch and yaw within one motion
 LONGEST_GAP = 0.25  # of the fastest motion's period
-HIGHEST = 0.05  # part of the strongest harmonic's amplitude that still counts as motion
+HIGHEST = 0.05  # part of the strongest harmonic's amplitude: weaker ones are noise
 
 
 def period_of(time: np.ndarray, values: np.ndarray) -> float:
-    """The period [s] of `values` (N, m) at `time` (N,) [s]; inf where they do not repeat within 3/4 of the time."""
+    """The period [s] of `values` (N, m) at `time` (N,) [s]; inf if they do not repeat within 3/4 of the time."""
     from scipy.interpolate import CubicSpline
     from scipy.optimize import minimize_scalar
 
@@ -54,11 +54,11 @@ def period_of(time: np.ndarray, values: np.ndarray) -> float:
 
 
 def first_harmonics(time: np.ndarray, x: np.ndarray, curvature: dict[str, np.ndarray]) -> tuple[Term, ...]:
-    """The first harmonic of the `curvature` (N, n) [rad/m] of each axis, as a wave; none where it does not repeat.
+    """The first harmonic of the `curvature` (N, n) [rad/m] of each axis, as a wave; none if it does not repeat.
 
-    time (N,) [s]; x (n,) [m]. The period is that of the later half of the time, or else of all; the
-    harmonic that of as many whole periods as the later half holds, at least one. Its
-    wave number is the slope of its phase along the body, weighted by the square of its amplitude.
+    time (N,) [s]; x (n,) [m]. The period is found in the later half of the time, or else in all of it. The harmonic is
+    fitted to as many whole periods as the later half holds, at least one. Its wave number is the slope of its phase
+    along the body, weighted by the square of its amplitude.
     """
     for part in (time >= 0.5 * (time[0] + time[-1]), time >= time[0]):
         periods = {axis: period_of(time[part], curvature[axis][part]) for axis in ("yaw", "pitch")}
@@ -86,9 +86,9 @@ def _harmonic(axis: str, time: np.ndarray, x: np.ndarray, rows: np.ndarray, peri
 
 
 def long_gap(time: np.ndarray, values: np.ndarray) -> tuple[int, str] | None:
-    """The instant before a gap longer than a quarter of the fastest period in `values` (N, m), and the gap in words.
+    """The instant before a gap longer than a quarter of the fastest period in `values` (N, m), and a text about it.
 
-    The fastest harmonic is that of the highest frequency that has 5 % of the strongest one's amplitude.
+    The fastest harmonic is the one of highest frequency with at least 5 % of the strongest one's amplitude.
     """
     from scipy.interpolate import CubicSpline
 

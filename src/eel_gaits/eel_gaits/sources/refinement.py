@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rows in time that meet a function: close together where they have to be, and far apart where it rests.
+"""Rows in time that represent a function: close together where it needs them, and far apart where it rests.
 
-Intervals between rows are halved until they meet the function at their middle and at all looks at it, which are never
-rows themselves, and until halving them changes no acceleration. An interval is at most twice as long as the next one.
+Intervals between rows are halved until interpolation agrees with the function at their middle and at all looks (which
+are never rows), and until halving changes no acceleration. An interval is at most twice as long as the next one.
 Derivatives are those of the polynomial of degree 6 through seven rows.
 """
 
@@ -14,20 +14,20 @@ import numpy as np
 
 from eel_gaits.sources.sampled_law import quintic
 
-FEWEST, LONGEST = 16, 0.25  # s: of the first intervals
+FEWEST, LONGEST = 16, 0.25  # number and length [s] of the first intervals
 MOST_ROWS = 20_000
 STENCIL = 7  # rows for a derivative
-SMOOTH = 7e-4  # part of the greatest acceleration by which halving an interval may change them
-GROWTH = 1.5  # of an acceleration where halving an interval should double it, as the rate jumps
-ALIKE = 1.001  # lengths that differ by round-off
+SMOOTH = 7e-4  # part of the greatest acceleration: change after halving an interval
+GROWTH = 1.5  # growth of an acceleration after halving that shows a jump of the rate, which doubles it
+ALIKE = 1.001  # ratio of lengths that differ by round-off
 
 
 class Rows(NamedTuple):
     """N rows at the times `time` (N,) [s]."""
 
     time: np.ndarray
-    values: np.ndarray  # (N, 2, 3, n): of pitch and yaw the curvature [rad/m], its rate and its acceleration
-    missed: float  # greatest difference from what was seen, relative to the greatest curvature
+    values: np.ndarray  # (N, 2, 3, n): for pitch and yaw, curvature [rad/m], rate and acceleration
+    missed: float  # greatest difference from the looks, relative to the greatest curvature
     jump: float | None = None  # s, where the rate seems to jump
 
 
@@ -39,10 +39,10 @@ def refined(
     tolerance: float,
     closest: float,
 ) -> Rows:
-    """The rows of a function up to `duration` [s], which saw `seen` (M, 2, n) [rad/m] at the `looks` (M,) [s].
+    """The rows of a function up to `duration` [s], with the values `seen` (M, 2, n) [rad/m] at the `looks` (M,) [s].
 
-    evaluated(instants (N,) [s]): curvature (N, 2, 1, n), or with its derivatives (N, 2, 3, n). closest [s]: of rows.
-    `ValueError` where rows that are as close, or too many, miss the function.
+    evaluated(instants (N,) [s]): curvature (N, 2, 1, n), or with derivatives (N, 2, 3, n). closest: [s], least distance
+    of rows. `ValueError` if rows at that distance, or too many rows, do not represent the function.
     """
     time = np.linspace(0.0, duration, 1 + max(FEWEST, math.ceil(duration / LONGEST)))
     closest = min(closest, time[1] / STENCIL**2)
@@ -74,21 +74,21 @@ def refined(
         growing = np.maximum.reduceat(_greater(size), kept[:-1]) > GROWTH * _greater(_size(coarse))
         if jump is None and np.any(jumping := changing & growing & (step <= 2.0 * closest)):
             jump = float(before[np.argmax(jumping)])
-        old = np.repeat(np.arange(len(step)), 1 + wanted)  # interval before it was halved
+        old = np.repeat(np.arange(len(step)), 1 + wanted)  # index of the interval before halving
         step = np.diff(time)
         wanted = _graded((failing | changing)[old] & (step > closest), step)
 
 
 def with_derivatives(time: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Rows (N, 2, 3, n) of curvature, rate and acceleration, from the curvature (N, 2, 1, n) at `time` (N,) [s] alone;
-    rows with derivatives stay the same."""
+    """Rows (N, 2, 3, n) of curvature, rate and acceleration from the curvature (N, 2, 1, n) at `time` (N,) [s]. Rows
+    that have derivatives are returned unchanged."""
     if values.shape[2] == 3:
         return values
     first = np.clip(np.arange(len(time)) - STENCIL // 2, 0, len(time) - STENCIL)
     off = time[first[:, None] + np.arange(STENCIL)] - time[:, None]
     reach = np.max(np.abs(off), axis=1)[:, None]
     powers = (off / reach)[:, None, :] ** np.arange(STENCIL)[:, None]
-    weights = np.linalg.solve(powers, np.eye(STENCIL)[:, 1:3]) * [1.0, 2.0]  # of rate and acceleration
+    weights = np.linalg.solve(powers, np.eye(STENCIL)[:, 1:3]) * [1.0, 2.0]  # for rate and acceleration
     weights /= reach[:, :, None] ** [1.0, 2.0]
     rows = np.zeros((*values.shape[:2], 3, values.shape[3]))
     rows[:, :, 0] = values[:, :, 0]
@@ -98,7 +98,7 @@ def with_derivatives(time: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def _missed(time: np.ndarray, rows: np.ndarray, looks: np.ndarray, seen: np.ndarray) -> np.ndarray:
-    """By how much what lies between the rows misses what was seen, the greatest in each interval [rad/m]."""
+    """The greatest error [rad/m] of interpolation between rows against the looks, in each interval."""
     home = np.clip(np.searchsorted(time, looks, side="right") - 1, 0, len(time) - 2)
     step, since = (each[:, None, None] for each in (np.diff(time)[home], looks - time[home]))
     start, end = (rows[place].transpose(2, 0, 1, 3) for place in (home, home + 1))

@@ -21,22 +21,22 @@ from eel_gaits.sources.period import first_harmonics
 
 FEWEST_ROWS = 2
 LEAST_POINTS = 2
-POINTS = 17, 25, 33, 49, 65, 97, 129, 193, 257, 385, 513, 769, 1025  # along the body, as many as a curvature needs
-IN_MESSAGES = 1.0 / 300.0  # part of the greatest curvature by which the points of messages may miss the rows
+POINTS = 17, 25, 33, 49, 65, 97, 129, 193, 257, 385, 513, 769, 1025  # along the body: the least that suffices
+IN_MESSAGES = 1.0 / 300.0  # part of the greatest curvature: error of the points in messages against the rows
 
 
 class SampledLaw:
-    """A curvature law as rows. It never changes. Two are equal where name, transition and rows are.
+    """A curvature law as rows. It never changes. Two are equal if name, transition and rows are.
 
-    `ValueError` names what does not fit. raw(): makes the law without smoothing.
+    `ValueError` names a bad attribute. raw(): makes the law without smoothing.
 
     Attributes:
-        time: (N,) s, the law's own time: rises from 0.
+        time: (N,) s, the law's own time: rising from 0.
         x: (n,) m, points along the body, from 0 at the nose to the tail.
-        values: (N, 2, 3, n): of pitch and yaw the curvature [rad/m], its rate [rad/m/s] and acceleration [rad/m/s^2].
-        name: as that of a `Law`.
-        transition: as that of a `Law`.
-        about: where the rows come from, in one line; may be empty.
+        values: (N, 2, 3, n): for pitch and yaw, curvature [rad/m], rate [rad/m/s] and acceleration [rad/m/s^2].
+        name: as in `Law`.
+        transition: as in `Law`.
+        about: the origin of the rows, in one line; may be empty.
     """
 
     def __init__(
@@ -91,17 +91,17 @@ class SampledLaw:
 
     @cached_property
     def unsmoothed(self) -> "SampledLaw | None":
-        """The same motion without smoothing, made on first access; None where nothing was smoothed."""
+        """The same motion without smoothing, made on first access; None if nothing was smoothed."""
         return None if self._raw is None else self._raw()
 
     @property
     def duration(self) -> float:
-        """Time [s] of the last row. After it the motion is not known."""
+        """Time [s] of the last row, where the known motion ends."""
         return float(self.time[-1])
 
     @property
     def length(self) -> float:
-        """Length [m] of the body that the rows are for."""
+        """Length [m] of the rows' body."""
         return float(self.x[-1])
 
     @cached_property
@@ -111,11 +111,11 @@ class SampledLaw:
 
     @cached_property
     def waves(self) -> tuple[Term, ...]:
-        """The first harmonic in yaw and in pitch, of the later half of the rows; none where these do not repeat."""
+        """The first harmonic in yaw and in pitch of the later half of the rows; none if these do not repeat."""
         return first_harmonics(self.time, self.x, {axis: self.values[:, place, 0] for axis, place in LAW_ROW.items()})
 
     def with_fewer_points(self) -> "SampledLaw":
-        """The law at as few points as carry its rows to 1/300 of the greatest curvature: for messages."""
+        """The law at the fewest points that represent its rows to 1/300 of the greatest curvature: for messages."""
         rows = self.values[:, :, 0]
         x = points_for(lambda x: rows @ natural_spline(self.x, np.eye(len(self.x)), x), self.length, IN_MESSAGES)
         if len(x) >= len(self.x):
@@ -124,14 +124,14 @@ class SampledLaw:
         return SampledLaw(self.time, x, values, name=self.name, transition=self.transition, about=self.about)
 
     def coarser(self) -> "SampledLaw":
-        """The law from every second row and every second point. Its distance shows what sampling does."""
+        """The law from every second row and point. Its difference from this law shows the error of sampling."""
         rows, points = (np.unique(np.r_[0:size:2, size - 1]) for size in (len(self.time), len(self.x)))
         values = self.values[rows][..., points]
         return SampledLaw(self.time[rows], self.x[points], values, name=self.name, transition=self.transition)
 
     def curvature(self, time: float, x: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Curvature, its rate and its acceleration at `time` [s] and `x` (M,) [m], three arrays (M, 3) as of
-        `Law.curvature`. At rest beyond the last row."""
+        """Curvature, its rate and its acceleration at `time` [s] and `x` (M,) [m]: three arrays (M, 3), as from
+        `Law.curvature`. At rest after the last row."""
         x, time = np.atleast_1d(numbers("x", x)), number("time", time)
         inside = min(max(time, 0.0), self.duration)
         row = min(bisect_right(self.time, inside) - 1, len(self.time) - 2)
@@ -147,7 +147,7 @@ class SampledLaw:
 
 
 def quintic(start: np.ndarray, end: np.ndarray, step: float | np.ndarray, s: float | np.ndarray) -> np.ndarray:
-    """Value, rate and acceleration (3, ...) at the part `s` (0 to 1) of an interval of `step` [s], from both ends.
+    """Value, rate and acceleration (3, ...) at the fraction `s` of an interval of `step` [s], from those at its ends.
 
     start, end (3, ...): value, rate and acceleration there. step, s: one number, or (N, 1 ...) for (3, N, ...).
     """
@@ -166,24 +166,24 @@ def quintic(start: np.ndarray, end: np.ndarray, step: float | np.ndarray, s: flo
 
 
 def crowded(count: int, length: float) -> np.ndarray:
-    """X (count,) [m] from nose to tail, closer together at the ends, where the second derivative of a natural spline
-    is 0 and that of the curvature is not."""
+    """X (count,) [m] from nose to tail, closer together at the ends: there a natural spline's second derivative is 0,
+    but the curvature's is not."""
     return 0.5 * length * (1.0 - np.cos(np.linspace(0.0, np.pi, count)))
 
 
 def points_for(
     value_at: Callable[[np.ndarray], np.ndarray], length: float, tolerance: float, others: np.ndarray | tuple[()] = ()
 ) -> np.ndarray:
-    """X (n,) [m] with natural splines through which value_at(X) (..., n) [rad/m] is met to a part `tolerance`.
+    """X (n,) [m] such that natural splines through them represent value_at(X) (..., n) [rad/m] to a part `tolerance`.
 
-    It is compared at even distances, and at `others` [m]. `ValueError` where no number of points meets it.
+    It is checked at even distances, and at `others` [m]. `ValueError` if no number of points suffices.
     """
     check = np.union1d(np.linspace(0.0, length, 4 * POINTS[-1] // 3), others)
     wanted = value_at(check)
     scale = np.max(np.abs(wanted))
     for count in POINTS:
         x = crowded(count, length)
-        apart = value_at(x) @ natural_spline(x, np.eye(count), check)  # of many rows, a product is far faster
+        apart = value_at(x) @ natural_spline(x, np.eye(count), check)  # for many rows a product is far faster
         apart -= wanted
         np.abs(apart, out=apart)
         if not np.max(apart) > tolerance * scale:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Smoothing splines for measured data. The noise is estimated from the data themselves.
+"""Smoothing splines for measured data. The noise is estimated from the data.
 
 The spline s of degree 5 through the points x_1 < ... < x_n minimises
 
@@ -10,11 +10,11 @@ doi:10.1007/BF01404567; quintic splines for accelerations: Woltring, Adv. Eng. S
 
     V(p) = n RSS / (n - trace of A(p))^2,   s(x) = A(p) y,
 
-whose least value lies where the prediction of left-out data is best, if the noise has no correlation. The knots are
-those of the interpolating spline with not-a-knot ends, which p = 0 gives.
+whose minimum predicts left-out data best, if the noise is uncorrelated. The knots are those of the interpolating spline
+with not-a-knot ends, which is the limit p = 0.
 
-In time, the columns of y are first turned into their principal components (Jolliffe, Principal Component Analysis,
-2002). Each has a penalty of its own: the few that hold the motion stay, and the many that hold noise alone vanish.
+In time, the columns of y are first transformed to principal components (Jolliffe, Principal Component Analysis, 2002).
+Each has its own penalty: the few that hold the motion stay, and the many that hold only noise vanish.
 """
 
 from typing import Any, NamedTuple
@@ -23,14 +23,14 @@ import numpy as np
 
 DEGREE = 5
 FEWEST = 7  # points
-POWERS = np.arange(-6.0, 12.1, 0.5)  # common logarithm of p that are tried, for points one unit apart
+POWERS = np.arange(-6.0, 12.1, 0.5)  # logarithms (base 10) of the trial values of p, for points one unit apart
 
 
 class Smoothed(NamedTuple):
-    """Splines through the columns of the data, and what smoothing did."""
+    """Splines through the columns of the data, and the effect of smoothing."""
 
     spline: Any  # scipy.interpolate.BSpline, (..., columns)
-    degrees: float  # of freedom that are left to each column, on average: n where nothing was smoothed
+    degrees: float  # of freedom left to each column, on average: n without smoothing
 
 
 def interpolated(x: np.ndarray, values: np.ndarray) -> Smoothed:
@@ -68,7 +68,7 @@ def smoothed(x: np.ndarray, values: np.ndarray, together: bool = True) -> Smooth
     for power in POWERS:
         try:
             factor = cholesky_banded(gram + 10.0**power * rough, lower=True)
-        except np.linalg.LinAlgError:  # so great a penalty that rounding spoils the matrix
+        except np.linalg.LinAlgError:  # the penalty is too large for the matrix's rounding
             break
         trial, left = cho_solve_banded((factor, True), right), trace_of_quotient(factor, gram)
         score = np.sum((values - centre - design @ trial) ** 2, axis=0) / max(1.0 - left / count, 1e-12) ** 2
@@ -80,12 +80,12 @@ def smoothed(x: np.ndarray, values: np.ndarray, together: bool = True) -> Smooth
 
 
 def _roughness(knots: np.ndarray) -> Any:
-    """The matrix (n, n) of the integrals of the products of third derivatives of the B-splines on these `knots`."""
+    """The matrix (n, n) of integrals of products of the third derivatives of the B-splines on these `knots`."""
     from scipy.interpolate import BSpline
     from scipy.sparse import diags
 
     count, slopes = len(knots) - DEGREE - 1, None
-    for order in range(3):  # coefficients of a derivative from those of the spline
+    for order in range(3):  # from coefficients of the spline to those of its derivative
         degree = DEGREE - order
         inner = knots[order : len(knots) - order]
         weight = degree / (inner[degree + 1 : degree + count - order] - inner[1 : count - order])
@@ -114,9 +114,9 @@ def trace_of_quotient(factor: np.ndarray, gram: np.ndarray) -> float:
     doi:10.1007/BF01389878.
     """
     width, count = DEGREE, gram.shape[1]
-    window = np.zeros((width, width))  # of S^-1, for the rows after the present one
+    window = np.zeros((width, width))  # the part of S^-1 in the rows after the present one
     total = 0.0
-    below = factor[1:] / factor[0]  # L without the scale of its columns
+    below = factor[1:] / factor[0]  # L with columns scaled to 1 on the diagonal
     for row in range(count - 1, -1, -1):
         column = below[:, row]
         beside = -window @ column
