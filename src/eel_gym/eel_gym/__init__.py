@@ -7,7 +7,7 @@
     env = gymnasium.make("Eel/Heading-v0")
     envs = gymnasium.make_vec("Eel/Heading-v0", num_envs=16)
 
-`SwimmerEnv` is the base class for tasks of your own. `ImportError` without gymnasium.
+`SwimmerEnv` is the base class for your own tasks. `ImportError` without gymnasium.
 """
 
 try:

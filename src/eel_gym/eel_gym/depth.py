@@ -13,7 +13,7 @@ from eel_common.quantity import quantity
 from eel_gym.swimmer_env import SwimmerEnv
 from eel_gym.task import FARTHEST, FASTEST, GREATEST_START_SPEED, SPIN, Episode, Observed, Start
 
-LEAST_CHANGE = 0.05  # body lengths: the reward of a task that holds its depth needs a scale too
+LEAST_CHANGE = 0.05  # body lengths: least scale of the reward, for a task without a change of depth
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,13 +34,13 @@ class DepthNumbers(Episode):
 class DepthEnv(SwimmerEnv):
     """Swim to a depth and hold it: Eel/Depth-v0.
 
-    An episode begins level, at a random speed, phase of the gait and small rate of roll; the wanted depth is up to
-    `greatest_change` above or below. The action is the bend of the whole body to the left and upwards, added to the
-    gait straight(). The swimmer moves in space, where it dives and rolls over by itself: the policy must prevent that.
+    An episode begins level, with a random speed, phase of the gait and small rate of roll. The wanted depth is up to
+    `greatest_change` above or below. The action is a bend of the whole body to the left and upwards, added to the gait
+    straight(). In space this gait dives and rolls over by itself; the policy must prevent that.
 
-    The reward of a control step is control_period (1 - error / (2 greatest_change)) [s], at least 0, with the size of
-    the error of the head's depth; a `greatest_change` below a twentieth of the body's length counts as that. An episode
-    ends, besides by `duration`, where the head rolls beyond `roll_limit`.
+    The reward of a control step is control_period (1 - error / (2 greatest_change)) [s], at least 0, with the magnitude
+    of the head's depth error. A `greatest_change` below a twentieth of the body's length counts as that. An episode
+    ends after `duration`, or when the head rolls beyond `roll_limit`.
     """
 
     name = "Depth"
@@ -73,7 +73,7 @@ class DepthEnv(SwimmerEnv):
 
     @property
     def target(self) -> Any:
-        """Height [m] of the wanted depth."""
+        """Height [m] of the wanted depth, z up."""
         return self.goal[0]
 
     def observe(self) -> list[Any]:

@@ -16,7 +16,7 @@ from eel_gaits.laws.law import Law
 class EpisodeRecording:
     """Collects the snapshots of an episode, and writes it to a folder: TASK-0.rrd, TASK-1.rrd and so on.
 
-    A file that is there already stays: other environments may record to the same folder.
+    An existing file stays: other environments may record to the same folder.
     """
 
     def __init__(self, folder: Any, name: str):
@@ -28,7 +28,7 @@ class EpisodeRecording:
         self._snapshots.append(snapshot)
 
     def finish(self, swimmers: SampledSwimmers | CommandedRobots) -> None:
-        """Write the episode, if it has more than its start. The next `add` begins another."""
+        """Write the episode, if it has more than its start. The next `add` begins a new one."""
         snapshots, self._snapshots = self._snapshots, []
         if len(snapshots) < 2:
             return

@@ -32,12 +32,12 @@ class HeadingNumbers(Episode):
 class HeadingEnv(SwimmerEnv):
     """Hold a heading: Eel/Heading-v0.
 
-    An episode begins at a random heading, speed and phase of the gait, with a body that is bent a little by itself: the
-    policy does not see this bend. The action is the bend of the whole body, added to the gait straight(). The swimmer
-    moves in the plane: in space a straight swimmer is unstable, it dives and rolls over (docs/howto/learning.md).
+    An episode begins with a random heading, speed and phase of the gait. The body has a small bend of its own, which
+    the policy does not see. The action is a bend of the whole body, added to the gait straight(). The swimmer moves in
+    the plane. In space a straight swimmer is unstable: it dives and rolls over (docs/howto/learning.md).
 
-    The reward of a control step is control_period (1 - error / pi) [s], with the size of the error of the heading
-    averaged over the last period of the gait, as the head swings with the gait. An episode ends by `duration` alone.
+    The reward of a control step is control_period (1 - error / pi) [s], with the magnitude of the heading error. The
+    heading is averaged over the last period of the gait, as the head swings. An episode ends only after `duration`.
     """
 
     name = "Heading"
@@ -58,7 +58,7 @@ class HeadingEnv(SwimmerEnv):
         self.target = self.numbers.target  #: rad
 
     def default_scene(self) -> Scene:
-        """Motion in the plane."""
+        """Motion in the plane only."""
         return Scene(planar=True, internal_wrench=False, ledger=False)
 
     def begin(self, options: dict[str, Any]) -> Start:

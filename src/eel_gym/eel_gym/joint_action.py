@@ -10,16 +10,16 @@ from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.simulation.sampled_swimmers import Array
 
 KINDS = {"position": ("rad", None), "velocity": ("rad/s", "speed_limit"), "torque": ("N m", "torque_limit")}
-"""Of a command: its unit, and the field of a servo that is its greatest value."""
-GREATEST_ANGLE, GREATEST_RATE = 0.6, 20.0  # rad, rad/s: of a position by default; bound of an observed rate
+"""For each kind of command: its unit, and the servo's field with its limit."""
+GREATEST_ANGLE, GREATEST_RATE = 0.6, 20.0  # rad, rad/s: default of a greatest position; bound of an observed rate
 SEEN_ANGLE = 3.0  # rad, bound of an observed angle
 
 
 class JointAction:
-    """Turns actions into commands, which hold over a control step. The policy sees angle and rate of each joint.
+    """Turns actions into commands, which hold during a control step. The policy sees angle and rate of each joint.
 
     An action holds one value for each joint with a servo, from -1 to 1 times its greatest command, in the joint's sign.
-    A bend that the body has by itself is added to positions, an equal share to each joint; other commands have none.
+    The body's own bend is added to position commands, an equal share to each joint. Other commands ignore it.
 
     Args:
         robot: a `Robot`, or its name.
@@ -27,7 +27,7 @@ class JointAction:
         greatest: [rad, rad/s or N m]; None: 0.6 rad, or the servo's own limit.
     """
 
-    period = 1.0  # s, over which a task averages: there is no wave
+    period = 1.0  # s: averaging time of a task, as there is no wave
 
     def __init__(self, robot: Robot | str, kind: str = "position", greatest: float | None = None):
         self.robot = Robot.named(robot) if isinstance(robot, str) else checked_instance("robot", robot, Robot)
@@ -51,7 +51,7 @@ class JointAction:
 
     @property
     def size(self) -> int:
-        """How many values an action has."""
+        """The number of values in an action."""
         return len(self.names)
 
     def described(self) -> list[str]:
@@ -61,7 +61,7 @@ class JointAction:
         return [f"{self.kind} of {name} [{unit}], {-greatest:g} to {greatest:g}" for name, greatest in pairs]
 
     def begin(self, own_time: Any = 0.0) -> Array:
-        """The first commands (size,), or (N, size) where `own_time` is (N,): all 0."""
+        """The first commands (size,), or (N, size) if `own_time` is (N,): all 0."""
         self._joints = np.zeros((2, len(self.robot.joints), *np.shape(own_time)))
         commands: Array = np.zeros((*np.shape(own_time), self.size))
         return commands
@@ -78,12 +78,12 @@ class JointAction:
         return commands
 
     def see(self, joints: Array) -> None:
-        """Take in angles and rates (2, J), or (2, J, N), of the joints."""
+        """Take angles and rates (2, J), or (2, J, N), of the joints."""
         self._joints = joints
 
     @property
     def names_of_state(self) -> list[tuple[str, str, float]]:
-        """Name, unit and greatest size of what `state` holds."""
+        """Name, unit and greatest magnitude of each value of `state`."""
         names = [joint.name for joint in self.robot.joints]
         return [(f"angle of {name}", "rad", SEEN_ANGLE) for name in names] + [
             (f"rate of {name}", "rad/s", GREATEST_RATE) for name in names
@@ -91,5 +91,5 @@ class JointAction:
 
     @property
     def state(self) -> list[Any]:
-        """Angles, then rates of all joints; of N swimmers (N,) each."""
+        """Angles, then rates of all joints; (N,) each for N swimmers."""
         return [*self._joints[0], *self._joints[1]]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Actions that are rates of the curvature at knots along the body: the policy shapes the body itself.
 
-Over a control step the rate goes from the last action's to this one's as s^2 (3 - 2 s), so the curvature, its rate and
-its acceleration never jump.
+During a control step the rate changes from the last action's to the present one's as s^2 (3 - 2 s). So the curvature,
+its rate and its acceleration never jump.
 """
 
 from typing import Any
@@ -17,19 +17,19 @@ class KnotAction:
     """Turns actions into the curvature of the body at the ends of control steps.
 
     An action holds the rate at each knot, first in pitch, then in yaw, from -1 to 1 times `greatest_rate`. Signs are
-    those of section axes: yaw above 0 bends the tail to the right, pitch above 0 down. Where a
-    curvature comes near `greatest_bend`, its rate is reduced so that it never exceeds that.
+    as in section axes: yaw above 0 bends the tail to the right, pitch above 0 down. Near `greatest_bend` the rate of a
+    curvature is reduced so that the curvature never exceeds it.
 
     Args:
-        knots: how many, from nose to tail, or their X [m]. Natural cubic splines interpolate between them.
+        knots: number from nose to tail, or their X [m]. Natural cubic splines interpolate between them.
         axes: ("yaw",), ("pitch",) or both.
         greatest_rate: [rad/m/s].
         greatest_bend: [rad/m].
         length: [m], of the body.
     """
 
-    period = 1.0  # s, over which a task averages: there is no wave
-    waves = None  # on the body: as many as the knots can carry
+    period = 1.0  # s: averaging time of a task, as there is no wave
+    waves = None  # number of waves on the body: as many as the knots allow
 
     def __init__(
         self,
@@ -54,11 +54,11 @@ class KnotAction:
 
     @property
     def size(self) -> int:
-        """How many values an action has."""
+        """The number of values in an action."""
         return len(self.axes) * len(self.x)
 
     def described(self) -> list[str]:
-        """One line for the values of an action: what they are, unit, bounds."""
+        """One line about the values of an action: name, unit, bounds."""
         where = ", ".join(f"{x:g}" for x in self.x)
         bound = f"{self.greatest_rate:g}"
         return [
@@ -66,12 +66,12 @@ class KnotAction:
         ]
 
     def begin(self, own_time: Any = 0.0) -> Array:
-        """Start anew with a straight body, or N where `own_time` is (N,); the curvature as of `advance`."""
+        """Restart with a straight body, or N if `own_time` is (N,). Returns the curvature as `advance` does."""
         self._value = self._rate = np.zeros((*np.shape(own_time), self.size))
         return self._curvature()
 
     def begin_some(self, swimmers: list[int], own_times: Array) -> Array:
-        """Start anew with K of N swimmers; their curvature (K, 6, knots)."""
+        """Restart K of N swimmers. Returns their curvature (K, 6, knots)."""
         self._value[swimmers] = self._rate[swimmers] = 0.0
         rows: Array = self._curvature()[swimmers]
         return rows
@@ -81,7 +81,7 @@ class KnotAction:
 
         Returns (6, knots), or (N, 6, knots): pitch, its rate and its acceleration, then yaw: rad/m, rad/m/s, rad/m/s^2.
         """
-        up, down = (  # greatest rates that leave as much of the way to the bound as one step at that rate takes
+        up, down = (  # greatest rates: twice a step at that rate reaches the bound
             (2.0 * (self.greatest_bend - sign * self._value) / step - sign * self._rate) / 3.0 for sign in (1.0, -1.0)
         )
         rate = np.clip(self.greatest_rate * action, -np.maximum(down, 0.0), np.maximum(up, 0.0))
@@ -91,7 +91,7 @@ class KnotAction:
 
     @property
     def names_of_state(self) -> list[tuple[str, str, float]]:
-        """Name, unit and greatest size of what `state` holds."""
+        """Name, unit and greatest magnitude of each value of `state`."""
         at = [f"{name} at X = {x:g} m" for name in self.axes for x in self.x]
         return [(f"curvature in {name}", "rad/m", self.greatest_bend) for name in at] + [
             (f"rate of the curvature in {name}", "rad/m/s", self.greatest_rate) for name in at
@@ -99,7 +99,7 @@ class KnotAction:
 
     @property
     def state(self) -> list[Any]:
-        """Curvature, then its rate, at the knots of each axis; of N swimmers (N,) each."""
+        """Curvature, then its rate, at the knots of each axis; (N,) each for N swimmers."""
         return [*self._value.T, *self._rate.T]
 
     def _curvature(self) -> Array:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Actions that are numbers of a law: the size of its wave, its speed in time, and bends of the whole body.
+"""Actions that are numbers of a law: the amplitude of its wave, its tempo, and bends of the whole body.
 
 They move a `SteeredLaw`, so the curvature, its rate and its acceleration never jump.
 """
@@ -17,7 +17,7 @@ from eel_gaits.laws.law import Law
 from eel_gaits.laws.steered_law import BENDS, NUMBERS, SteeredLaw
 from eel_gaits.laws.term import Term
 
-# Bounds of the observation by those of a critically damped number, which are 1 and 2/e of its greatest target.
+# Bounds of the observation: a critically damped number and its rate are at most 1 and 2/e of its greatest target.
 ROOM_OF_VALUE, ROOM_OF_RATE = 1.5, 2.0
 
 
@@ -29,13 +29,13 @@ class LawAction:
     Args:
         law: its waves; the ramps of their envelopes count as complete. Terms without a period are constant bends.
         numbers: name of each number: (low, high). See `NUMBERS` for names and units.
-        response: [s], time constant with which a number follows its action.
+        response: [s], time constant of a number's response to its action.
         length: [m], of the body.
-        points: along the body.
+        points: number of points along the body.
 
     Attributes:
         x: (points,) [m], points along the body.
-        waves: on the body, at the greatest size of all numbers.
+        waves: number of waves on the body, with all numbers at their greatest magnitude.
     """
 
     def __init__(
@@ -53,14 +53,14 @@ class LawAction:
         positive("response", response, "s")
         length = positive("length", length, "m")
         self.law, self.names, self._rate = law, tuple(numbers), 1.0 / response
-        self._span = [(0.5 * (low + high), 0.5 * (high - low)) for low, high in numbers.values()]  # middle, half
+        self._span = [(0.5 * (low + high), 0.5 * (high - low)) for low, high in numbers.values()]  # middle, half width
         self._steered = SteeredLaw(law, response=response, length=length, points=points)
         self.x = self._steered.x
         self.waves = max(1.0, check_law(_largest(law, numbers), length))
 
     @property
     def size(self) -> int:
-        """How many values an action has."""
+        """The number of values in an action."""
         return len(self.names)
 
     @property
@@ -76,12 +76,12 @@ class LawAction:
         ]
 
     def begin(self, own_time: Any = 0.0) -> Array:
-        """Start anew with all numbers at rest and the law at its `own_time` [s], or (N,) of N swimmers; the curvature
-        as of `advance`."""
+        """Restart with all numbers at rest and the law at its `own_time` [s], or (N,) for N swimmers. Returns the
+        curvature as `advance` does."""
         return self._steered.begin(own_time)
 
     def begin_some(self, swimmers: list[int], own_times: Array) -> Array:
-        """Start anew with K of N swimmers; their curvature (K, 6, points)."""
+        """Restart K of N swimmers. Returns their curvature (K, 6, points)."""
         return self._steered.begin_some(swimmers, own_times)
 
     def advance(self, action: Array, step: float) -> Array:
@@ -96,7 +96,7 @@ class LawAction:
 
     @property
     def names_of_state(self) -> list[tuple[str, str, float]]:
-        """Name, unit and greatest size of what `state` holds."""
+        """Name, unit and greatest magnitude of each value of `state`."""
         named = []
         for name, (middle, half) in zip(self.names, self._span, strict=True):
             unit = NUMBERS[name].unit
@@ -109,14 +109,14 @@ class LawAction:
 
     @property
     def state(self) -> list[Any]:
-        """Each number and its rate, then sine and cosine of the wave's phase; of N swimmers (N,) each."""
+        """Each number and its rate, then sine and cosine of the wave's phase; (N,) each for N swimmers."""
         found = [value for name in self.names for value in self._steered.values[name][:2]]
         phase = 2.0 * math.pi * (self._steered.own_time / self.period % 1.0)
         return [*found, np.sin(phase), np.cos(phase)]
 
 
 def _largest(law: Law, numbers: dict[str, Any]) -> Law:
-    """The law that bends the body most: all `numbers` at their greatest size."""
+    """The law that bends the body most, with all `numbers` at their greatest magnitude."""
     size = {name: max(map(abs, bounds)) for name, bounds in numbers.items()}
     rolling = math.hypot(size.get("tilt", 0.0), size.get("swirl", 0.0))
     terms = [term.scaled(size.get("amplitude", 1.0)) for term in law.terms]

@@ -6,13 +6,13 @@ from eel_dynamics.model.body.body import Body
 from eel_dynamics.simulation.observations import Snapshot
 
 SIZE, DPI = (8.0, 4.0), 100  # inches, dots per inch
-REACH = 1.5  # body lengths that each side of the head shows
+REACH = 1.5  # body lengths shown to each side of the head
 BODY, MARK = "#0072B2", "#D55E00"
 
 
 def picture(snapshot: Snapshot, body: Body, marks: list[tuple[float, float, float]]) -> np.ndarray:
     """The picture (400, 800, 3), uint8, of a `Snapshot`; `marks`: points [m]."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg  # here: it takes longer to import than all the rest
+    from matplotlib.backends.backend_agg import FigureCanvasAgg  # here: it takes longer to import than everything else
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=SIZE, dpi=DPI)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The base class of the environments: control steps of a swimmer, or of many side by side."""
+"""The base class of the environments: control steps of one swimmer, or of many in parallel."""
 
 import copy
 import math
@@ -29,7 +29,7 @@ from eel_gym.task import Action, MeanHeading, Start, Task
 
 
 def checked_count(name: str, count: Any, most: float | None = None) -> int:
-    """`count` as an int of 1 or more, and at `most`."""
+    """`count` as an int of at least 1, and at most `most`."""
     found = number(name, count, minimum=0.0, maximum=most, exclusive=True)
     if found != int(found):
         raise ValueError(f"{name} must be a whole number, got {shown(count)}")
@@ -37,25 +37,25 @@ def checked_count(name: str, count: Any, most: float | None = None) -> int:
 
 
 class SwimmerEnv(Task):
-    """A swimmer, moved by actions in control steps. Derive a class from it for a task of your own.
+    """A swimmer, moved by actions in control steps. Derive your own task from it.
 
     A task has a `name`, its `Numbers` (a dataclass derived from `Episode`), `observed` (names, units and bounds), and
     the methods `begin`, `observe`, `reward` and `ended`. `default_scene` and `default_action` may be replaced.
 
-    The observation is what the task observes, then the state of the action (`action.names_of_state`), as float32. It
-    has REP-103 axes, as the topics have. An action out of its bounds is cut to them; one that is not finite, or has
-    another shape, raises `gymnasium.error.InvalidAction`, and nothing moves. An episode is truncated after `duration`.
-    It is terminated where the task ends, or where the swimmer cannot go on; `info["stopped"]` then says why.
+    The observation is what the task observes, then the state of the action (`action.names_of_state`), as float32, in
+    the REP-103 axes of the topics. An action is clipped to its bounds. One that is not finite, or has another shape,
+    raises `gymnasium.error.InvalidAction`, and nothing moves. An episode is truncated after `duration`. It is
+    terminated when the task ends, or when the swimmer cannot go on; `info["stopped"]` then gives the reason.
 
     Args:
-        body, scene, accuracy: as of `Simulation`.
-        action: a `LawAction`, a `KnotAction`, or a `JointAction` of a robot; by default that of the task.
-        render_mode: by "rgb_array" `render` returns a picture of the present, from above and from the side; by "rerun"
-            each episode is written to the folder `recordings`, as the visualiser would show it.
-        flow: how the water moves, as of `Simulation`; or a function of the environment's random numbers
-            (`numpy.random.Generator`) that draws the flow of an episode. None: not by itself.
-        swimmers, threads: N swimmers side by side, and the threads that march them: for `ThreadedVectorEnv`.
-        numbers: those of the task, see `Numbers`.
+        body, scene, accuracy: as in `Simulation`.
+        action: a `LawAction`, a `KnotAction`, or a `JointAction` of a robot; by default the task's.
+        render_mode: with "rgb_array" `render` returns a picture of the present, from above and from the side; with
+            "rerun" each episode is written to the folder `recordings`, in the form of the visualiser.
+        flow: the water's motion, as in `Simulation`; or a function of the environment's random numbers
+            (`numpy.random.Generator`) that draws the flow of an episode. None: still water.
+        swimmers, threads: N swimmers in parallel, and the threads that march them: for `ThreadedVectorEnv`.
+        numbers: the task's, see `Numbers`.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array", "rerun"], "render_fps": 50}  # noqa: RUF012  as gymnasium's
@@ -95,7 +95,7 @@ class SwimmerEnv(Task):
         self._mean_heading = MeanHeading(max(1, round(self.action.period / self.numbers.control_period)), self.shape)
         self.ticks: np.ndarray = np.zeros(count, dtype=int)  #: (N,) control steps of the present episodes
         self._trim: Array = np.zeros((*self.shape, 1))  # rad/m
-        self._status: NDArray[np.int64] = np.full(count, LEFT_OUT)  # 0 from `reset` on, until a swimmer stops
+        self._status: NDArray[np.int64] = np.full(count, LEFT_OUT)  # 0 after `reset`, until a swimmer stops
         self.starts = [Start()] * count  #: of the present episodes
         self.restart(np.zeros(self.shape))
         if isinstance(self.swimmers, SampledSwimmers):
@@ -108,7 +108,7 @@ class SwimmerEnv(Task):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Begin an episode; the observation of its start."""
+        """Begin an episode. Returns the first observation."""
         super().reset(seed=seed)
         self.begin_episodes([0], options or {}, [self.np_random])
         return self.observation(), {}
@@ -121,16 +121,16 @@ class SwimmerEnv(Task):
         return observation, float(reward), bool(terminated), bool(truncated), {"stopped": stopped[0]} if stopped else {}
 
     def render(self) -> Any:
-        """The picture (400, 800, 3) of the present in the mode rgb_array; None in the mode rerun."""
+        """The picture (400, 800, 3) of the present with rgb_array; None with rerun."""
         return self.picture_of(0)
 
     def close(self) -> None:
-        """End the episode; in the mode rerun, write its recording."""
+        """End the episode. With rerun, write its recording."""
         for index in range(len(self.ticks)):
             self._end(index)
 
     def restart(self, own_time: Any = 0.0) -> Array:
-        """Begin the observation and the action anew; the curvature at the start, as of `action.advance`.
+        """Restart the observation and the action. Returns the first curvature, as `action.advance` does.
 
         A controller of the dynamics node calls it at the start of a run.
         """
@@ -138,16 +138,16 @@ class SwimmerEnv(Task):
         return self.action.begin(own_time)
 
     def see(self, head: HeadMotion) -> np.ndarray:
-        """Take in the motion of the head at the end of a control step, and return the observation.
+        """Take the motion of the head at the end of a control step. Returns the observation.
 
-        A controller of the dynamics node calls it with the motion of a message.
+        A controller of the dynamics node calls it with the motion from a message.
         """
         self.head, self.head_heading = head, head.heading
         self.heading = self._mean_heading.add(self.head_heading)
         return self.observation()
 
     def __copy__(self) -> Self:
-        """A copy that goes on by itself, to the same bit; `copy.deepcopy` and pickles give such a one too."""
+        """An independent copy, identical to the bit. `copy.deepcopy` and pickles give the same."""
         return copy.deepcopy(self)
 
     # -- one swimmer or many
@@ -155,13 +155,13 @@ class SwimmerEnv(Task):
     def begin_episodes(
         self, swimmers: list[int], options: dict[str, Any], draws: Sequence[np.random.Generator]
     ) -> None:
-        """Begin an episode of each of these `swimmers`, drawn from its own of the random numbers `draws` of all.
+        """Begin an episode for each of these `swimmers`, drawn from its own entry of the random numbers `draws`.
 
-        Where one of them cannot begin, none does.
+        If one of them cannot begin, none does.
         """
         for index in swimmers:
             self._end(index)
-            if self.np_random is not draws[index]:  # to set it forgets its seed
+            if self.np_random is not draws[index]:  # setting it discards its seed
                 self.np_random = draws[index]
             self.starts[index] = start = self.begin(options)
             if len(start.goal) != len(self.goal):
@@ -188,10 +188,10 @@ class SwimmerEnv(Task):
             self._record(index)
 
     def march(self, actions: Array) -> tuple[np.ndarray, Any, Any, Any, dict[int, str]]:
-        """March all swimmers that are under way through a control step with their `actions`.
+        """March all active swimmers through a control step with their `actions`.
 
-        Returns the observation, the reward, whether the episode is terminated, and truncated, of one swimmer or (N,);
-        and why swimmers could not go on, by their index. These have no reward.
+        Returns the observation, the reward, whether the episode is terminated, and whether truncated, each for one
+        swimmer or (N,); and by index the reasons why swimmers could not go on. These have no reward.
         """
         if self.shape:
             self.swimmers.wake()
@@ -207,7 +207,7 @@ class SwimmerEnv(Task):
             self._end(index)
         for index in range(len(self._recordings)):
             self._record(index)
-        observation = self.observation()  # of what the reward is for: it may change the goal
+        observation = self.observation()  # before the reward, which may change the goal
         reward, terminated = self.reward(), self.ended()
         truncated = (elapsed if self.shape else elapsed[0]) >= self.numbers.duration * (1.0 - 1e-9)
         if stopped:
@@ -216,7 +216,7 @@ class SwimmerEnv(Task):
         return observation, reward, terminated, truncated, stopped
 
     def one(self, index: int) -> Self:
-        """Swimmer `index` by itself, as far as tasks see it."""
+        """Swimmer `index` as an environment of its own, as far as tasks see it."""
         if not self.shape:
             return self
         other = object.__new__(type(self))
@@ -227,7 +227,7 @@ class SwimmerEnv(Task):
         return other
 
     def picture_of(self, index: int) -> Any:
-        """What `render` returns, of swimmer `index`."""
+        """The result of `render` for swimmer `index`."""
         if self._status[index] == LEFT_OUT:
             raise gymnasium.error.ResetNeeded("the environment must be reset before render")
         if self.render_mode != "rgb_array":
@@ -235,7 +235,7 @@ class SwimmerEnv(Task):
         return picture(self.swimmers.observe(index, wrench=False, load=False), self.body, self.one(index).marks())
 
     def _look(self) -> None:
-        """Take in the motion of the heads, and of the joints."""
+        """Take the motion of the heads, and of the joints."""
         heads = self.swimmers.heads.reshape(13, *self.shape).copy()
         self.head = HeadMotion(heads[:3], heads[3:7], heads[7:10], heads[10:])
         self.head_heading = self.head.heading
@@ -243,7 +243,7 @@ class SwimmerEnv(Task):
             self.action.see(self.swimmers.joints.reshape(2, -1, *self.shape).copy())
 
     def _add_trim(self, rows: Array, left_trim: Array | float) -> None:
-        """Bend bodies by `left_trim` [rad/m], one or (N, 1), beside what their action asks in `rows`, of one or N."""
+        """Add the bend `left_trim` [rad/m], one or (N, 1), to the action's curvature in `rows`, of one body or N."""
         if not isinstance(self.action, JointAction):
             yaw = rows[..., 3, :]
             yaw -= left_trim

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a task defines: its numbers, what the policy sees, reward and end; and the state that it does so from."""
+"""The definition of a task: its numbers, observation, reward and end, and the state on which they depend."""
 
 import inspect
 import math
@@ -21,34 +21,34 @@ from eel_gym.knot_action import KnotAction
 from eel_gym.law_action import LawAction
 
 Action = LawAction | KnotAction | JointAction
-FASTEST, SPIN, FARTHEST = 10.0, 50.0, 100.0  # m/s, rad/s, m: bounds of what is observed
-LEAST, MOST = np.array(-1.0), np.array(1.0)  # of an action; faster with arrays than floats
-GREATEST_START_SPEED = 0.5  # m/s, that the tasks draw: near that of straight()
+FASTEST, SPIN, FARTHEST = 10.0, 50.0, 100.0  # m/s, rad/s, m: bounds of observed values
+LEAST, MOST = np.array(-1.0), np.array(1.0)  # bounds of an action, as arrays, which are faster than floats
+GREATEST_START_SPEED = 0.5  # m/s: greatest start speed that tasks draw, near that of straight()
 
 
 class Observed(NamedTuple):
-    """A number that the policy sees."""
+    """A number in the observation."""
 
     name: str
     unit: str
-    bound: float  #: greatest size; a larger value is cut to it
+    bound: float  #: greatest magnitude; a larger value is clipped to it
 
 
 class Start(NamedTuple):
-    """The head at the start of an episode, level, in REP-103 axes."""
+    """The state at the start of an episode, with a level head, in REP-103 axes."""
 
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)  #: m, world
     heading: float = 0.0  #: rad, positive: left
     speed: float = 0.0  #: m/s, forward
     roll_rate: float = 0.0  #: rad/s
     own_time: float = 0.0  #: s, of the law
-    left_trim: float = 0.0  #: rad/m, a bend that the body has by itself, and that the policy does not see
-    goal: tuple[float, ...] = ()  #: numbers of the episode that the task keeps
+    left_trim: float = 0.0  #: rad/m, the body's own bend, which the policy does not see
+    goal: tuple[float, ...] = ()  #: the task's numbers for the episode
 
 
 @dataclass(frozen=True, kw_only=True)
 class Episode(Quantities):
-    """The numbers that all tasks have."""
+    """The numbers common to all tasks."""
 
     control_period: float = quantity(0.02, unit="s", description="length of a control step", minimum=1e-3, maximum=1.0)
     duration: float = quantity(
@@ -57,11 +57,11 @@ class Episode(Quantities):
 
 
 class Task(gymnasium.Env[Any, Any]):
-    """A task for one swimmer, or for N side by side.
+    """A task for one swimmer, or for N in parallel.
 
-    `head` holds the motion of one head, `head_heading` and `heading` where it points, `goal` (G,) the numbers of its
-    episode (`Start.goal`), which a task may change in `reward`. Of N swimmers the headings are (N,), `goal` (G, N), and
-    the parts of `head` (., N): array expressions serve one swimmer and many.
+    `head` is the motion of the head, `head_heading` and `heading` its direction, and `goal` (G,) the numbers of the
+    episode (`Start.goal`), which a task may change in `reward`. For N swimmers the headings are (N,), `goal` is (G, N),
+    and the parts of `head` are (., N). So the same array expressions serve one swimmer and many.
     """
 
     name: ClassVar[str] = ""
@@ -89,29 +89,29 @@ class Task(gymnasium.Env[Any, Any]):
         bounds = np.array([each[2] for each in (*self.observed, *self.action.names_of_state)], dtype=np.float32)
         self.observation_space = gymnasium.spaces.Box(-bounds, bounds, dtype=np.float32)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (self.action.size,), np.float32)
-        self.shape = shape  #: () of one swimmer, (N,)
+        self.shape = shape  #: () for one swimmer, or (N,)
         self._shape_of_action = (*shape, self.action.size)
         self._seen = np.empty((len(bounds), *shape), dtype=np.float32)
         self._high = np.full_like(self._seen.T, bounds).T
         self._low = -self._high
-        self.head: Any = None  #: a HeadMotion from the first reset on
-        self.head_heading: Any = None  #: rad, of the head now; positive: left
+        self.head: Any = None  #: a HeadMotion after the first reset
+        self.head_heading: Any = None  #: rad, of the head at present; positive: left
         self.heading: Any = np.zeros(shape) if shape else 0.0  #: rad, the same averaged over the gait's period
         self.goal: Array = np.zeros((0, *shape))
 
     # -- a task defines these
 
     def default_scene(self) -> Scene:
-        """The scene where none is given: of the motion alone, without internal wrench and energy ledger."""
+        """The default scene: motion only, without internal wrench and energy ledger."""
         return Scene(internal_wrench=False, ledger=False)
 
     def default_action(self) -> Action:
-        """The action where none is given."""
+        """The default action."""
         bends = {"left_bend": (-0.5, 0.5)} if self.scene.planar else {"left_bend": (-0.5, 0.5), "up_bend": (-0.5, 0.5)}
         return LawAction(straight(), bends, length=self.body.length)
 
     def begin(self, options: dict[str, Any]) -> Start:
-        """Draw what is new in an episode of one swimmer from `self.np_random`. options: those of `reset`."""
+        """Draw the random numbers of a swimmer's episode from `self.np_random`. options: those of `reset`."""
         return Start()
 
     def observe(self) -> list[Any]:
@@ -127,19 +127,19 @@ class Task(gymnasium.Env[Any, Any]):
         return False
 
     def marks(self) -> list[tuple[float, float, float]]:
-        """Points [m], in the world, that the pictures of one swimmer show."""
+        """Points [m], in the world, for pictures of one swimmer."""
         return []
 
-    # -- what follows
+    # -- results
 
     def observation(self) -> np.ndarray:
-        """(D,) or (N, D) float32: what the task observes and the state of the action, cut to the bounds."""
+        """(D,) or (N, D) float32: what the task observes and the state of the action, clipped to the bounds."""
         for row, value in enumerate((*self.observe(), *self.action.state)):
             self._seen[row] = value
         return np.minimum(np.maximum(self._seen, self._low), self._high).T
 
     def checked_action(self, action: Any) -> Array:
-        """The action of each swimmer, cut to the bounds. `InvalidAction` for one that does not fit."""
+        """The action of each swimmer, clipped to the bounds. `InvalidAction` for an unsuitable one."""
         shape = self._shape_of_action
         try:
             values = np.asarray(action, dtype=float)
@@ -160,22 +160,22 @@ class Task(gymnasium.Env[Any, Any]):
 
 
 class MeanHeading:
-    """The mean of the last `count` headings [rad], also across the turn from pi to -pi: the head swings with the gait.
-    Of one swimmer or, side by side, of the `swimmers` (N,)."""
+    """The mean of the last `count` headings [rad], also across the jump from pi to -pi, as the head swings with the
+    gait. For one swimmer or for the `swimmers` (N,)."""
 
     def __init__(self, count: int, swimmers: tuple[int, ...] = ()):
-        self._count, self._swimmers, self._place = count, swimmers, 0  # place: of the last one
-        # rad, each within half a turn of the one before; 0 where none is
+        self._count, self._swimmers, self._place = count, swimmers, 0  # place: index of the last heading
+        # rad, each within half a turn of the previous one; 0 without one
         self._headings: Any = np.zeros((count, *swimmers)) if swimmers else [0.0] * count
         begun: Any = np.zeros((3, *swimmers)) if swimmers else (0.0, 0.0, 0.0)
         self._last, self._sum, self._known = begun
 
     def clear(self) -> None:
-        """Forget all headings."""
+        """Discard all headings."""
         self.__init__(self._count, self._swimmers)  # type: ignore[misc]
 
     def add(self, heading: Any) -> Any:
-        """The mean [rad], from -pi to pi, with this `heading` [rad]."""
+        """Add a `heading` [rad]. Returns the mean [rad], from -pi to pi."""
         self._place = (self._place + 1) % self._count
         self._last = self._last + wrapped(heading - self._last)
         self._sum = self._sum + self._last - self._headings[self._place]
@@ -184,7 +184,7 @@ class MeanHeading:
         return wrapped(self._sum / self._known)
 
     def begin_some(self, swimmers: list[int], headings: Array) -> Array:
-        """The means [rad] of K of N swimmers that have these `headings` alone."""
+        """The means [rad] of K of N swimmers whose only headings are these."""
         begun: Array = wrapped(headings)
         self._headings[:, swimmers] = 0.0
         for each in (self._headings[self._place], self._last, self._sum):
@@ -194,7 +194,7 @@ class MeanHeading:
 
 
 def described_task(task: type[Task]) -> str:
-    """The docstring of a task, with what it observes and its numbers."""
+    """The docstring of a task, with its observation and its numbers."""
     seen = "\n".join(f"    {each.name} [{each.unit or '1'}], at most {each.bound:g}" for each in task.observed)
     observed = f"Observed, before the state of the action:\n{seen}"
     text = inspect.cleandoc(task.__doc__ or "A task.")
@@ -202,7 +202,7 @@ def described_task(task: type[Task]) -> str:
 
 
 def checked_numbers(task: str, kind: type[Episode], given: dict[str, Any]) -> Episode:
-    """The numbers of a task. `ValueError` names one that there is not, or that does not fit."""
+    """The numbers of a task. `ValueError` names an unknown or unsuitable one."""
     known = [item.name for item in fields(kind)]
     for name in given:
         if name not in known:

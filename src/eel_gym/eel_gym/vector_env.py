@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Many swimmers of one task at once: array expressions, and one call of the mechanics, over threads."""
+"""Many swimmers of one task at once: array expressions, and one call of the core, over threads."""
 
 from typing import Any, ClassVar
 
@@ -17,18 +17,18 @@ from eel_gym.way_points import WayPointsEnv
 
 
 class ThreadedVectorEnv(VectorEnv[Any, Any, Any]):
-    """`num_envs` environments of one task, stepped in `threads`. Each behaves as it would alone, to the last bit.
+    """`num_envs` environments of one task, stepped in `threads`. Each gives the same results as alone, to the last bit.
 
     Derive a class with a `task`, or give one. An environment whose episode has ended begins another at the next step
     (`AutoresetMode.NEXT_STEP`), or in the same step (`SAME_STEP`: the last observation and info are in
     `infos["final_obs"]` and `infos["final_info"]`), or waits for `reset(options={"reset_mask": ...})` (`DISABLED`).
 
     Args:
-        num_envs: how many.
+        num_envs: number of environments.
         task: class of the environments.
-        threads: that march the swimmers.
+        threads: number of threads that march the swimmers.
         autoreset_mode: see above.
-        max_episode_steps: control steps after which an episode is truncated; None: by the task's `duration` alone.
+        max_episode_steps: control steps after which an episode is truncated; None: only the task's `duration` counts.
         settings: of each environment.
     """
 
@@ -70,7 +70,7 @@ class ThreadedVectorEnv(VectorEnv[Any, Any, Any]):
     def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
         """Begin an episode in each environment, or in those of `options["reset_mask"]` (num_envs,) bool.
 
-        seed: None, one for all (environment i gets seed + i), or one each. `ValueError` for another number of them.
+        seed: None, one for all (environment i gets seed + i), or one each. `ValueError` for any other number of seeds.
         """
         options = dict(options or {})
         mask = np.asarray(options.pop("reset_mask", np.ones(self.num_envs, dtype=bool)))
@@ -92,7 +92,7 @@ class ThreadedVectorEnv(VectorEnv[Any, Any, Any]):
         return self.swimmers.observation(), {}
 
     def step(self, actions: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
-        """One control step of each: observations, rewards, terminations, truncations, infos."""
+        """One control step of each environment: observations, rewards, terminations, truncations, infos."""
         values, over = self.swimmers.checked_action(actions), self._over
         if not self._begun or (self._mode is AutoresetMode.DISABLED and over.any()):
             raise gymnasium.error.ResetNeeded("environments whose episode has ended must be reset before step")
@@ -119,15 +119,15 @@ class ThreadedVectorEnv(VectorEnv[Any, Any, Any]):
         return observations, rewards, terminated, truncated, infos
 
     def render(self) -> tuple[Any, ...]:
-        """What each renders."""
+        """The results of `render` for all environments."""
         return tuple(map(self.swimmers.picture_of, range(self.num_envs)))
 
     def get_attr(self, name: str) -> tuple[Any, ...]:
-        """The attribute `name` of each."""
+        """The attribute `name` of all environments."""
         return tuple(getattr(self.swimmers.one(index), name) for index in range(self.num_envs))
 
     def call(self, name: str, *arguments: Any, **keywords: Any) -> tuple[Any, ...]:
-        """What the method `name` of each returns."""
+        """The results of the method `name` for all environments."""
         return tuple(method(*arguments, **keywords) for method in self.get_attr(name))
 
     def close_extras(self, **keywords: Any) -> None:

@@ -37,13 +37,13 @@ class WayPointsNumbers(Episode):
 class WayPointsEnv(SwimmerEnv):
     """Swim through points, one after the other: Eel/WayPoints-v0.
 
-    An episode begins at the origin, with a random speed and phase of the gait; each leg turns by up to `greatest_turn`.
-    The action is the bend of the whole body, added to the gait straight(). The swimmer moves in the plane, as in
+    An episode begins at the origin, with a random speed and phase of the gait. Each leg turns by up to `greatest_turn`.
+    The action is a bend of the whole body, added to the gait straight(). The swimmer moves in the plane, as in
     Eel/Heading-v0.
 
-    The reward of a control step is how much nearer the head has come to the present point [m], and 1 for a point that
-    it reaches. An episode ends, besides by `duration`, with the last point, or where the head is farther from a point
-    than twice `distance`.
+    The reward of a control step is the decrease of the head's distance from the present point [m], plus 1 for reaching
+    it. An episode ends after `duration`, after the last point, or when the head is farther from a point than twice
+    `distance`.
     """
 
     name = "WayPoints"
@@ -61,12 +61,12 @@ class WayPointsEnv(SwimmerEnv):
     )
 
     def default_scene(self) -> Scene:
-        """Motion in the plane."""
+        """Motion in the plane only."""
         return Scene(planar=True, internal_wrench=False, ledger=False)
 
     def begin(self, options: dict[str, Any]) -> Start:
-        """Random points. The goal: how many are reached, the distance [m] before a step, then x and y [m] of each point
-        and the turn [rad] there, 0 at the last."""
+        """Random points. The goal: number of points reached, last distance [m], then x and y [m] of each point and the
+        turn [rad] there, 0 at the last."""
         numbers, draw = self.numbers, self.np_random.uniform
         turns: np.ndarray = np.asarray(draw(-numbers.greatest_turn, numbers.greatest_turn, round(numbers.points)))
         bearings = np.cumsum(turns)
@@ -94,13 +94,13 @@ class WayPointsEnv(SwimmerEnv):
 
     @property
     def points(self) -> list[tuple[float, float]]:
-        """The points [m] of one swimmer that are left."""
+        """The remaining points [m] of one swimmer."""
         _, _, *numbers = self.goal.tolist()
         count = self._count
         return list(zip(numbers[:count], numbers[count : 2 * count], strict=True))[int(self.goal[0]) :]
 
     def marks(self) -> list[tuple[float, float, float]]:
-        """The points that are left."""
+        """The remaining points."""
         return [(x, y, 0.0) for x, y in self.points]
 
     @property
@@ -108,7 +108,7 @@ class WayPointsEnv(SwimmerEnv):
         return round(self.numbers.points)
 
     def _way(self) -> tuple[Any, Any, Any]:
-        """Bearing [rad] in the world and distance [m] of the present point, or of the last; the turn [rad] there."""
+        """Bearing [rad] in the world and distance [m] of the present point, or the last; and the turn [rad] there."""
         place = np.minimum(self.goal[0], self._count - 1).astype(int)
         parts = self.goal[2:].reshape(3, self._count, *self.shape)
         x, y, turn = parts[:, place, *map(np.arange, self.shape)]
