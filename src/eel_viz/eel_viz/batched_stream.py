@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A Rerun stream that sends rows in batches: ten rows in one column cost little more than one row.
+"""A Rerun stream that sends rows in batches: ten rows sent together cost little more than one.
 
-Rows wait for at most a tick of wall time (`send_due`), or until there are `MAXIMUM_ROWS` of a kind. `flush` sends all,
-and must be called at the end. Every row has its own time, so the order of calls is free.
+Rows wait for at most a tick of wall time (`send_due`), or until there are `MAXIMUM_ROWS` of a kind. `flush` sends all
+rows, and must be called at the end. Every row has its own time, so the order of calls does not matter.
 """
 
 import time
@@ -16,16 +16,16 @@ from numpy.typing import ArrayLike
 
 from eel_viz.entities import TIMELINE
 
-MAXIMUM_ROWS = 256  # of one kind, then they are sent
-ARRAY_TICKS = 10  # ticks that arrays may wait: no view draws them
-ROUNDING = 1000  # ns: a stamp that is this little before a slot of time lies in it
+MAXIMUM_ROWS = 256  # of one kind; then they are sent
+ARRAY_TICKS = 10  # longest wait of arrays [ticks]: no view draws them
+ROUNDING = 1000  # ns: a stamp this close before a slot of time counts as in it
 
 
 @dataclass(frozen=True, kw_only=True)
 class Rates:
     """How often numbers and drawings are logged [Hz of simulation time]; 0: with every message.
 
-    `tick` [s of wall time]: how long rows may wait for a batch.
+    `tick` [s of wall time]: longest wait of rows for a batch.
     """
 
     numbers: float = 0.0
@@ -34,9 +34,9 @@ class Rates:
 
 
 class BatchedStream:
-    """Batches rows for the recording `stream`, and says what is due: a thing once in a slot of simulation time.
+    """Batches rows for the recording `stream`, and decides what is due: once per slot of simulation time.
 
-    Attribute drawing_period: of drawings [ns].
+    Attribute drawing_period: slot of drawings [ns].
     """
 
     def __init__(self, stream: rr.RecordingStream, rates: Rates) -> None:
@@ -44,13 +44,13 @@ class BatchedStream:
         self._number_period, self.drawing_period = (
             round(1e9 / rate) if rate else 0 for rate in (rates.numbers, rates.drawings)
         )
-        self._slots: dict[str, int] = {}  # in which each thing was due last
+        self._slots: dict[str, int] = {}  # the last slot in which each item was due
         self._rows: dict[tuple[Any, ...], tuple[list[int], list[tuple[np.ndarray, ...]]]] = {}
         self._sent = time.monotonic()
         self._ticks = 0
 
     def due(self, what: str, stamp: int, period: int) -> bool:
-        """Whether `stamp` [ns] lies in another slot of `period` [ns] than the last one that was due; 0: always."""
+        """Whether `stamp` [ns] is in another slot of `period` [ns] than the last time `what` was due; 0: always."""
         if period:
             slot = (stamp + ROUNDING) // period
             if self._slots.get(what) == slot:
@@ -67,7 +67,7 @@ class BatchedStream:
         return self.due(f"drawing of {what}", stamp, self.drawing_period)
 
     def log_static(self, path: str, archetype: rr.AsComponents) -> None:
-        """Log data that are valid at all times."""
+        """Log data that hold at all times."""
         self._stream.log(path, archetype, static=True)
 
     def log(self, stamp: int, path: str, archetype: rr.AsComponents) -> None:
@@ -76,15 +76,15 @@ class BatchedStream:
         self._stream.log(path, archetype)
 
     def log_text(self, stamp: int, path: str, markdown: str) -> None:
-        """Log a text at `stamp` [ns], likewise."""
+        """Log a text at `stamp` [ns], sent at once."""
         self.log(stamp, path, rr.TextDocument(markdown, media_type="text/markdown"))
 
     def log_series_style(self, path: str, names: Any, colours: Any = None) -> None:
-        """Log the names, and where they are chosen the colours, of the curves at `path`, valid at all times."""
+        """Log the names, and the colours if given, of the curves at `path`, for all times."""
         self.log_static(path, rr.SeriesLines(names=names, colors=colours, widths=[1.5] * len(names)))
 
     def log_line_style(self, path: str, colour: Any, width: ArrayLike) -> None:
-        """Log colour (or colours) and width (or widths) [pixels] of the lines at `path`, valid at all times."""
+        """Log colour (or colours) and width (or widths) [pixels] of the lines at `path`, for all times."""
         widths: Any = [rr.Radius.ui_points(each) for each in np.atleast_1d(width)]
         shades = [colour] if isinstance(colour, tuple) else colour
         self.log_static(path, rr.LineStrips3D.from_fields(colors=shades, radii=widths))
@@ -150,7 +150,7 @@ class BatchedStream:
 
 
 def _listed(arrays: tuple[np.ndarray, ...], lengths: list[int]) -> pa.ListArray:
-    """One list per row; from plain numbers Rerun would make one list per number."""
+    """One list per row. From plain numbers Rerun would make one list per number."""
     return pa.ListArray.from_arrays(np.cumsum([0, *lengths], dtype=np.int32), np.concatenate(arrays))
 
 

@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """The entity paths of a recording, shared by loggers and blueprints.
 
-A new curve begins here with its path. Then come its name, colour and values (`SERIES`, and the method of its topic, in
-plots/series.py; for motors robots/motor_plots.py, for fins and joints robots/parts.py), and its place in an arrangement
+A new curve begins here with its path. Then it needs name, colour and values (`SERIES`, and the method of its topic, in
+plots/series.py; for motors robots/motor_plots.py, for fins and joints robots/parts.py), and a place in an arrangement
 (views/blueprint.py). `TIME_SERIES` in test/test_viz_loggers.py lists the curves.
 
-Three trees: `/world` (three-dimensional, metres, the world frame of the messages, z up), `/profiles` and `/heat_map`
-(two-dimensional drawings against the abscissa X), `/plots` (scalars over time). `/numbers` holds the profiles of the
-messages unchanged, in double precision; no view draws them.
+There are three trees: `/world` (three-dimensional, metres, the world frame of the messages, z up), `/profiles` and
+`/heat_map` (two-dimensional drawings against the abscissa X), `/plots` (scalars over time). `/numbers` holds the
+profiles of the messages unchanged, in double precision; no view draws them.
 """
 
 TIMELINE = "sim_time"  # duration since the start of the simulation, from header.stamp
 
 # --- three dimensions, world frame [m] ---------------------------------------------------------------------------
 WORLD = "/world"
-WORLD_FRAME, HEAD_FRAME = "odom", "base_link"  # names of the world's frame and the head's, for what others log
-FOLLOW = "/world/follow"  # a frame that moves with the swimmer, and never turns; radius and centre: see scene3d.camera
-WHOLE_PATH = "/world/whole_path"  # the frame of all places so far
+WORLD_FRAME, HEAD_FRAME = "odom", "base_link"  # names of the world's and the head's frame, for other programs' entities
+FOLLOW = "/world/follow"  # a frame that moves with the swimmer without turning; radius and centre: see scene3d.camera
+WHOLE_PATH = "/world/whole_path"  # the frame around the whole path so far
 BOTH = "/world/both"  # the frame that moves with two swimmers
 LEGEND = "/world/follow/legend"
 WAKE_LEGEND = "/world/follow/legend/wake"
@@ -28,15 +28,15 @@ SKIN = "/world/eel/skin"  # its flanks coloured by C3
 EYES = "/world/eel/eyes"
 FINS = "/world/eel/fins"
 APPENDAGES = "/world/eel/appendages"  # balls as wide as their drag areas
-JOINTS = "/world/eel/joints"  # rings, coloured by what their motors give of what they can
+JOINTS = "/world/eel/joints"  # rings, coloured by the motors' torque / limit
 BACKBONE = "/world/eel/backbone"
 HEAD = "/world/eel/head"
 TAIL = "/world/eel/tail"
 TRACK = "/world/track"  # the whole path of the head, piece by piece
 STROBES = "/world/strobes"  # the midline, once a second
 COURSE = "/world/course/legs"  # between the way points of a goal
-TUBE = "/world/course/tube"  # about the legs, as wide as the spheres
-WAY_POINTS = "/world/course/points"  # spheres within which they count as reached
+TUBE = "/world/course/tube"  # around the legs, as wide as the spheres
+WAY_POINTS = "/world/course/points"  # spheres in which they count as reached
 NOTES = "/world/notes"
 HEADING = "/world/notes/heading"  # an arrow ahead of the head
 SPEED_NOTE = "/world/notes/speed"  # words beside it
@@ -44,8 +44,8 @@ TORQUE_NOTE = "/world/notes/torque"  # words at the place of the greatest C3
 TRAIL = "/world/trail"  # its last seconds, fading
 LOAD = "/world/load/distributed"
 LOAD_ENDS = "/world/load/ends"
-FLOW = "/world/flow"  # arrows: how the water moves without the swimmer
-WAKE = "/world/wake"  # a ribbon: momentum that the tail gave to the wake per time, in the last seconds
+FLOW = "/world/flow"  # arrows: motion of the undisturbed water
+WAKE = "/world/wake"  # a ribbon: momentum per time given to the wake, in the last seconds
 
 # --- drawings against X ------------------------------------------------------------------------------------------
 PROFILES = "/profiles"
@@ -75,15 +75,15 @@ ANGULAR = "/plots/angular_velocity"  # of the head, in base_link [rad/s]
 SPEED = "/plots/speed"
 DEPTH = "/plots/depth"
 POWER = "/plots/power"  # actuator, wake, nose, drag [W]
-POWER_BESIDES = "/plots/power_besides"  # flow, fins, dampers, appendages [W]: from the first that is not 0 on
+POWER_BESIDES = "/plots/power_besides"  # flow, fins, dampers, appendages [W]: from their first non-zero value on
 KINETIC = "/plots/kinetic"  # body, fluid [J]
-STORED = "/plots/stored"  # of weight, of springs [J]: likewise
+STORED = "/plots/stored"  # of weight, and of springs [J]: likewise
 RESIDUAL = "/plots/residual"  # [J]
 FIN_ANGLES = "/plots/fin_angles"  # [deg]
-HARDEST_MOTOR = "/plots/hardest_motor"  # torque of the motor that is nearest to its limit, and that limit [N m]
-SATURATED = "/plots/saturated_motors"  # how many motors are at their limits
-MOTOR_POWER = "/plots/motor_power"  # of all [W]
-MOTOR_WORK = "/plots/motor_work"  # of all since the start [J]
+HARDEST_MOTOR = "/plots/hardest_motor"  # torque of the motor closest to its limit, and the limit [N m]
+SATURATED = "/plots/saturated_motors"  # number of motors at their limits
+MOTOR_POWER = "/plots/motor_power"  # of all motors [W]
+MOTOR_WORK = "/plots/motor_work"  # of all motors since the start [J]
 
 # --- the profiles of the messages, in double precision -------------------------------------------------------------
 NUMBERS = "/numbers"

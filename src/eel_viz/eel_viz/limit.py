@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The greatest value of the last seconds; the limit of a scale: what the user has set, or a round number that fits."""
+"""The greatest value of the last seconds, and the limit of a scale: set by the user, or a fitting round number."""
 
 from collections import deque
 
 import numpy as np
 
 STEPS = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
-RECENT = 3_000_000_000  # ns: what counts, so that a start or a manoeuvre does not fix a scale
+RECENT = 3_000_000_000  # ns: window, so that a start or a manoeuvre does not fix a scale
 
 
 class RecentPeak:
     """The greatest value of the last `RECENT`, and its place [m]; both 0 before the first."""
 
     def __init__(self) -> None:
-        self._greatest: deque[tuple[int, float, float]] = deque()  # ns, value, m: each greater than those after it
+        self._greatest: deque[tuple[int, float, float]] = deque()  # ns, value, m: each greater than the later ones
 
     @property
     def value(self) -> float:
@@ -22,7 +22,7 @@ class RecentPeak:
 
     @property
     def place(self) -> float:
-        """Where it was [m]."""
+        """Its place [m]."""
         return self._greatest[0][2] if self._greatest else 0.0
 
     def include(self, stamp: int, value: float, place: float = 0.0) -> None:
@@ -38,9 +38,9 @@ class RecentPeak:
 class Limit:
     """`value` > 0 of a scale from -value to +value: a round number that fits the values of the last `RECENT`.
 
-    least: what it does not fall below [any unit]. grows: whether greater values make it grow.
+    least: lower bound of the limit [any unit]. grows: whether greater values increase it.
 
-    Attribute recent: their peak, which takes them.
+    Attribute recent: the peak, which takes the values.
     """
 
     def __init__(self, least: float, *, grows: bool = True) -> None:
@@ -49,13 +49,13 @@ class Limit:
 
     @property
     def value(self) -> float:
-        """The present limit; 1 while all values have been zero."""
+        """The present limit; 1 while all values are zero."""
         greatest = self.recent.value if self._grows else 0.0
         return (self._least if greatest <= self._least else rounded_up(greatest)) or 1.0
 
 
 def rounded_up(value: float) -> float:
-    """The next round number from `value` >= 0 on."""
+    """The least round number that is not below `value` >= 0."""
     if value <= 0.0:
         return 0.0
     decade = 10.0 ** np.floor(np.log10(value))

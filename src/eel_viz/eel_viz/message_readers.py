@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads the swimmer's messages into arrays, and checks that they are finite and of consistent size.
 
-Each `read_*` takes one message (any object with its fields) and returns arrays, or raises `BadMessage` that names the
-field.
+Each `read_*` takes one message (any object with its fields) and returns arrays, or raises `BadMessage` with the name of
+the field.
 """
 
 from functools import lru_cache
@@ -17,7 +17,7 @@ from eel_viz import messages
 from eel_viz.messages import BadMessage
 
 UNIT_TOLERANCE = 1e-6  # of a quaternion's norm
-MOST_STATIONS = 20_000  # of a message; the dynamics node has at most half as many
+MOST_STATIONS = 20_000  # in a message; the dynamics node sends at most half as many
 MOST_PARTS = 256  # of a kind
 MOST_APPENDAGES = 1000
 
@@ -57,7 +57,7 @@ def read_backbone(message: Any) -> messages.Backbone:
 
 
 def read_body(message: Any) -> messages.Body:
-    """From eel_msgs/BodyGeometry; one of an older bag has no parts."""
+    """From eel_msgs/BodyGeometry. In an older bag it has no parts."""
     x = _stations(message.x)
     half: dict[str, Any] = {name: _row(message, name, len(x)) for name in ("half_width", "half_height")}
     for name, values in half.items():
@@ -110,7 +110,7 @@ def read_flow(message: Any) -> tuple[np.ndarray, np.ndarray]:
 
 
 def read_energy(message: Any) -> dict[str, float]:
-    """From eel_msgs/EnergyLedger: one number per field [J], [W]; 0 for those that an older bag has not."""
+    """From eel_msgs/EnergyLedger: one number per field [J], [W]; 0 for fields that an older bag lacks."""
     absent = {name for name in LATER_ENERGY_FIELDS if not hasattr(message, name)}
     values = {name: 0.0 if name in absent else getattr(message, name) for name in ENERGY_FIELDS}
     for name, value in values.items():
@@ -120,7 +120,7 @@ def read_energy(message: Any) -> dict[str, float]:
 
 
 def read_joints(message: Any) -> messages.JointStates:
-    """From sensor_msgs/JointState, whose positions must be there."""
+    """From sensor_msgs/JointState, which must have positions."""
     names = tuple(_few("name", message.name))
     angle = _row(message, "position", len(names), "name")
     rate, torque = (
@@ -144,7 +144,7 @@ def read_motors(message: Any) -> messages.Motors:
 
 
 def read_diagnostics(message: Any) -> list[messages.Status]:
-    """From diagnostic_msgs/DiagnosticArray. A value without a key is left out: a recording has no place for it."""
+    """From diagnostic_msgs/DiagnosticArray. Values without a key are left out: a recording cannot hold them."""
     return [
         messages.Status(
             name=status.name,
@@ -171,7 +171,7 @@ def _stations(values: Any) -> np.ndarray:
     return _checked_stations(np.asarray(values, dtype=float).tobytes())
 
 
-@lru_cache(maxsize=16)  # one array for all messages with equal stations
+@lru_cache(maxsize=16)  # messages with equal stations share one array
 def _checked_stations(content: bytes) -> np.ndarray:
     x = _finite("x", np.frombuffer(content))
     if len(x) < 2:
@@ -182,12 +182,12 @@ def _checked_stations(content: bytes) -> np.ndarray:
 
 
 def _row(message: Any, name: str, size: int, fitting: str = "x") -> np.ndarray:
-    """As `_sized`, and finite."""
+    """The field `name` as in `_sized`, checked to be finite."""
     return _finite(name, _sized(message, name, size, fitting))
 
 
 def _sized(message: Any, name: str, size: int, fitting: str = "x") -> np.ndarray:
-    """The field `name` as an array (size,), as many as the field `fitting` has."""
+    """The field `name` as an array (size,), the length of the field `fitting`."""
     array = np.asarray(getattr(message, name), dtype=float)
     if array.shape != (size,):
         raise BadMessage(name, f"must have {size} numbers to fit {fitting}, got {array.size}")

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the swimmer's messages hold, as arrays; frames and units are those of the message."""
+"""The content of the swimmer's messages as arrays, with the frames and units of the messages."""
 
 from dataclasses import dataclass, field
 
 import numpy as np
 
-AT_LIMIT = 1.0 - 1e-9  # of the torque that a motor can give, from which it counts as at its limit
+AT_LIMIT = 1.0 - 1e-9  # of a motor's greatest torque: above this it counts as at its limit
 
 
 class BadMessage(ValueError):
@@ -58,7 +58,7 @@ class Joint:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Body:
-    """`length` [m], `mass` [kg], and half axes [m], (B,) at `x` [m], (B,); what it has of fins, joints, appendages.
+    """`length` [m], `mass` [kg], half axes [m] (B,) at `x` [m] (B,), and fins, joints, appendages.
 
     appendages (A, 4): X, offsets along section axes 2 and 3 [m], drag area [m^2].
     """
@@ -84,7 +84,7 @@ class Backbone:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Profiles:
-    """Named profiles in section axes, each (M,), at stations `x` (M,) [m]; names and units are the message's."""
+    """Named profiles in section axes, each (M,), at stations `x` (M,) [m], with the message's names and units."""
 
     x: np.ndarray
     values: dict[str, np.ndarray]
@@ -98,7 +98,7 @@ class Profiles:
 class Load:
     """The fluid's load: `profiles` [N/m], and the forces at `tail` and `nose`, (3,) [N], all in section axes.
 
-    `wake` (3,) [N]: momentum that the tail gives to the wake per time, in the tail's axes; None in an older bag.
+    `wake` (3,) [N]: momentum per time that the tail gives to the wake, in the tail's axes; None in an older bag.
     `fins` (3 F,) [N]: the forces on F fins, in the axes of their sections.
     """
 
@@ -111,7 +111,7 @@ class Load:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class JointStates:
-    """Angles (n,) [rad] by `names`; rates [rad/s] and torques [N m] where they are known, else None."""
+    """Angles (n,) [rad] by `names`; rates [rad/s] and torques [N m] if known, else None."""
 
     names: tuple[str, ...]
     angle: np.ndarray
@@ -119,7 +119,7 @@ class JointStates:
     torque: np.ndarray | None
 
     def angles_of(self, names: tuple[str, ...]) -> np.ndarray:
-        """The angles [rad] of the joints `names`, which must be there."""
+        """The angles [rad] of the joints `names`, which must exist."""
         angles = dict(zip(self.names, self.angle.tolist(), strict=True))
         return np.array([angles[name] for name in names])
 
@@ -138,9 +138,9 @@ class Motors:
 
     @property
     def loads(self) -> np.ndarray:
-        """What each gives of what it can, (J,), 0 to 1; of motors without a limit NaN."""
+        """The load (J,) of each motor: torque / greatest torque, 0 to 1; NaN for motors without a limit."""
         torque, limited = np.abs(self.torque), np.isfinite(self.limit)
-        none = np.where(limited, (torque > 0.0).astype(float), np.nan)  # at a speed at which no torque is left
+        none = np.where(limited, (torque > 0.0).astype(float), np.nan)  # at a speed without any torque left
         return np.asarray(np.divide(torque, self.limit, out=none, where=limited & (self.limit > 0.0)))
 
 

@@ -1,19 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Two topics of the same stamp: the one that comes first waits for the other."""
+"""Pairs two topics by their stamp: the message that comes first waits for the other."""
 
 from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 
 First = TypeVar("First")
 Second = TypeVar("Second")
-MAXIMUM_WAITING = 5000  # of each: as many as a publisher's history holds, so that no topic gets further ahead
-UNSEEN = 512  # while nothing has come of the other topic: it may never
+MAXIMUM_WAITING = 5000  # of each topic: the length of a publisher's history, so that no topic gets further ahead
+UNSEEN = 512  # the same while the other topic has no message yet: it may never have one
 
 
 class SameStamp(Generic[First, Second]):
-    """Calls draw(stamp, first, second) once both have come at a `stamp` [ns], whatever comes first.
+    """Calls draw(stamp, first, second) once both have come for a `stamp` [ns], in any order.
 
-    The stamps of a topic rise: what the other one has passed is dropped, and of more than those numbers the oldest.
+    The stamps of a topic rise. So values that the other topic has passed are dropped, and the oldest beyond these
+    numbers.
     """
 
     def __init__(self, draw: Callable[[int, First, Second], None]) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes' settings with unit, default, bounds and description; the nodes declare their parameters from them."""
+"""The nodes' settings with unit, default, bounds and description. The nodes declare their parameters from them."""
 
 import ipaddress
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ BLUEPRINTS = ("overview", "torques", "motion", "robot", "swimmer", "compare")
 
 @dataclass(frozen=True, kw_only=True)
 class Drawing(Quantities):
-    """What every node that draws has."""
+    """Settings of every node that draws."""
 
     load_scale: float = quantity(0.06, "m^2/N", "length of the arrow of a load of 1 N/m", minimum=0.0)
     end_force_scale: float = quantity(0.8, "m/N", "length of the arrow of a force of 1 N at nose or tail", minimum=0.0)
@@ -21,9 +21,9 @@ class Drawing(Quantities):
 
 @dataclass(frozen=True, kw_only=True)
 class MarkerSettings(Drawing):
-    """Parameters of the node `markers`, read at start. `ValueError` names one that does not fit."""
+    """Parameters of the node `markers`, read at start. `ValueError` names an unsuitable one."""
 
-    colour_limit: float = quantity(0.25, "N m", "torque C3 from which on colours are deepest", minimum=1e-9)
+    colour_limit: float = quantity(0.25, "N m", "torque C3 of the deepest colours", minimum=1e-9)
     rate: float = quantity(
         25.0, "Hz", "markers and paths per second of wall time, at most", minimum=0.1, maximum=1000.0
     )
@@ -31,7 +31,7 @@ class MarkerSettings(Drawing):
 
 @dataclass(frozen=True, kw_only=True)
 class Settings(Drawing):
-    """Parameters of the visualiser, read at start. `ValueError` names one that does not fit."""
+    """Parameters of the visualiser, read at start. `ValueError` names an unsuitable one."""
 
     sink: tuple[str, ...] = quantity(
         ("auto",),

@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 # Makes Linux end the process when the thread that started it ends, even by SIGKILL (PR_SET_PDEATHSIG, SIGTERM).
 DIE_WITH_PARENT = "import ctypes, os, sys; ctypes.CDLL(None).prctl(1, 15); os.execv(sys.argv[1], sys.argv[1:])"
 DRIVER = "it needs a Vulkan driver: apt-get install --no-install-recommends mesa-vulkan-drivers"
-START_LIMIT = 60.0  # s until the viewer must listen
-END_LIMIT = 5.0  # s until it must have ended
+START_LIMIT = 60.0  # s limit for the viewer to listen
+END_LIMIT = 5.0  # s limit for it to end
 
 
 class CannotRender(WorkStopped):
-    """The viewer cannot draw on this machine; the text gives the reason and the remedy."""
+    """The viewer cannot draw on this machine. The text gives the reason and the remedy."""
 
 
 @contextlib.contextmanager
@@ -44,14 +44,14 @@ def viewer(size: tuple[int, int] = (1920, 1080)) -> Iterator["ViewerClient"]:
     port = free_port()
     command = [native_viewer(), "--headless", "--window-size", f"{size[0]}x{size[1]}", "--port", str(port)]
     command += ["--bind", "127.0.0.1", "--hide-welcome-screen"]
-    # a more verbose log would put start-up notices into the picture
+    # a more verbose log would show start-up notices in the picture
     environment = {**os.environ, "RUST_LOG": "error", "RERUN_APP_ONLY": "true"}
     with tempfile.TemporaryFile() as output:
         process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=output)
         try:
             _await_listening(process, port, output)
             yield ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
-        except ConnectionError as lost:  # without a driver the viewer listens briefly, then it ends
+        except ConnectionError as lost:  # without a driver the viewer listens briefly, then ends
             with contextlib.suppress(subprocess.TimeoutExpired):
                 process.wait(timeout=END_LIMIT)
                 raise _ended(process, output) from lost
@@ -61,7 +61,7 @@ def viewer(size: tuple[int, int] = (1920, 1080)) -> Iterator["ViewerClient"]:
 
 
 def open_window(what: str) -> None:
-    """Open a viewer of `what` (a file or an address) on this machine's display; it outlives this process."""
+    """Open a viewer of `what` (a file or an address) on this machine's display. It outlives this process."""
     process = subprocess.Popen(
         [native_viewer(), "--port", str(free_port()), "--bind", "127.0.0.1", "--hide-welcome-screen", what],
         env={**os.environ, "RERUN_APP_ONLY": "true"},
@@ -74,9 +74,9 @@ def open_window(what: str) -> None:
 
 
 def serve_to_browsers(address: str, here: str, port: int, uri: str) -> subprocess.Popen[bytes]:
-    """Serve the web viewer on `port` of `address`, for the data at `uri`; the process ends with this one.
+    """Serve the web viewer on `port` of `address`, for the data at `uri`. The process ends with this one.
 
-    `here`: the address that this machine reaches it at. `rerun.serve_web_viewer` would listen on every network.
+    here: the address at which this machine reaches it. `rerun.serve_web_viewer` would listen on every network.
     """
     command = [native_viewer(), "--serve-web", "--bind", address, "--web-viewer-port", str(port)]
     command += ["--port", str(free_port()), uri]
@@ -87,7 +87,7 @@ def serve_to_browsers(address: str, here: str, port: int, uri: str) -> subproces
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=output,
-            start_new_session=True,  # Ctrl-C reaches the parent alone, which ends it
+            start_new_session=True,  # Ctrl-C reaches only the parent, which ends it
         )
         _await_listening(process, port, output, host=here, remedy=f"it was to listen on port {port} of {address}")
     return process
@@ -109,7 +109,7 @@ def display() -> bool:
 
 
 def native_viewer() -> str:
-    """The viewer's own executable: the `rerun` command is a wrapper, and ending it would not end the viewer."""
+    """The viewer's own executable. The `rerun` command is a wrapper: ending it would not end the viewer."""
     package = importlib.util.find_spec("rerun_cli")
     if package is None or package.origin is None:
         raise CannotRender("rerun-sdk is not installed: its viewer is needed")
@@ -117,7 +117,7 @@ def native_viewer() -> str:
 
 
 def free_port() -> int:
-    """A port of this machine that no process listens on."""
+    """A free port of this machine."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
@@ -143,7 +143,7 @@ def _await_listening(
 
 
 def _ended(process: subprocess.Popen[bytes], output: IO[bytes], remedy: str = DRIVER) -> CannotRender:
-    """The error for a viewer that has ended by itself, with the remedy."""
+    """The error for a viewer that ended by itself, with the remedy."""
     output.seek(0)
     lines = output.read().decode(errors="replace").splitlines()
     reason = next((line for line in lines if "graphics" in line or "render" in line.lower()), "".join(lines[-1:]))

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads a rosbag2 folder, or one of its files, without ROS: MCAP or sqlite3, split or not, compressed or not.
 
-A bag that is damaged, unfinished or packed is refused, with the tool that mends it. A folder without metadata.yaml is
-read where it has one file alone. Types are those that the bag defines; a
-bag without definitions (sqlite3 before Iron) needs the message packages installed. What metadata.yaml and chunks
-inflate to is bounded.
+A damaged, unfinished or packed bag is refused, with the name of the tool that repairs it. A folder without
+metadata.yaml is read if it has a single file. Types are those that the bag defines; a bag without definitions (sqlite3
+before Iron) needs the message packages installed. The inflated size of metadata.yaml and chunks is bounded.
 """
 
 import contextlib
@@ -25,10 +24,10 @@ from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_types_
 from eel_viz.bags.bounds import METADATA, check_mcap, check_metadata, inflated
 
 SUFFIXES = (".mcap", ".db3")
-JOURNALS = ".db3-wal", ".db3-journal"  # of sqlite: what a recorder that was killed has not brought into its file
+JOURNALS = ".db3-wal", ".db3-journal"  # of sqlite: data that a killed recorder has not moved into its file
 PACKED = {".zstd": "zstd -d", ".zst": "zstd -d", ".lz4": "lz4 -d", ".gz": "gzip -d", ".bz2": "bzip2 -d", ".xz": "xz -d"}
 PADDED = "sensor_msgs/msg/JointState", "eel_msgs/msg/MotorStates"  # their last fields are sequences of doubles
-PADDING = 8, 12  # bytes that ROS may leave behind one or several such sequences that are empty
+PADDING = 8, 12  # bytes that ROS may leave after one or several empty sequences of this kind
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,7 +41,7 @@ class Topic:
 
 
 class Bag:
-    """A bag, open for reading; `topics`: by name. `ValueError` in one line if it cannot be read."""
+    """A bag, open for reading. `topics`: by name. `ValueError` in one line if it cannot be read."""
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self._path = pathlib.Path(path)
@@ -75,8 +74,8 @@ class Bag:
     ) -> Iterator[tuple[str, int, object]]:
         """Yield topic, time of reception [ns] and message of all messages of `topics`, in the order of reception.
 
-        `unreadable(topic, why)` is called for each message whose bytes do not fit its type. `ValueError` if a type is
-        unknown, and where the bag is damaged.
+        `unreadable(topic, why)` is called for each message whose bytes do not fit its type. `ValueError` for an unknown
+        type, and for a damaged bag.
         """
         for name in topics:
             self._learn(self.topics[name])
@@ -90,7 +89,7 @@ class Bag:
             except Exception as error:
                 raise ValueError(f"bag {shown(str(self._path))} is damaged: {_line(error)}") from error
             try:
-                if bytes(raw[:4]) == zstandard.FRAME_HEADER:  # without metadata.yaml nothing else tells
+                if bytes(raw[:4]) == zstandard.FRAME_HEADER:  # without metadata.yaml there is no other sign of it
                     raw = inflated(raw)
                 message = self._deserialised(raw, connection.msgtype)
             except Exception as error:  # rosbags' own, struct.error, ValueError of numpy or of text
@@ -104,7 +103,7 @@ class Bag:
         return any(name == field for name, _ in self._store.fielddefs.get(kind, ((), ()))[1])
 
     def _deserialised(self, raw: Any, kind: str) -> object:
-        """The message; empty sequences of doubles at its end may have some bytes behind them."""
+        """The message. Empty sequences of doubles at its end may be followed by some bytes."""
         try:
             return self._store.deserialize_cdr(raw, kind)
         except SerdeError:
@@ -138,7 +137,7 @@ class Bag:
     def _topics(self) -> dict[str, Topic]:
         found: dict[str, Topic] = {}
         for connection in self._reader.connections:
-            offered: Any = connection.ext  # of a bag of ROS 2
+            offered: Any = connection.ext  # present in bags of ROS 2
             known = found.get(connection.topic)
             text = connection.msgdef.data or (known.definition if known else "")
             found[connection.topic] = Topic(
@@ -176,7 +175,7 @@ class Bag:
 
 
 def _with_metadata(path: pathlib.Path) -> pathlib.Path:
-    """The bag at a `path`; of a folder without metadata.yaml its file, where it has one alone."""
+    """The bag at a `path`; for a folder without metadata.yaml its only file, if there is one."""
     if path.is_file() or (path / METADATA).exists():
         return path
     files = [each for each in path.iterdir() if each.is_file()]
@@ -185,12 +184,12 @@ def _with_metadata(path: pathlib.Path) -> pathlib.Path:
 
 @contextlib.contextmanager
 def _checked_reader(path: pathlib.Path) -> Iterator[Reader]:
-    """A reader of a bag or one of its files. `ValueError` where the metadata have no bounds or do not fit the files."""
+    """A reader of a bag or one of its files. `ValueError` if the metadata exceed bounds or do not match the files."""
     if path.is_dir():
         check_metadata(path)
     with Reader(path) as reader:
         if path.is_dir():
-            storage: Any = reader.storage  # of a folder: it has files
+            storage: Any = reader.storage  # for a folder, it has files
             files, known = storage.storages, {_identity(each) for each in reader.connections}
             strange = {_identity(each) for file in files for each in file.connections} - known
             if strange or sum(file.metadata.message_count for file in files) != reader.message_count:
@@ -199,7 +198,7 @@ def _checked_reader(path: pathlib.Path) -> Iterator[Reader]:
 
 
 def _identity(connection: Connection) -> tuple[str, str, str]:
-    """What a topic in metadata.yaml must have in common with one in a file."""
+    """The properties that a topic in metadata.yaml must share with one in a file."""
     return connection.topic, connection.msgtype, str(connection.ext)
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is checked of a bag's files before rosbags reads them: checksums (CRC-32), and bounds on what they inflate to.
+"""Checks of a bag's files before rosbags reads them: checksums (CRC-32), and bounds on inflated sizes.
 
-rosbags reads an MCAP file by the index at its end, without a bound on what a chunk inflates to. Nor has its parser of
-metadata.yaml bounds.
+rosbags reads an MCAP file by the index at its end, without a bound on the inflated size of a chunk. Its parser of
+metadata.yaml has no bounds either.
 """
 
 import pathlib
@@ -20,18 +20,18 @@ from mcap.exceptions import McapError
 from mcap.records import Chunk, Footer
 from mcap.stream_reader import StreamReader, get_chunk_data_stream
 
-MAGIC = b"\x89MCAP0\r\n"  # that such a file begins with
+MAGIC = b"\x89MCAP0\r\n"  # first bytes of an MCAP file
 MOST_CHUNK_BYTES = 64_000_000  # of an inflated chunk; writers take 1 to 4 MB, or one message
 METADATA, ABOUT = "metadata.yaml", "rosbag2_bagfile_information"
 NEEDED = "topics_with_message_count", "relative_file_paths"
-MOST_VALUES = 10_000  # of it; a publisher takes 20, a file 10
-AFTER_CHECKSUM = 12  # bytes of a file behind the checksum of its index: the checksum itself, and the last magic bytes
-# What mcap's reader raises on damaged files; lz4 raises RuntimeError.
+MOST_VALUES = 10_000  # in metadata.yaml; a publisher takes 20, a file 10
+AFTER_CHECKSUM = 12  # bytes at a file's end from the checksum of its index on: the checksum, and the last magic bytes
+# Exceptions of mcap's reader for damaged files; lz4 raises RuntimeError.
 DAMAGE_ERRORS = (McapError, struct.error, zstandard.ZstdError, ValueError, RuntimeError, OSError)
 
 
 def check_mcap(path: pathlib.Path) -> None:
-    """`ValueError` where the file is damaged or unfinished, or a chunk too large: it names the place."""
+    """`ValueError` with the place if the file is damaged or unfinished, or a chunk too large."""
     place, size = 0, path.stat().st_size
     with path.open("rb") as file:
         if file.read(len(MAGIC)) != MAGIC:
@@ -59,14 +59,14 @@ def check_mcap(path: pathlib.Path) -> None:
 
 
 def inflated(frame: bytes) -> bytes:
-    """What is in a frame of zstd. `ValueError` where that is more than `MOST_CHUNK_BYTES`."""
+    """The content of a zstd frame. `ValueError` for more than `MOST_CHUNK_BYTES`."""
     if (size := zstandard.frame_content_size(frame)) > MOST_CHUNK_BYTES:
         raise ValueError(f"a message must have at most {MOST_CHUNK_BYTES} bytes when inflated, got {size}")
-    return zstandard.ZstdDecompressor().decompress(frame, MOST_CHUNK_BYTES)  # where the frame does not state its size
+    return zstandard.ZstdDecompressor().decompress(frame, MOST_CHUNK_BYTES)  # bounded even if the frame states no size
 
 
 def check_chunk(chunk: Chunk) -> None:
-    """`ValueError` where a chunk inflates to more than `MOST_CHUNK_BYTES`, or not to the size that it states."""
+    """`ValueError` if a chunk inflates to more than `MOST_CHUNK_BYTES`, or not to its stated size."""
     size = chunk.uncompressed_size
     if size > MOST_CHUNK_BYTES:
         raise ValueError(f"a chunk must have at most {MOST_CHUNK_BYTES} bytes when inflated, got {size}")
@@ -75,7 +75,7 @@ def check_chunk(chunk: Chunk) -> None:
             found = zstandard.frame_content_size(chunk.data)
         except zstandard.ZstdError:  # no frame at all: nothing is inflated
             return
-        if found < 0:  # the frame does not state it
+        if found < 0:  # the frame states no size
             found = len(inflated(chunk.data))
     elif chunk.compression == "lz4":
         try:
@@ -92,14 +92,14 @@ def check_chunk(chunk: Chunk) -> None:
 
 
 def check_metadata(folder: pathlib.Path) -> None:
-    """`ValueError` where metadata.yaml has too much, or names what is no regular file in the folder."""
+    """`ValueError` if metadata.yaml is too large, or names anything but a regular file in the folder."""
     with reading(f"{METADATA} (`ros2 bag reindex` makes it anew)"):
         tree = checked_instance("its content", read_yaml(folder / METADATA), dict)
         about = checked_instance(ABOUT, tree.get(ABOUT), dict)
         if missing := [key for key in NEEDED if key not in about]:
             raise ValueError(f"it must have {missing[0]}")
         profiles = [topic["topic_metadata"].get("offered_qos_profiles") for topic in about["topics_with_message_count"]]
-        texts = [each for each in profiles if isinstance(each, str)]  # of YAML, before ROS 2 Jazzy
+        texts = [each for each in profiles if isinstance(each, str)]  # YAML texts, before ROS 2 Jazzy
         if (size := sum(map(len, texts))) > MOST_BYTES:
             raise ValueError(f"its profiles must have at most {MOST_BYTES} characters, got {size}")
         left = MOST_VALUES - _count(tree)

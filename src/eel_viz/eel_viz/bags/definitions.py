@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Classes, definitions and hashes of message types, as the packages have them that are installed here.
+"""Classes, definitions and hashes of message types, from the packages installed here.
 
-Every interface package installs `share/PACKAGE/msg/TYPE.msg` and `TYPE.json`. So these are the types on the network.
+Every interface package installs `share/PACKAGE/msg/TYPE.msg` and `TYPE.json`. They define the types on the network.
 """
 
 import importlib
@@ -21,7 +21,7 @@ _SEPARATOR = "=" * 80
 def message_class(name: str) -> type[Any]:
     """The Python class of `name`, such as eel_msgs/msg/Backbone; `ValueError` if its package is not installed.
 
-    Anybody on the network may name a type: no module is imported but those of interface packages.
+    Anybody on the network may name a type, so only modules of interface packages are imported.
     """
     package, _, kind = name.partition("/msg/")
     if not _file(name, "msg").is_file():
@@ -37,7 +37,7 @@ def definition(name: str) -> str:
     """The definition of type `name` and, after separators, of all types that it contains, as rosbag2 stores it."""
     texts: dict[str, str] = {}
     waiting = [name]
-    for each in waiting:  # which grows
+    for each in waiting:  # `waiting` grows in the loop
         if each not in texts:
             texts[each] = _file(each, "msg").read_text(encoding="utf8").removesuffix("\n") + "\n"
             waiting += _inner_types(each, texts[each])
@@ -47,14 +47,14 @@ def definition(name: str) -> str:
 
 
 def type_hash(name: str) -> str:
-    """The hash of type `name` (RIHS01_...), as endpoints announce it."""
+    """The hash of type `name` (RIHS01_...), as in discovery."""
     hashes = json.loads(_file(name, "json").read_text(encoding="utf8"))["type_hashes"]
     return next(str(entry["hash_string"]) for entry in hashes if entry["type_name"] == name)
 
 
 def _inner_types(name: str, text: str) -> Iterator[str]:
-    """The types of the fields that are messages themselves, or arrays of messages."""
-    fields: Any = get_types_from_msg(text, name)[name][1]  # nested tuples, which its types do not tell apart
+    """The types of the fields that are messages or arrays of messages."""
+    fields: Any = get_types_from_msg(text, name)[name][1]  # nested tuples, too loosely typed
     for _, (node, value) in fields:
         if node in (Nodetype.ARRAY, Nodetype.SEQUENCE):
             node, value = value[0]

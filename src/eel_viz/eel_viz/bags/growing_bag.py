@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes a rosbag2 folder in MCAP storage that can be opened at all times, not only once it is closed.
 
-The index, the end of the file and metadata.yaml are usually written when a bag is closed; before, there is no bag. Here
-`save` writes them whenever it is called: the new messages and a new end overwrite the old end in one write. So a
+The index, the end of the file and metadata.yaml are usually written when a bag is closed; until then the bag cannot be
+opened. Here `save` writes them at any time: the new messages and a new end overwrite the old end in one write. So a
 recorder that is killed leaves a complete bag of all saved messages. If the disk is full, the old end is restored. (A
-process killed within that write leaves a file without its end; `mcap recover` repairs it.) Chunks, data and index have
-their checksums.
+process killed during that write leaves a file without its end; `mcap recover` repairs it.) Chunks, data and index have
+checksums.
 """
 
 import copy
@@ -24,7 +24,7 @@ VERSION: Literal[9] = 9  # of metadata.yaml, as ROS 2 Jazzy writes it
 
 
 class PendingBytes:
-    """The bytes behind the first `start` bytes of a file, with the interface of a file that mcap's writer needs."""
+    """The bytes after the first `start` bytes of a file, with the file interface that mcap's writer needs."""
 
     def __init__(self) -> None:
         self.start = 0
@@ -42,19 +42,19 @@ class PendingBytes:
 
 
 class GrowingFile:
-    """rosbags' storage of one MCAP file; each call of `close` makes the file whole, and more may follow."""
+    """rosbags' storage of one MCAP file. Each call of `close` completes the file, and more may follow."""
 
     def __init__(self, path: pathlib.Path, compression: CompressionMode) -> None:
         self.path = beside(path / f"{path.name}.mcap", "")
         self._file = self.path.open("xb", buffering=0)
         self._pending = PendingBytes()
-        self._end = b""  # the file's end, behind the bytes that no `close` touches again
+        self._end = b""  # the file's end, after the bytes that are final
         self._schemas: dict[str, int] = {}
         self._channels: dict[int, int] = {}
         self._writer = mcap.writer.Writer(
             cast(IO[bytes], self._pending),
             compression=mcap.writer.CompressionType.NONE,
-            use_summary_offsets=False,  # its list of them would grow with each end
+            use_summary_offsets=False,  # its list would grow with each end
             enable_data_crcs=True,
         )
         self._writer.start("ros2")
@@ -73,10 +73,10 @@ class GrowingFile:
         self._writer.add_message(self._channels[connection.id], timestamp, bytes(data), timestamp)
 
     def close(self, version: int, metadata: str) -> None:
-        """Complete the file. `OSError` if there is no room: the file then is as after the last call."""
+        """Complete the file. `OSError` if the disk is full; the file is then as after the last call."""
         self._writer.flush()
         done = len(self._pending.data)
-        copy.copy(self._writer).finish()  # the copy alone has the end in its checksum of the data
+        copy.copy(self._writer).finish()  # only the copy's data checksum includes the end
         try:
             self._write(self._pending.data)
         except OSError:
@@ -88,7 +88,7 @@ class GrowingFile:
         self._pending.data.clear()
 
     def abort(self) -> None:
-        """Close the file descriptor; the file stays as it is."""
+        """Close the file descriptor. The file stays as it is."""
         self._file.close()
 
     def _write(self, data: bytes | bytearray) -> None:
@@ -113,7 +113,7 @@ class GrowingBag(Writer):
             raise ValueError(f"bag {shown(str(folder))} cannot be made: {reason}") from error
 
     def save(self) -> None:
-        """Make the folder a complete bag of all messages so far. `OSError` if there is no room: it is unchanged."""
+        """Complete the bag with all messages so far. `OSError` if the disk is full; the bag is then unchanged."""
         storage = self.storage
         try:
             super().close()

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel replay`: turn a bag into a Rerun recording, as of the visualiser.
+"""`eel replay`: turn a bag into a Rerun recording like the visualiser's.
 
     eel replay BAG -o run.rrd
 
-Messages pass through the visualiser's `dispatcher`, in the order in which they were recorded, as fast as possible. A
+Messages pass through the visualiser's `dispatcher`, in the recorded order, as fast as possible. A
 reset in the bag begins a second file, as in the visualiser.
 """
 
@@ -46,10 +46,10 @@ def replay(
     log_warning: LogFunction = lambda text: None,
     progress: Callable[[int, None], object] = lambda done, count: None,
 ) -> str:
-    """Record the bag at `path` to `settings.sink`; returns its topics with their numbers of messages as text.
+    """Record the bag at `path` to `settings.sink`. Returns its topics with their numbers of messages as text.
 
-    other: a bag to compare it with, called `settings.compare`. Without it `settings.compare` is the namespace of the
-    other swimmer in the same bag. `ValueError` in one line if a bag cannot be read.
+    other: a bag for comparison, called `settings.compare`. Without it `settings.compare` is the namespace of another
+    swimmer in the same bag. `ValueError` in one line if a bag cannot be read.
     """
     with contextlib.ExitStack() as stack:
         paths = [path, *([other] if other else [path] if settings.compare else [])]
@@ -78,7 +78,7 @@ def replay(
 
 
 def name_of(bag: str | os.PathLike[str], *besides: str | os.PathLike[str]) -> str:
-    """A bag's name: of its folder or file, or its whole path if one of `besides` has the same name."""
+    """A bag's name: its folder's or file's, or its whole path if one of `besides` has the same name."""
     name = os.path.basename(os.path.abspath(bag)).removesuffix(".mcap").removesuffix(".db3")
     same = [each for each in besides if os.fspath(each) != os.fspath(bag) and name_of(each) == name]
     return os.fspath(bag).strip("/") if same else name
@@ -109,9 +109,9 @@ def _add_options(parser: Parser) -> None:
 
 @command(
     NAME,
-    "Turn a rosbag2 folder (or one of its .mcap or .db3 files) into a Rerun recording, without ROS "
-    "running: the same that the visualiser shows of these messages. Split bags and those compressed with zstd are "
-    "read; a bag that was not finished is shown as far as it goes.",
+    "Turn a rosbag2 folder (or one of its .mcap or .db3 files) into a Rerun recording without ROS: "
+    "what the visualiser would show of these messages. Split bags, and bags compressed with zstd, are "
+    "read; an unfinished bag is shown up to its end.",
     epilog="A reset in the bag begins another file, with a number before the suffix. Exit status: 0; 1 if the "
     "recording cannot be written to its end; 2 if the bag cannot be read or the recording not be begun; one line "
     "says why.",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The messages of one swimmer in a bag, and joint angles in one; also for the library."""
+"""The messages of one swimmer in a bag, and the joint angles in a bag. The library uses them too."""
 
 import os
 import warnings
@@ -21,8 +21,8 @@ JOINTS = "sensor_msgs/msg/JointState"
 class SwimmerMessages:
     """The messages of one swimmer in `bag`, as pairs of topic (without namespace) and message.
 
-    namespace: the swimmer's; None: that of the only swimmer. further: topics besides those that are shown. turned: of
-    an older bag, as of `JointSigns`. `ValueError` if there is no swimmer, or several.
+    namespace: the swimmer's; None: that of the only swimmer. further: topics in addition to the shown ones. turned: for
+    an older bag, as in `JointSigns`. `ValueError` if there is no swimmer, or more than one.
     """
 
     def __init__(
@@ -51,7 +51,7 @@ class SwimmerMessages:
         return any(self._bag.topics[topic].publishers > 1 for topic, each in self._topics.items() if each == name)
 
     def __iter__(self) -> Iterator[tuple[str, Any]]:
-        """Yield topic and message in the recorded order; the body first, as it is valid at all times."""
+        """Yield topic and message in the recorded order, but the body first, as it holds at all times."""
         body = f"{self.namespace}/body"
         first = next((message for _, _, message in self._bag.messages(body)), None) if body in self._topics else None
         if first is not None:
@@ -93,7 +93,7 @@ class SwimmerMessages:
 def swimmer_messages(
     path: str | os.PathLike[str], namespace: str | None = None, turned: Collection[str] | None = None
 ) -> Iterator[tuple[str, Any]]:
-    """Yield topic and message of the swimmer in the bag at `path`, as of `SwimmerMessages`.
+    """Yield topic and message of the swimmer in the bag at `path`, as `SwimmerMessages` does.
 
     `ValueError` in one line if it cannot be read.
     """
@@ -108,9 +108,9 @@ def _warn(text: str) -> None:
 def joint_states(path: str | os.PathLike[str], topic: str | None = None) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """Time (N,) [s], angles (N, n) [rad] and names of the joints in the bag at `path`.
 
-    topic: None: the only one of this type. Joints stand in the order of the first message; messages that lack one are
-    left out. Time is that of the header, or of reception where no header has one. `ValueError` in one line if there is
-    no such topic.
+    topic: None: the only one of this type. Joints have the order of the first message; messages that lack one are left
+    out. Time is the header's, or the time of reception if no header has one. `ValueError` in one line if there is no
+    such topic.
     """
     with Bag(path) as bag:
         there = sorted(name for name, about in bag.topics.items() if about.type == JOINTS)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws pictures of a recording with Rerun's headless viewer: one viewer for all pictures.
 
-The first picture is complete when two screenshots in a row are equal. After that, the first screenshot after setting
-the time is complete, unless it equals the previous picture: then it is verified again.
+The first picture is complete when two successive screenshots are equal. After that, the first screenshot after setting
+the time is complete, unless it equals the previous picture: then it is checked again.
 """
 
 import contextlib
@@ -24,12 +24,12 @@ from eel_viz.viewer import CannotRender, native_viewer, viewer
 if TYPE_CHECKING:
     from rerun.experimental import ViewerClient
 
-LOADING_LIMIT = 60.0  # s until the recording must be open
-LOADED_CHECKS = 5  # checks in a row of a loaded recording, after which no more timelines are expected
-NOTICE = 2.5  # s after its start, for which a viewer shows a notice in the corner
-PICTURE_LIMIT = 90.0  # s until two screenshots must be equal
+LOADING_LIMIT = 60.0  # s limit for opening the recording
+LOADED_CHECKS = 5  # successive checks of a loaded recording, after which no further timelines are expected
+NOTICE = 2.5  # s after its start, during which a viewer shows a notice in the corner
+PICTURE_LIMIT = 90.0  # s limit for two screenshots to become equal
 SIZE = (1920, 1080)  # pixels
-# Pixels of a window that a view alone does not fill, at least: edges, tabs, title, time panel.
+# Least pixels of a window around a single view: edges, tabs, title, time panel.
 WINDOW_EDGES = (8, 132)
 MAGIC = b"RRF"  # first bytes of a recording of any version
 ALONE = "swimmer"  # the arrangement of a bare picture
@@ -37,7 +37,7 @@ LEAST_SIDE, MOST_SIDE = 64, 8192  # pixels of a window's side
 
 
 class Drawing:
-    """A recording that a viewer shows; `start` and `end` [s] are its first and last simulation time.
+    """A recording shown by a viewer; `start` and `end` [s] are its first and last simulation time.
 
     size: of bare pictures [pixels].
     """
@@ -48,7 +48,7 @@ class Drawing:
         self.start, self.end = self._load()
         self._last = b""
         self._shown: list[str] = []  # views of the arrangement in front
-        self._view: str | None = None  # of which pictures are taken; None: of the whole window
+        self._view: str | None = None  # the view in the pictures; None: the whole window
 
     def png(self, at: float) -> bytes:
         """The picture at simulation time `at` [s] as PNG. `ValueError` if it lies outside the recording."""
@@ -58,7 +58,7 @@ class Drawing:
             )
         self._client.set_time(TIMELINE, duration=at, play_state="paused")
         picture = self.screenshot(self._view) if self._last else b""
-        if picture in (b"", self._last):  # the first, or late, or perhaps not up to date
+        if picture in (b"", self._last):  # the first, or late, or possibly outdated
             picture = self._stable_picture()
         self._last = picture
         return picture if self._view is None else _cropped(picture, self._size)
@@ -66,7 +66,7 @@ class Drawing:
     def arrange(self, name: str, *, bare: bool = False) -> None:
         """Bring the arrangement `name` of the recording to the front. `ValueError` if there is none.
 
-        bare: from now on, pictures show its first view alone, without the viewer's frame.
+        bare: from now on, pictures show only its first view, without the viewer's frame.
         """
         blueprint = self._client.get_blueprint(of="recording").blueprint
         found = ((path.strip("/"), part.get("ContainerBlueprint")) for path, part in blueprint.items())
@@ -87,15 +87,15 @@ class Drawing:
         self._last = b""
 
     def views(self) -> list[Any]:
-        """The viewer's views of the arrangement in front, after a picture of it, those in three dimensions first."""
+        """The viewer's views of the arrangement in front, after a picture of it, three-dimensional ones first."""
         found = [view for view in self._client.get_state().views if view.view_id in self._shown]
         return sorted(found, key=lambda view: view.view_class != "3D")
 
     def screenshot(self, view: str | None) -> bytes:
-        """What is shown now, as PNG: the `view` with this id, or the whole window; empty where the viewer is late."""
+        """The present display as PNG: the `view` with this id, or the whole window; empty if the viewer is late."""
         try:
             png: bytes = self._client.take_screenshot(view)
-        except TimeoutError:  # a busy machine: the caller waits for a picture that stands still
+        except TimeoutError:  # a busy machine: the caller waits for a stable picture
             return b""
         return png
 
@@ -129,7 +129,7 @@ class Drawing:
 
 
 def _cropped(png: bytes, size: tuple[int, int]) -> bytes:
-    """The middle of the picture, of `size` [pixels]: a viewer's frame is not of the same height in every window."""
+    """The middle of the picture, of `size` [pixels]: the height of a viewer's frame varies between windows."""
     with Image.open(io.BytesIO(png)) as image:
         if image.size == size:
             return png
@@ -144,7 +144,7 @@ def _png(image: Image.Image) -> bytes:
 
 
 def _views_in(boxes: dict[str, dict[str, Any]], path: str) -> list[str]:
-    """The ids of the views in the container at `path`; of tabs within it, those of the first."""
+    """The ids of the views in the container at `path`. Of tabs in it, only the first counts."""
     kind, _, identifier = path.strip("/").partition("/")
     if kind == "view":
         return [identifier]
@@ -156,9 +156,9 @@ def _views_in(boxes: dict[str, dict[str, Any]], path: str) -> list[str]:
 
 
 class SideBySide:
-    """Two drawings as one; `start` and `end` [s] bound the simulation times that both have.
+    """Two drawings as one. `start` and `end` [s] bound their common simulation times.
 
-    `ValueError` where they have none in common.
+    `ValueError` without common times.
     """
 
     def __init__(self, left: Drawing, right: Drawing) -> None:
@@ -171,7 +171,7 @@ class SideBySide:
             )
 
     def png(self, at: float) -> bytes:
-        """Both pictures at simulation time `at` [s] as one PNG, twice as wide as either."""
+        """Both pictures at simulation time `at` [s] as one PNG, side by side."""
         left, right = (Image.open(io.BytesIO(each.png(at))).convert("RGB") for each in self._both)
         joined = Image.new("RGB", (left.width + right.width, left.height))
         joined.paste(left, (0, 0))
@@ -185,7 +185,7 @@ def drawn(
 ) -> Iterator[Drawing]:
     """Open a `Drawing` of the file `recording` with pictures of `size` pixels; `blueprint`: the arrangement in front.
 
-    bare: the pictures show the arrangement's first view alone; without `blueprint`, that of the swimmer.
+    bare: the pictures show only the arrangement's first view; without `blueprint`, that of the swimmer.
     `ValueError` if the file is not a recording; `CannotRender` if the viewer cannot draw.
     """
     if not all(LEAST_SIDE <= side <= MOST_SIDE for side in size):
@@ -203,14 +203,14 @@ def drawn(
 def drawn_beside(
     recording: str | os.PathLike[str], beside: str | os.PathLike[str] | None, **settings: Any
 ) -> Iterator[Drawing | SideBySide]:
-    """Open a `Drawing` of `recording`, with that of `beside` to its right; None: alone. settings: those of `drawn`."""
+    """Open a `Drawing` of `recording`, with `beside` to its right if given. settings: those of `drawn`."""
     with contextlib.ExitStack() as stack:
         drawing = stack.enter_context(drawn(recording, **settings))
         yield drawing if beside is None else SideBySide(drawing, stack.enter_context(drawn(beside, **settings)))
 
 
 def check_recording(path: pathlib.Path) -> None:
-    """`ValueError` where `path` is no file."""
+    """`ValueError` if `path` is no file."""
     if not path.is_file():
         raise ValueError(f"recording must be a file, got {shown(str(path))}")
 

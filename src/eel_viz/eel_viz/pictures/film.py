@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes a film of pictures: with ffmpeg if it is installed, or as an animated GIF or WebP without it."""
+"""Makes a film from pictures: with ffmpeg if installed, or else as an animated GIF or WebP."""
 
 import itertools
 import os
@@ -14,7 +14,7 @@ from PIL import Image
 ANIMATIONS = (".gif", ".webp")
 PICTURE_NAME = "frame_%05d.png"
 QUALITY = 60  # of a .webp
-UNITS = {".gif": 10, ".webp": 1}  # ms, whole numbers of which a picture of an animation lasts
+UNITS = {".gif": 10, ".webp": 1}  # ms: a picture of an animation lasts a multiple of this
 FILMS = (".mp4", ".webm", ".mkv", ".mov", *ANIMATIONS)
 
 
@@ -24,13 +24,13 @@ def ffmpeg() -> str | None:
 
 
 def check_quality(quality: int) -> None:
-    """`ValueError` if `quality` does not lie between 1 and 100."""
+    """`ValueError` if `quality` is not between 1 and 100."""
     if not 1 <= quality <= 100:
         raise ValueError(f"quality must be 1 to 100, got {quality}")
 
 
 def check_film(path: pathlib.Path) -> None:
-    """`ValueError` for a suffix that is none of a film, or that needs ffmpeg where it is missing."""
+    """`ValueError` for a suffix that is not a film's, or that needs ffmpeg if that is missing."""
     if path.suffix not in FILMS:
         raise ValueError(f"film must end in one of {', '.join(FILMS)}, got {shown(str(path))}")
     if path.suffix not in ANIMATIONS and ffmpeg() is None:
@@ -40,10 +40,10 @@ def check_film(path: pathlib.Path) -> None:
 def film(
     folder: str | os.PathLike[str], count: int, output: str | os.PathLike[str], *, fps: float, quality: int = QUALITY
 ) -> None:
-    """Write the film `output` of the first `count` pictures in `folder`, of equal size, with `fps` per second.
+    """Write the film `output` from the first `count` pictures in `folder`, of equal size, with `fps` per second.
 
-    Their names are `PICTURE_NAME`. quality: of a .webp, 1 (smallest file) to 100.
-    `ValueError` as of `check_quality` and `check_film`; `OSError` if writing fails.
+    Their names follow `PICTURE_NAME`. quality: of a .webp, 1 (smallest file) to 100.
+    `ValueError` as in `check_quality` and `check_film`; `OSError` if writing fails.
     """
     path, program = pathlib.Path(output), ffmpeg() or ""
     check_quality(quality)
@@ -56,7 +56,7 @@ def film(
 
 
 def durations(count: int, fps: float, unit: int) -> list[int]:
-    """How long each of `count` pictures lasts [ms], in whole `unit` [ms]: `fps` per second on the whole."""
+    """The duration of each of `count` pictures [ms], in multiples of `unit` [ms]: `fps` per second in total."""
     ends = [round(1000.0 * k / fps / unit) for k in range(count + 1)]
     return [unit * max(1, end - begin) for begin, end in itertools.pairwise(ends)]
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel render`: draw a recording to pictures, or to a film, without a display.
+"""`eel render`: draw a recording to pictures or a film, without a display.
 
 eel render RUN.rrd -o picture.png                # --at 7.0: at another time
-eel render RUN.rrd -o frames/ --fps 30           # frames/frame_00000.png ..., and frames/film.mp4 where ffmpeg is
+eel render RUN.rrd -o frames/ --fps 30           # frames/frame_00000.png ..., and frames/film.mp4 with ffmpeg
 eel render RUN.rrd -o swim.webp --fps 15 --size 960x540
 eel render RUN.rrd -o swim.webp --fps 15 --size 800x450 --bare    # the swimmer alone
 eel render RUN.rrd -o pair.webp --fps 15 --size 640x400 --bare --beside OTHER.rrd
@@ -29,7 +29,7 @@ from eel_viz.viewer import CannotRender
 NAME = "eel render"
 FILM = "film.mp4"
 MANY = 100_000  # pictures
-DEFAULT_SHARE = 0.7  # of a recording's duration, at which a single picture is taken: the swimmer moves by then
+DEFAULT_SHARE = 0.7  # of a recording's duration: time of a single picture, when the swimmer moves
 
 
 def times(
@@ -53,9 +53,9 @@ def frames(
     at: Sequence[float],
     progress: Callable[[int, int], object] = lambda done, count: None,
 ) -> list[pathlib.Path]:
-    """Write pictures at the times `at` [s] to frame_00000.png and so on in `folder`; returns their paths.
+    """Write pictures at the times `at` [s] to frame_00000.png and so on in `folder`. Returns their paths.
 
-    `NotWritten` where one of another process appears there.
+    `NotWritten` if another process writes there too.
     """
     written = []
     for k, moment in enumerate(at):
@@ -63,7 +63,7 @@ def frames(
         written.append(folder / (PICTURE_NAME % k))
         with replacing(written[-1]) as draft:
             draft.write_bytes(png)
-        if written_as(written[-1]) != written[-1]:  # a film would have the other's picture
+        if written_as(written[-1]) != written[-1]:  # a film would use the other's picture
             raise NotWritten(f"another process writes pictures to {shown(str(folder))} too")
         progress(k + 1, len(at))
     return written

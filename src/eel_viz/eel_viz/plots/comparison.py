@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compares two runs: draws the other run over this one, and plots their differences.
 
-The other swimmer is drawn as hoops around this one, so that both can be seen where they coincide. A difference is this
+The other swimmer is drawn as hoops around this one, so that both stay visible where they coincide. A difference is this
 run's value minus the other's, at this run's stamps and stations (see `pairs`).
 """
 
@@ -20,12 +20,12 @@ from eel_viz.scene3d.swimmer_scene import log_frame
 from eel_viz.scene3d.water import WaterBox
 
 HOOPS, SIDES = 24, 16
-FIRST_HOOP = 3  # those before it, at the nose, are too dense
+FIRST_HOOP = 3  # earlier ones, at the nose, are too dense
 SUMMARY_PERIOD = 200_000_000  # ns
 
 
 class Comparison:
-    """`this` and `other` take the messages of the two runs, by the methods of `Loggers`.
+    """`this` and `other` take the messages of the two runs, through the methods of `Loggers`.
 
     names: of this run and the other. limit: of the torque plot [N m].
     """
@@ -88,7 +88,7 @@ class Comparison:
             self._stream.add_scalars(at, entities.TORQUE_DIFFERENCE_MOST, [most])
 
     def move_camera(self, stamp: int) -> None:
-        """Keep both swimmers in the picture, at `stamp` [ns]; the other at its last place."""
+        """Keep both swimmers in the picture at `stamp` [ns], the other at its last place."""
         last = [side.line for side in (self.this, self.other) if side.line is not None]
         positions = np.concatenate([backbone.position for backbone in last])
         body_length = max(float(backbone.x[-1] - backbone.x[0]) for backbone in last)
@@ -114,7 +114,7 @@ class Comparison:
 
 
 class Side(Summary):
-    """Takes the messages of one run: of the one that the rest of the recording shows."""
+    """Takes the messages of one run. The rest of the recording shows it."""
 
     def __init__(self, comparison: Comparison, stream: BatchedStream) -> None:
         super().__init__()
@@ -135,7 +135,7 @@ class Side(Summary):
 
 
 class OtherSide(Side):
-    """Takes the messages of the other run, which is drawn here."""
+    """Takes the messages of the other run, and draws it."""
 
     def __init__(self, comparison: Comparison, stream: BatchedStream) -> None:
         super().__init__(comparison, stream)

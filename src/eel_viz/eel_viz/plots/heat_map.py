@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A heat map of one profile over abscissa and time: the last seconds, the present at the right, the head at the top.
+"""A heat map of one profile over abscissa and time: the last seconds, with the present at the right, the head on top.
 
-It is a rolling image of palette indices (one byte each) with one column per `STEP` seconds, axes and a colour bar. When
-the limit of the colours changes, all columns do.
+It is a rolling image of palette indices (one byte each) with one column per `STEP` seconds, axes and a colour bar. A
+new limit of the colours applies to all columns.
 """
 
 from itertools import pairwise
@@ -33,7 +33,7 @@ class HeatMap:
     palette: uint8 (256, 3), from the bar's lower end to its upper.
     """
 
-    LEAST = -1.0  # of the limit: the lower end of the bar
+    LEAST = -1.0  # the bar's lower end, relative to the limit
 
     def __init__(
         self,
@@ -54,7 +54,7 @@ class HeatMap:
         self._draw_bar()
 
     def add(self, stamp: int, x: np.ndarray, values: np.ndarray) -> None:
-        """Include `values` (M,) at stations `x` (M,) [m] and `stamp` [ns], and draw the image if it is due."""
+        """Add `values` (M,) at stations `x` (M,) [m] and `stamp` [ns], and draw the image if it is due."""
         self.include(stamp, x, values)
         if self._stream.due(self._root, stamp, PERIOD):
             self.draw(stamp)
@@ -103,7 +103,7 @@ class HeatMap:
         self._stream.log(stamp, f"{self._root}/{entities.FRAME}/{LABELS}", flat_texts(places, texts, LETTERS))
 
     def _indices(self, values: np.ndarray, limit: float) -> np.ndarray:
-        """Entries of the palette that show `values`, uint8, same shape."""
+        """Entries of the palette for `values`, uint8, of the same shape."""
         return colours.diverging_index(values, limit)
 
     def _rows(self, x: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -111,5 +111,5 @@ class HeatMap:
         return np.asarray(np.interp(np.linspace(0.0, x[-1], ROWS), x, values))
 
     def _texts(self, length: float, limit: float) -> list[str]:
-        """The words at the left and at the bar, from above."""
+        """The words at the left and at the bar, from the top."""
         return ["head 0", f"X {length / 2:.3g} m", f"tail {length:.3g}", f"+{limit:g}", "0", f"-{limit:g}"]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pairs the samples of two runs: this run's sample with the other run's, interpolated linearly to the same stamp.
+"""Pairs of samples of two runs: this run's sample, and the other run's interpolated linearly to the same stamp.
 
 Samples with equal stamps are not interpolated. Samples of the run that is ahead wait for the other run.
 """
@@ -39,14 +39,14 @@ class Pairs:
         self._others: deque[Stamped] = deque(maxlen=MAXIMUM_WAITING)
 
     def add(self, sample: Stamped, *, of_other: bool) -> list[Pair]:
-        """Add a sample of this run or of the other one; returns the pairs that are complete now."""
+        """Add a sample of this run or of the other one. Returns the newly complete pairs."""
         (self._others if of_other else self._these).append(sample)
         found, others = [], self._others
         while self._these and others and others[-1].stamp >= self._these[0].stamp:
             this = self._these.popleft()
             while len(others) > 1 and others[1].stamp <= this.stamp:
                 others.popleft()
-            if others[0].stamp <= this.stamp:  # not before the other's first
+            if others[0].stamp <= this.stamp:  # not before the other run's first sample
                 found.append(Pair(this.stamp, this.x, this.values, self._other_at(this)))
         return found
 

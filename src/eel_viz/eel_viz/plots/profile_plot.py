@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A plot of profiles against the abscissa X: curves, their envelope in the last seconds, and axes with ticks.
 
-Rerun only plots against time. So the plot is made of lines in a two-dimensional view, whose axes share one scale and
-whose y points down: drawn x = WIDTH * X / length, drawn y = -value / (2 limit). The limit
-is a round number that fits the last seconds, and the ticks follow it.
+Rerun only plots against time. So the plot consists of lines in a two-dimensional view, whose axes share one scale and
+whose y points down: drawn x = WIDTH * X / length, drawn y = -value / (2 limit). The limit is a round number that fits
+the last seconds, and the ticks follow it.
 """
 
 from collections import deque
@@ -23,7 +23,7 @@ from eel_viz.scene3d.lettering import flat_texts
 WIDTH = 5.2
 LETTERS = 0.092  # height of a capital
 IN_FRONT = 40.0  # draw order of letters: before the curves (30), their envelope (20) and the frame (10)
-SLOT = 500_000_000  # ns: the envelope forgets in such steps
+SLOT = 500_000_000  # ns: the envelope drops old values in such steps
 ENVELOPE_PERIOD = 500_000_000  # ns
 BOUNDS_X = (-0.62, WIDTH + 0.18)
 BOUNDS_Y = (-0.79, 0.79)
@@ -32,9 +32,9 @@ BOUNDS_Y = (-0.79, 0.79)
 class ProfilePlot:
     """Draws up to three profiles into the entities below `root` of a recording.
 
-    names: of the curves (C1, C2, C3), from back to front. unit: of the values. limit: the value at the upper edge at
-    first; 0: what fits the last values. palette: colours of the curves. widths: of the curves [pixels].
-    envelope_period: of drawing it [ns]; None: it is not drawn.
+    names: of the curves (C1, C2, C3), from back to front. unit: of the values. limit: initial value at the upper edge;
+    0: fits the last values. palette: colours of the curves. widths: of the curves [pixels].
+    envelope_period: between its drawings [ns]; None: it is not drawn.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class ProfilePlot:
         return self._limit.value
 
     def add(self, stamp: int, x: np.ndarray, values: np.ndarray) -> None:
-        """Include `values`, (M, n) at stations `x` (M,) [m], at `stamp` [ns], and draw what is due."""
+        """Add `values`, (M, n) at stations `x` (M,) [m], at `stamp` [ns], and draw what is due."""
         self.include(stamp, x, values)
         if self._stream.drawing_due(self._root, stamp):
             self.draw(stamp, x, values)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is drawn of profiles: torque, force and curvature against X, and the torque C3 over X and time."""
+"""Drawings of profiles: torque, force and curvature against X, and the torque C3 over X and time."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from eel_viz.settings import Settings
 
 
 class ProfilePlots:
-    """Draws by the methods of topics. limit: of the colours of C3, which is kept up to date here."""
+    """Draws through the methods of topics. limit: of the colours of C3, kept up to date here."""
 
     def __init__(self, stream: BatchedStream, settings: Settings, limit: Limit) -> None:
         self._limit, self._heat_map = limit, HeatMap(stream, limit=limit)

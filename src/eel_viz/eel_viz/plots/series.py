@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The curves over time: names and colours of each entity's values, in order, and the values.
 
-Paths are those of entities.py.
+Paths are in entities.py.
 """
 
 import numpy as np
@@ -40,19 +40,19 @@ SERIES = {  # entity: (name, colour) of each value
 }
 
 
-BESIDES = {  # curves that begin with the first value that is not 0
+BESIDES = {  # curves that begin with the first non-zero value
     entities.POWER_BESIDES: ("flow_power", "fins_power", "damping_power", "appendages_power"),
     entities.STORED: ("potential", "elastic"),
 }
 
 
 class Series:
-    """Logs what messages say of the head, and the ledger, by the methods of topics, in double precision."""
+    """Logs the head's motion and the energy ledger, through the methods of topics, in double precision."""
 
     def __init__(self, stream: BatchedStream) -> None:
         self._stream = stream
         self._attitude = Attitude()
-        self._besides: set[str] = set()  # paths of `BESIDES` that have lines
+        self._besides: set[str] = set()  # paths of `BESIDES` with lines
         for path, lines in SERIES.items():
             stream.log_series_style(path, *zip(*lines, strict=True))
 
@@ -85,7 +85,7 @@ class Series:
 
 
 class Attitude:
-    """Heading, pitch and roll; heading and roll continue over whole turns, without jumps of 360 degrees."""
+    """Heading, pitch and roll. Heading and roll continue over whole turns, without jumps of 360 degrees."""
 
     def __init__(self) -> None:
         self._last: np.ndarray | None = None  # deg, (3,)

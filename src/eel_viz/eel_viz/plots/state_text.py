@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The state of a run in a few lines of Markdown.
 
-The path comes from head_pose, the torque from internal_wrench, the rest from diagnostics. Topics come in any order:
-what is written is always of one stamp, the last of which both have come.
+The path comes from head_pose, the torque from internal_wrench, the rest from diagnostics. Topics come in any order. The
+text always describes one stamp: the last for which both topics have come.
 """
 
 import math
@@ -40,7 +40,7 @@ VOLATILE = ("warnings", "real_time_factor")  # keys that are shown only while th
 
 
 class Path(NamedTuple):
-    """Of the head, up to a stamp: its length [m], and how long it took [s]."""
+    """The path of the head up to a stamp: its length [m], and its duration [s]."""
 
     length: float
     seconds: float
@@ -52,7 +52,7 @@ class Path(NamedTuple):
 
 
 class Torque(NamedTuple):
-    """C3 where it is greatest [N m], its place [m] and stamp [ns]."""
+    """C3 at its greatest magnitude [N m], its place [m] and stamp [ns]."""
 
     value: float = 0.0
     x: float = 0.0
@@ -68,10 +68,10 @@ class Torques(NamedTuple):
 
 
 class Summary:
-    """Collects the state of a run, in part by the methods of topics, and writes it as Markdown.
+    """Collects the state of a run, partly through the methods of topics, and writes it as Markdown.
 
     Attributes:
-        stamp: of what is written [ns]. values: of the diagnostics, by key.
+        stamp: of the text [ns]. values: of the diagnostics, by key.
     """
 
     def __init__(self) -> None:
@@ -81,11 +81,11 @@ class Summary:
         self._statuses: list[tuple[int, str, dict[str, str]]] = []  # later than `stamp`
         self.values: dict[str, str] = {}
         self.stamp = 0
-        self._begin = 0  # ns: of the path
+        self._begin = 0  # ns: start of the path
         self._head: np.ndarray | None = None  # its last position
         self._length = 0.0  # m: of its path
         self._peak, self._recent = Torque(), RecentPeak()
-        self._path: Path | None = None  # this and the next: what is written
+        self._path: Path | None = None  # this and the next: shown in the text
         self._torques = Torques()
         self._has_torque = False
         self._sample = SameStamp(self._complete)
@@ -97,12 +97,12 @@ class Summary:
         self._law = name
 
     def diagnostics(self, stamp: int, statuses: list[Status]) -> None:
-        """Take message and values of each status, which apply once a sample has reached its stamp."""
+        """Take message and values of each status. They apply once a sample has reached their stamp."""
         for status in statuses:
             self.add_status(stamp, status.message, status.values)
 
     def add_position(self, stamp: int, position: np.ndarray) -> bool:
-        """Add the head's `position`, (3,) [m] in the world, at `stamp` [ns]; whether that completes a sample."""
+        """Add the head's `position`, (3,) [m] in the world, at `stamp` [ns]. Returns whether a sample is complete."""
         if self._head is None:
             self._begin = stamp
         else:
@@ -115,7 +115,7 @@ class Summary:
         return self.stamp == stamp
 
     def add_torque(self, stamp: int, x: np.ndarray, torque: np.ndarray) -> bool:
-        """Add the yaw torque C3, (M,) [N m], at stations `x` (M,) [m] and `stamp` [ns]; likewise."""
+        """Add the yaw torque C3, (M,) [N m], at stations `x` (M,) [m] and `stamp` [ns]. Returns as `add_position`."""
         self._has_torque = True
         k = int(np.argmax(np.abs(torque)))
         now = Torque(float(torque[k]), float(x[k]), stamp)
@@ -130,7 +130,7 @@ class Summary:
         self._take_statuses()
 
     def add_status(self, stamp: int, state: str, values: dict[str, str]) -> bool:
-        """Add message and values of a status at `stamp` [ns]; whether they apply already."""
+        """Add message and values of a status at `stamp` [ns]. Returns whether they apply already."""
         self._statuses.append((stamp, state, values))
         self._statuses.sort(key=lambda status: status[0])
         del self._statuses[MOST_WAITING:]
@@ -165,7 +165,7 @@ class Summary:
         return "  \n".join(line for line in lines if line)
 
     def numbers(self) -> dict[str, float | str]:
-        """The values of the diagnostics, as numbers where they are some."""
+        """The values of the diagnostics, converted to numbers if possible."""
         found: dict[str, float | str] = {}
         for name, value in self.values.items():
             try:
@@ -194,7 +194,7 @@ def plain(name: str, longest: int = LONGEST_NAME) -> str:
 
 
 def _shown(key: str, value: str) -> str:
-    """Numbers to three digits; names, as of the accuracy, and other texts unchanged."""
+    """Numbers to three digits; other texts, such as the name of an accuracy, unchanged."""
     try:
         return plain(value) if key == "accuracy" else number(float(value))
     except ValueError:
@@ -210,7 +210,7 @@ def number(value: float) -> str:
 
 
 def quantity(value: float, unit: str) -> str:
-    """`value` [unit] with the prefix (none, milli, micro) that makes the number at least 1, if there is one."""
+    """`value` [unit] with the prefix (none, milli, micro) that makes the number at least 1, if one does."""
     prefix, size = next(
         (each for each in PREFIXES if abs(value) >= each[1]), PREFIXES[0] if value == 0 else PREFIXES[-1]
     )

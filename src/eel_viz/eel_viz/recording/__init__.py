@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Messages into Rerun recordings: where they go, what they hold, how they are read back."""
+"""Messages into Rerun recordings: destinations, content, and reading back."""

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where recordings go: base classes of the destinations, and of the streams that they open for each recording.
 
-Rerun does not report whether what is logged arrives: a disk may be full, a viewer may have stopped reading. After one
-failed write a file silently drops everything that follows. Logging to a viewer that does not read blocks for ever after
-some 300 MB, and so does closing that stream. Both faults show when the stream is flushed: it fails, or it times out.
+Rerun does not report whether logged data arrive: a disk may be full, a viewer may have stopped reading. After one
+failed write a file silently drops everything later. Logging to a viewer that does not read blocks for ever after some
+300 MB, and so does closing that stream. Both faults show when the stream is flushed: it fails, or it times out.
 """
 
 import contextlib
@@ -25,10 +25,10 @@ from eel_viz.views.blueprint import arrangement
 from eel_viz.views.views import Look
 
 APPLICATION = "eel"  # Rerun's application id
-SHORT = 5.0  # s: recordings that end before have not settled; a second blueprint would take 0.4 MB of the file
+SHORT = 5.0  # s: shorter recordings are not refitted: a second blueprint would take 0.4 MB of the file
 CLOSE_TIMEOUT = 3.0  # s for the last flush of a stream
-CHECK_PERIOD = 0.5  # s between two checks of a stream; a process that is killed loses no more of its file
-STALL_TIMEOUT = 2.0  # s without progress, after which a viewer is reported and a file is given up
+CHECK_PERIOD = 0.5  # s between two checks of a stream; a killed process loses no more of its file
+STALL_TIMEOUT = 2.0  # s without progress: then a viewer is reported, or a file is given up
 
 _detached: list[rr.RecordingStream | threading.Thread] = []
 
@@ -42,9 +42,9 @@ class Destination(ABC):
     live: a viewer shows the data as they come.
 
     Attributes:
-        incomplete: part of a recording is missing here.
+        incomplete: whether part of a recording is missing here.
         properties: of each recording: numbers and texts by group and name.
-        body: the swimmer's, of which tabs depend; None: not known yet.
+        body: the swimmer's, which decides the tabs; None: not known yet.
     """
 
     def __init__(
@@ -55,20 +55,20 @@ class Destination(ABC):
         self.incomplete = False
         self.properties: dict[str, dict[str, Any]] = {}
         self.body: Body | None = None
-        self._blueprint_sent = False  # sent once: later recordings keep the user's changes in the viewer
+        self._blueprint_sent = False  # later recordings keep the user's changes in the viewer
 
     @abstractmethod
     def open(self, number: int, name: str) -> "Delivery | None":
-        """The stream of recording `number` (1, 2, ...), called `name`; None if it cannot be opened now."""
+        """The stream of recording `number` (1, 2, ...), called `name`; None if it cannot be opened at present."""
 
     def make_stream(
         self, sink: rr.FileSink | rr.GrpcSink, name: str, batches: rr.ChunkBatcherConfig | None = None
     ) -> rr.RecordingStream:
-        """A stream to `sink` for a recording called `name`. batches: how Rerun collects data before it sends them."""
+        """A stream to `sink` for a recording called `name`. batches: how Rerun batches data before sending."""
         stream = rr.RecordingStream(APPLICATION, batcher_config=batches or rr.ChunkBatcherConfig.DEFAULT())
         stream.set_log_time_enabled(False)
         stream.set_sinks(sink, default_blueprint=self.blueprint())
-        if self.live and not self._blueprint_sent:  # viewers ignore a default blueprint that comes after the first data
+        if self.live and not self._blueprint_sent:  # viewers ignore a default blueprint after the first data
             stream.send_blueprint(self.blueprint(), make_active=True, make_default=True)
             self._blueprint_sent = True
         self.describe(stream, name)
@@ -81,21 +81,21 @@ class Destination(ABC):
             send_properties(stream, group, values)
 
     def blueprint(self, end: float = 0.0) -> rrb.Blueprint:
-        """The arrangements of a recording that ends at `end` [s]; 0: it has not ended."""
+        """The arrangements of a recording that ends at `end` [s]; 0: still running."""
         chosen = self.settings
         parts = {name: bool(self.body and getattr(self.body, name)) for name in ("fins", "joints")}
         look = Look(frames=chosen.frames, wake=chosen.wake, end=end, **parts)
         return arrangement(chosen.blueprint, live=self.live, comparison=bool(chosen.compare), look=look)
 
     def adopt_body(self, stream: rr.RecordingStream | None, body: Body) -> None:
-        """Take the body, of which tabs depend: a viewer of the open `stream` gets them at once, a file at its end."""
+        """Take the body, which decides the tabs. A viewer of the open `stream` gets them at once, a file at its end."""
         before, self.body = self.body, body
         changed = (body.fins, body.joints) != ((before.fins, before.joints) if before else ((), ()))
         if self.live and stream is not None and changed:
             stream.send_blueprint(self.blueprint(), make_active=True, make_default=True)
 
     def fit(self, stream: rr.RecordingStream, end: float) -> None:
-        """Fit tabs, axes, and what is repeated of a recording that ends at `end` [s]; one that is short stays."""
+        """Fit tabs, axes, and the repeated part to a recording that ends at `end` [s]; a short one is not changed."""
         has_parts = self.body is not None and bool(self.body.fins or self.body.joints)
         if not self.live and (end >= SHORT or has_parts):
             stream.send_blueprint(self.blueprint(end), make_active=False, make_default=True)
@@ -105,16 +105,16 @@ class Destination(ABC):
         return False
 
     def close(self) -> None:
-        """Close what outlives the recordings, such as a server."""
+        """Close resources that outlive the recordings, such as a server."""
         return
 
 
 class Delivery:
-    """An open `stream` of a `destination`. This one, which its caller owns, is not watched, and stays open.
+    """An open `stream` of a `destination`. In this class the caller owns it: it is not watched, and stays open.
 
     Attributes:
-        failed: the file can no longer be written.
-        disconnected: the viewer has ended.
+        failed: whether the file can no longer be written.
+        disconnected: whether the viewer has ended.
     """
 
     def __init__(self, destination: Destination, stream: rr.RecordingStream) -> None:
@@ -128,31 +128,31 @@ class Delivery:
         return not self.failed and not self.disconnected
 
     def check(self) -> None:
-        """Look for faults, at most once in `CHECK_PERIOD`."""
+        """Look for faults, at most once per `CHECK_PERIOD`."""
         now = time.monotonic()
         if not self.failed and not self.disconnected and now - self._last_check >= CHECK_PERIOD:
             self.find_faults(now)
             self._last_check = time.monotonic()
 
     def find_faults(self, now: float) -> None:
-        """Flush the stream at `now` [s, steady clock], and take note of its state."""
+        """Flush the stream at `now` [s, steady clock], and note its state."""
         return
 
     def close(self, end: float = 0.0) -> None:
-        """Flush and close the stream of a run that ends at `end` [s], which completes a file."""
+        """Flush and close the stream of a run that ends at `end` [s]. This completes a file."""
         self.destination.fit(self.stream, end)
         self.stream.flush()
 
     def keep_older(self) -> None:
-        """Nothing has come: leave an older file as it was."""
+        """No data has come: leave an older file as it was."""
         return
 
     def discard(self) -> None:
-        """After an error: discard what is not complete."""
+        """After an error: discard incomplete output."""
         return
 
     def flushed(self, timeout: float) -> bool:
-        """Whether all data arrive within a `timeout` [s]. `RuntimeError` where they never will."""
+        """Whether all data arrive within a `timeout` [s]. `RuntimeError` if they never will."""
         try:
             self.stream.flush(timeout_sec=timeout)
         except RuntimeError as error:
@@ -163,18 +163,18 @@ class Delivery:
 
 
 def send_properties(stream: rr.RecordingStream, group: str, values: dict[str, Any]) -> None:
-    """Send properties of a recording: numbers, texts and truths, or rows of them, by name."""
+    """Send properties of a recording: numbers, texts and booleans, or rows of them, by name."""
     stream.send_property(
         group, [rr.DescribedComponentBatch(Value(each), rr.ComponentDescriptor(name)) for name, each in values.items()]
     )
 
 
 class Value:
-    """A component of a type of its own: in `rr.AnyValues`, a name has the same type all through a process."""
+    """A component with its own type: in `rr.AnyValues`, a name keeps one type throughout a process."""
 
     def __init__(self, value: Any) -> None:
         row = [value] if isinstance(value, (str, bytes)) or not np.iterable(value) else list(value)
-        self._row = [float(each) if type(each) is int else each for each in row]  # files of a sweep have equal types
+        self._row = [float(each) if type(each) is int else each for each in row]  # equal types in a sweep's files
 
     def as_arrow_array(self) -> pa.Array:
         """Its row."""
@@ -182,12 +182,12 @@ class Value:
 
 
 def close_stream(stream: rr.RecordingStream) -> None:
-    """Flush and close the stream, which completes a file; each within `CLOSE_TIMEOUT`.
+    """Flush and close the stream, each within `CLOSE_TIMEOUT`. This completes a file.
 
-    Rerun may wait without end for the thread of a file that has ended with a write error. Such a stream is abandoned,
-    and Rerun's flush of all streams at the end of the process, which would wait for it too, is left out.
+    Rerun may wait without end for the thread of a file that ended with a write error. Such a stream is abandoned.
+    Rerun's flush of all streams at the end of the process, which would wait for it too, is then skipped.
     """
-    with contextlib.suppress(RuntimeError):  # the viewer has gone; a file is complete all the same
+    with contextlib.suppress(RuntimeError):  # the viewer has gone; a file is complete anyway
         stream.flush(timeout_sec=CLOSE_TIMEOUT)
     closing = threading.Thread(target=stream.disconnect, name="close recording", daemon=True)
     closing.start()

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dispatches one swimmer's messages to the loggers, whatever their source: the network, a bag, a run of the library.
+"""Dispatches one swimmer's messages to the loggers, from any source: the network, a bag, a run of the library.
 
 While a run stands at its start, the dynamics node repeats sample 0. So a sample of stamp 0 is held back until the next
-one of its topic comes, and of several only the last is logged and counted. What is drawn takes its size from the body,
-whose message may come after the first samples: these, and what comes after them, wait for it a while.
+one of its topic comes; of several only the last is logged and counted. The size of drawings comes from the body, whose
+message may come after the first samples. Until it comes, these and later messages wait, for a limited time.
 A message is any object with the fields of its type. A message that cannot be shown is reported once and left out.
 """
 
@@ -21,11 +21,11 @@ from eel_viz.messages import BadMessage
 from eel_viz.recording.destination import LogFunction
 from eel_viz.recording.recordings import Recordings
 
-COARSE = 4  # stations, below which a backbone says little about the shape
-BODY_LIMIT = 2.0  # s after the first sample within which the body is expected
-MOST_WAITING = 3000  # messages that wait for the body
+COARSE = 4  # stations: fewer say little about the shape
+BODY_LIMIT = 2.0  # s after the first sample: the body must have come by then
+MOST_WAITING = 3000  # most messages that wait for the body
 
-READERS: dict[str, Callable[[Any], Any]] = {  # what is shown: what methods of the topic's name are given of a message
+READERS: dict[str, Callable[[Any], Any]] = {  # topic: from a message to the loggers' arguments
     "body": readers.read_body,
     "curvature_law": attrgetter("name"),
     "goal": readers.read_path,
@@ -49,7 +49,7 @@ class Dispatcher:
     """Checks each message and passes it to the loggers of its recording.
 
     namespace: the swimmer's; diagnostics of other namespaces are ignored. log_warning: writes one line to the user.
-    compared: what the topics of a swimmer begin with that is compared; None for the swimmer that the recording shows.
+    compared: prefix of the topics of a compared swimmer; None for the swimmer that the recording shows.
 
     Attributes:
         received: number of messages by topic; a repeated sample 0 counts once.
@@ -62,15 +62,15 @@ class Dispatcher:
         self._namespace, self._compared = namespace.rstrip("/"), compared
         self.received: Counter[str] = Counter()
         self._reported: set[Hashable] = set()  # faults
-        self._start: dict[str, tuple[Any, bool, float]] = {}  # topic: sample 0, whether from another publisher, sent
+        self._start: dict[str, tuple[Any, bool, float]] = {}  # topic: sample 0, whether from a new publisher, time sent
         self._stations: dict[str, int] = {}  # number of stations by topic
         self._first_sample: float | None = None  # s
-        self._waiting: deque[tuple[str, Any, bool, float]] = deque()  # for the body; as `_dispatch` takes them
+        self._waiting: deque[tuple[str, Any, bool, float]] = deque()  # for the body; arguments of `_dispatch`
 
     def dispatch(self, topic: str, message: Any, *, new_publisher: bool = False, sent: float = math.inf) -> None:
         """Log one message of `topic`, a name in `READERS`.
 
-        new_publisher: whether it is the first one from another publisher. sent: when [ns, wall time], if it is known.
+        new_publisher: whether it is the first from a new publisher. sent: time of sending [ns, wall time], if known.
         """
         if topic in SAMPLED:
             self._first_sample = self._first_sample or time.monotonic()
@@ -89,13 +89,13 @@ class Dispatcher:
         self._log(topic, message, new_publisher, sent)
 
     def poll(self) -> None:
-        """If the body has not come in time, log what waits for it, and warn."""
+        """If the body is overdue, log the waiting messages, and warn."""
         if not self._awaits_body():
             self._dispatch_waiting()
             self._check_body()
 
     def finish(self) -> str:
-        """Log what is held back; returns the received topics with their numbers of messages as text."""
+        """Log held-back samples. Returns the received topics with their numbers of messages as text."""
         self._dispatch_waiting()
         for topic in list(self._start):
             self._log_start(topic)
@@ -103,18 +103,18 @@ class Dispatcher:
         return ", ".join(f"{topic} {count}" for topic, count in self.received.items()) or "nothing"
 
     def _awaits_body(self) -> bool:
-        """Whether messages wait for the body: from the first sample on, for a while."""
+        """Whether messages wait for the body: for a while after the first sample."""
         if self.received["body"] or self._first_sample is None:
             return False
         return time.monotonic() - self._first_sample < BODY_LIMIT
 
     def _dispatch_waiting(self, but: int = 0) -> None:
-        """Dispatch what waits, in its order, but for the newest so many."""
+        """Dispatch the waiting messages in order, except the newest `but`."""
         while len(self._waiting) > but:
             self._dispatch(*self._waiting.popleft())
 
     def _log_start(self, topic: str) -> None:
-        """Log the sample 0 of `topic` that is held back."""
+        """Log the held-back sample 0 of `topic`."""
         if topic in self._start:
             self._log(topic, *self._start.pop(topic))
 
@@ -124,7 +124,7 @@ class Dispatcher:
             try:
                 stamp: Any = readers.stamp_of(message) if topic in SAMPLED or topic == "diagnostics" else None
                 value = READERS[topic](message)
-            except AttributeError as error:  # from a bag of an older version
+            except AttributeError as error:  # from a bag of another version
                 raise BadMessage("type", f"is another version's: {error}") from error
             values = value if isinstance(value, tuple) else (value,)
             if topic in SAMPLED:

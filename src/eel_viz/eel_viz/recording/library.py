@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Records a run of the library to Rerun, without ROS; called by `Run.to_rerun`.
+"""Records a run of the library to Rerun, without ROS. `Run.to_rerun` calls it.
 
-A run is a sequence of messages here: pairs of a topic and a plain object with the message's fields.
+Here a run is a sequence of messages: pairs of a topic and a plain object with the message's fields.
 """
 
 import os
@@ -20,7 +20,7 @@ from eel_viz.recording.merged_messages import Messages, record_messages
 from eel_viz.recording.recording_file import FileDestination
 from eel_viz.settings import Settings
 
-NAMESPACE = ""  # of a run of the library
+NAMESPACE = ""  # namespace of a run of the library
 
 
 class CallerStream(Destination):
@@ -44,11 +44,11 @@ def to_rerun(
     properties: dict[str, dict[str, Any]] | None = None,
     **settings: Any,
 ) -> None:
-    """Record one run, or two that are compared, to `target`: a stream, or a file, which is replaced if it exists.
+    """Record one run, or two for comparison, to `target`: a stream, or a file, which is replaced if it exists.
 
     properties: of the recording, numbers and texts by group and name. settings: those of the visualiser, such as
-    blueprint or skin_rate. Data that cannot be shown give a warning.
-    `ValueError` for a bad setting; `OSError` if the file cannot be written completely, an older file then stays.
+    blueprint or skin_rate. Data that cannot be shown cause a warning.
+    `ValueError` for a bad setting; `OSError` if the file cannot be completed, and an older file then stays.
     """
 
     def log_warning(text: str) -> None:

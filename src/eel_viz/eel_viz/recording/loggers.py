@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Logs the swimmer's messages to one Rerun recording, called with the message's own stamp.
+"""Logs the swimmer's messages to one Rerun recording, with their own stamps.
 
-Each kind of drawing is a class with a method for each topic that it draws, called like the topic. A new curve or
+Each kind of drawing is a class with a method for each topic that it draws, named after the topic. A new curve or
 drawing is logged there under a path of entities.py, and an arrangement of views/blueprint.py shows it.
 
 Geometry is drawn in single precision at one rate. Scalars and profiles are logged in double precision at another rate
-(see `Rates`). The skin takes its shape from the backbone and its colour from the torque of the same stamp, in any
-order. Rows are sent in batches (see `batched_stream`): call `send_due` regularly, and `flush` at the end.
+(see `Rates`). The skin combines the backbone and the torque of the same stamp, in any order. Rows are sent in batches
+(see `batched_stream`): call `send_due` regularly, and `flush` at the end.
 """
 
 from typing import Any
@@ -33,17 +33,17 @@ from eel_viz.settings import Settings
 class Loggers:
     """Logs one run to one `recording`; `name` is the run's.
 
-    With `settings.compare`, `log` draws the compared run too, over this one.
+    With `settings.compare`, `log` also draws the compared run over this one.
     """
 
     def __init__(self, recording: rr.RecordingStream, settings: Settings, rates: Rates, name: str = "eel") -> None:
         self._stream = stream = BatchedStream(recording, rates)
         self._text = RunText(recording, stream, settings)
-        torque = Limit(settings.colour_limit, grows=not settings.colour_limit)  # N m: of the colours of C3
+        torque = Limit(settings.colour_limit, grows=not settings.colour_limit)  # N m: for the colours of C3
         this: list[object] = [self._text, Numbers(stream), Series(stream), ProfilePlots(stream, settings, torque)]
         this += [SwimmerScene(stream, torque), Track(stream), Arrows(stream, settings), Course(stream, settings.reach)]
         this.append(Parts(stream))
-        self._drawers: tuple[list[object], list[object]] = this, []  # what draws this run, the compared one
+        self._drawers: tuple[list[object], list[object]] = this, []  # drawers of this run, and of the compared one
         if settings.compare:
             names = (name, settings.compare.strip("/") or "eel")
             comparison = Comparison(stream, names=names, limit=settings.torque_limit)
@@ -51,7 +51,7 @@ class Loggers:
             self._drawers[1].append(comparison.other)
 
     def log(self, topic: str, stamp: int, *values: Any, compared: bool = False) -> None:
-        """Log the `values` of `topic` at `stamp` [ns] by the methods of that name; compared: of the compared run."""
+        """Log the `values` of `topic` at `stamp` [ns] by the methods of that name. compared: for the compared run."""
         for drawer in self._drawers[compared]:
             draw = getattr(drawer, topic, None)
             if draw is not None:
@@ -61,20 +61,20 @@ class Loggers:
         self._stream.send_due()
 
     def flush(self) -> None:
-        """Send all rows, and what the diagnostics said last, before the recording is closed."""
+        """Send all rows, and the last diagnostics, before the recording is closed."""
         self._stream.flush()
         self._text.finish()
 
 
 class Numbers:
-    """Logs arrays of messages as they are, as components, by the methods of topics; stations when they change."""
+    """Logs arrays of messages unchanged as components, through the methods of topics; stations when they change."""
 
     def __init__(self, stream: BatchedStream) -> None:
         self._stream = stream
         self._stations: dict[str, np.ndarray] = {}  # by entity
 
     def body(self, stamp: int, body: Body) -> None:
-        """Log the geometry, valid at all times."""
+        """Log the geometry, for all times."""
         values = {name: getattr(body, name) for name in ("length", "mass", "x", "half_width", "half_height")}
         self._stream.log_static(entities.BODY_NUMBERS, rr.DynamicArchetype("BodyGeometry", components=values))
 
@@ -90,7 +90,7 @@ class Numbers:
         self._log(stamp, entities.CURVATURE_NUMBERS, "Curvature", curvature.x, curvature.values)
 
     def hydrodynamic_load(self, stamp: int, load: Load) -> None:
-        """Log the fluid's force on the body, and what the tail leaves in the wake."""
+        """Log the fluid's force on the body, and the momentum that the tail gives to the wake."""
         values = {**load.profiles.values, "tail_force": load.tail, "nose_force": load.nose}
         if load.wake is not None:
             values["wake_momentum_rate"] = load.wake
@@ -99,7 +99,7 @@ class Numbers:
         self._log(stamp, entities.LOAD_NUMBERS, "HydrodynamicLoad", load.profiles.x, values)
 
     def _log(self, stamp: int, path: str, name: str, x: np.ndarray | None, values: dict[str, np.ndarray]) -> None:
-        """Log `values` as components of the archetype `name`, where they are due."""
+        """Log `values` as components of the archetype `name`, if due."""
         if self._stream.number_due(path, stamp):
             known = self._stations.get(path)
             if x is not None and (known is None or not same(known, x)):

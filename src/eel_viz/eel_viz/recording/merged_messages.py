@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Records messages that do not come from the network: of one swimmer, or of two that are compared."""
+"""Records messages from other sources than the network: of one swimmer, or of two for comparison."""
 
 import heapq
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -61,7 +61,7 @@ def record_messages(
 
 
 def merged_by_time(sources: Sequence[Messages]) -> Iterator[tuple[int, str, Any]]:
-    """All messages, merged by simulation time; each source keeps its order. Yields source index, topic, message."""
+    """All messages, merged by simulation time. Each source keeps its order. Yields source index, topic, message."""
 
     def timed(index: int, source: Messages) -> Iterator[tuple[int, int, str, Any]]:
         time = -1  # ns

@@ -6,7 +6,7 @@
     columns["torque_3"]             # (T, 51) N m
 
 Names of components are those after the colon in Rerun (`Scalars:scalars` is `scalars`). The format has no checksums:
-damage may give other numbers, and may end the process within Rerun.
+damage may change numbers, or end the process inside Rerun.
 """
 
 import os
@@ -36,15 +36,15 @@ class Columns:
         return self.stamps / 1e9
 
     def __getitem__(self, name: str) -> Any:
-        """All values of a component, one row per stamp that has it; rows of different shapes as a list of arrays."""
+        """All values of a component, one row per stamp that has it. Rows of different shapes are a list of arrays."""
         rows = [np.asarray(row) for row in self.values[name]]
         return np.stack(rows) if len({row.shape for row in rows}) == 1 else rows
 
 
 def read(path: str | os.PathLike[str], entity: str, *, static: bool = False) -> Columns:
-    """All rows of `entity`, ordered by time; with `static` the row that is valid at all times.
+    """All rows of `entity`, ordered by time. static: the row that holds at all times.
 
-    `ValueError` if there is none, or if the file is no recording.
+    `ValueError` if there are none, or if the file is no recording.
     """
     from rerun.chunk import RrdReader
 
@@ -52,7 +52,7 @@ def read(path: str | os.PathLike[str], entity: str, *, static: bool = False) -> 
     stamps: set[int] = set()
     with reading(f"recording {shown(str(path))}"), complete_file(path) as readable, warnings.catch_warnings():
         empty = readable.stat().st_size <= HEADER_SIZE
-        warnings.filterwarnings("ignore", message="RRD file has no footer")  # a file that is still being written
+        warnings.filterwarnings("ignore", message="RRD file has no footer")  # the file is still being written
         chunks = [] if empty else list(RrdReader(str(readable)).stream().filter(content=entity))
     for chunk in chunks:
         if chunk.is_static != static or str(chunk.entity_path).strip("/") != entity.strip("/"):

@@ -22,20 +22,20 @@ from eel_viz.recording.destination import (
 from eel_viz.recording.rrd_frames import cut_to_whole_messages, is_complete
 from eel_viz.settings import Settings
 
-FILE_TICK = 0.6  # s: a process that is killed loses no more; each batch of an entity takes some 700 bytes of the file
-AGAIN_TICK = 60.0  # s: where the data can be recorded again; few large batches make a catalogue of files open fast
-ROOM = 2**18  # bytes that must be free: Rerun writes 170 kB at once, and may block for ever if that fails
+FILE_TICK = 0.6  # s: most that a killed process loses; each batch of an entity takes some 700 bytes of the file
+AGAIN_TICK = 60.0  # s: for data that can be recorded again; few large batches open fast in a catalogue
+ROOM = 2**18  # bytes of free space needed: Rerun writes 170 kB at a time, and may block for ever if that fails
 REMINDER = 30.0  # s between two warnings that nothing is saved
 FILE_FLUSH_TIMEOUT = 1.0  # s for one flush to a file during a run
 
 
 class FileDestination(Destination):
-    """A .rrd file; the second recording and later ones get a number before the suffix.
+    """A .rrd file. The second recording and later ones get a number before the suffix.
 
-    A recording is written to `run.part.rrd` and renamed to `run.rrd` when it is complete; an older file stays until
-    then, and one that has appeared since the start stays for good.
+    A recording is written to `run.part.rrd` and renamed to `run.rrd` when it is complete. An older file stays until
+    then. A file that has appeared since the start is kept for good.
 
-    retry_from: from this recording on, a file that cannot be written gives a warning and is retried; before, it is a
+    retry_from: from this recording on, a file that cannot be written causes a warning and is retried; before, a
     ValueError. None: the data can be recorded again, so it is always a ValueError, and a file that cannot be completed
     is removed, with the error `NotWritten`.
     """
@@ -57,7 +57,7 @@ class FileDestination(Destination):
         return self._first if number == 1 else numbered(self._first, number)
 
     def open(self, number: int, name: str) -> Delivery | None:
-        """The stream of recording `number`; None if it cannot be written now."""
+        """The stream of recording `number`; None if it cannot be written at present."""
         path = self.path(number)
         try:
             draft = Draft(path, self._began)
@@ -94,18 +94,18 @@ class FileDestination(Destination):
 
 
 class FileDelivery(Delivery):
-    """A stream to the file of a `draft`, which is given up where it can no longer be written: what there is can be read
-    where partial files are kept, else it is removed."""
+    """A stream to the file of a `draft`. If the file can no longer be written, it is given up: its readable part is
+    kept where partial files are kept, otherwise it is removed."""
 
     destination: FileDestination
 
     def __init__(self, destination: FileDestination, stream: rr.RecordingStream, draft: Draft) -> None:
         super().__init__(destination, stream)
         self._draft, self._discarded = draft, False
-        self._last_growth = (0, self._last_check)  # bytes, s: size of the file, and when it was first seen
+        self._last_growth = (0, self._last_check)  # bytes, s: size of the file, and the time it was first seen
 
     def find_faults(self, now: float) -> None:
-        """Give the file up if it has not grown for `STALL_TIMEOUT`: a slow disk still grows it."""
+        """Give up the file if it has not grown for `STALL_TIMEOUT`. On a slow disk it still grows."""
         if self._arrived() or self.failed:
             return
         size = self._draft.path.stat().st_size if self._draft.path.exists() else 0
@@ -115,7 +115,7 @@ class FileDelivery(Delivery):
             self._fail()
 
     def close(self, end: float = 0.0) -> None:
-        """Close the stream and rename its file. A write error of the sink at the end shows only now."""
+        """Close the stream and rename its file. A write error of the sink at the end shows only here."""
         if not self.failed:
             self.destination.fit(self.stream, end)
             self._arrived()
@@ -179,14 +179,14 @@ def _problem(path: pathlib.Path, reason: str) -> str:
 
 
 def new_file() -> pathlib.Path:
-    """A path in the working folder, named after the time and this process, so that it is unique."""
+    """A path in the working folder, made unique by the time and this process."""
     return pathlib.Path(f"eel-{datetime.datetime.now():%Y%m%d-%H%M%S}-{os.getpid()}.rrd")
 
 
 def space_error(path: pathlib.Path, size: int) -> str:
-    """The error when `size` more bytes are allocated at the file's end; empty if there is room.
+    """The error of allocating `size` more bytes at the file's end; empty if there is room.
 
-    The allocated bytes are removed again.
+    The allocated bytes are released again.
     """
     try:
         before = path.stat().st_size
@@ -201,5 +201,5 @@ def space_error(path: pathlib.Path, size: int) -> str:
 
 
 def write_error(path: pathlib.Path) -> str:
-    """Why the last write to the file failed."""
+    """The reason why the last write to the file failed."""
     return space_error(path, 65536) or "an earlier attempt failed"

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The recordings of one visualiser: a stamp that goes back begins the next recording.
+"""The recordings of one visualiser. A stamp that goes back begins the next recording.
 
-A reset reaches the topics one by one, in any order. So each topic has its own current recording, and a recording is
-closed once no topic uses it any more, and a while after the next one began: the first message of a topic may come later
-than the others' reset, and when it was sent tells its recording. Each new recording gets the body, the law, the goal
-and the last diagnostics.
+A reset reaches the topics one by one, in any order. So each topic has its own current recording. A recording is closed
+when no topic uses it any more, and some time after the next one began: a topic's first message may come later than the
+others' reset, and its time of sending decides its recording. Each new recording gets the body, the law, the goal and
+the last diagnostics.
 """
 
 import math
@@ -19,16 +19,16 @@ from eel_viz.recording.loggers import Loggers
 
 RETRY = 2.0  # s of wall time between two attempts to open a destination
 WALL_TIME = 10**17  # ns: later stamps are wall time, not simulation time
-MAXIMUM_RECORDINGS, MINUTE = 10, 60.0  # new recordings within so many seconds; each takes memory, and time to close
-LATE = 10  # polls after the next recording begins, within which first messages of a topic may come for the one before
-# it: a second of a node or more, but for those in which its process stands still
-RESETS, SPAN = 3, 10.0  # so many resets within so many seconds, with several publishers: not a reset
+MAXIMUM_RECORDINGS, MINUTE = 10, 60.0  # most new recordings in so many seconds; each takes memory, and time to close
+LATE = 10  # polls after the next recording begins: until then a topic's first message may belong to the previous one
+# This is at least a second of a node, not counting times when its process stands still.
+RESETS, SPAN = 3, 10.0  # so many resets in so many seconds, with several publishers, are none
 
 
 class Recording:
-    """One recording: loggers and stream of each destination that is open, by its index.
+    """One recording: loggers and stream of each open destination, by its index.
 
-    began: what was sent from then on belongs to it [ns, wall time]. polls: how often it has been polled.
+    began: messages sent from then on belong to it [ns, wall time]. polls: number of polls so far.
     """
 
     def __init__(self, number: int, began: float) -> None:
@@ -48,13 +48,14 @@ class Recording:
         return any(delivery.failed for _, delivery in self.opened.values())
 
     def drop(self, index: int) -> None:
-        """Drop the stream of destination `index`, whose receiver has gone. Closing it can take seconds: in a thread."""
+        """Drop the stream of destination `index`, whose receiver has gone. A thread closes it, as that takes
+        seconds."""
         if index in self.opened:
             _, delivery = self.opened.pop(index)
             threading.Thread(target=delivery.close, daemon=True).start()
 
     def poll(self) -> None:
-        """Send rows that are due, check their delivery, and drop viewers that have gone."""
+        """Send due rows, check their delivery, and drop viewers that have gone."""
         self.polls += 1
         for index, (loggers, delivery) in list(self.opened.items()):
             if delivery.accepts_data:
@@ -74,10 +75,10 @@ class Recording:
 class Recordings:
     """Finds the loggers for each message, and begins and closes recordings.
 
-    `has_several_publishers(topic)`: whether more than one publisher sends on `topic`; their stamps go back and forth.
+    `has_several_publishers(topic)`: whether more than one publisher sends on `topic`: then stamps go back and forth.
 
     Attributes:
-        incomplete: part of a run is missing in a file.
+        incomplete: whether part of a run is missing in a file.
     """
 
     def __init__(
@@ -89,11 +90,11 @@ class Recordings:
     ) -> None:
         self._destinations, self._name, self._log_warning = destinations, name, log_warning
         self._has_several_publishers = has_several_publishers
-        # topic: number of its recording, last stamp [ns], when it was sent [ns of wall time]
+        # topic: number of its recording, last stamp [ns], time of sending [ns, wall time]
         self._position: dict[str, tuple[int, int, float]] = {}
-        self._lasting: dict[tuple[str, bool], tuple[Any, ...]] = {}  # topic, whether of the compared run: last values
+        self._lasting: dict[tuple[str, bool], tuple[Any, ...]] = {}  # (topic, whether of the compared run): last values
         self._resets: deque[float] = deque(maxlen=RESETS)
-        self._begun: deque[float] = deque(maxlen=MAXIMUM_RECORDINGS)  # s: when each of the last recordings began
+        self._begun: deque[float] = deque(maxlen=MAXIMUM_RECORDINGS)  # s: start times of the last recordings
         self._limit_reported = self._disorder_reported = False
         self._last_retry = time.monotonic()
         self.incomplete = False
@@ -110,18 +111,18 @@ class Recordings:
         new_publisher: bool = False,
         sent: float = math.inf,
     ) -> None:
-        """Log the `values` of `topic` at `stamp` [ns], of this run or of one whose topics begin with `compared`.
+        """Log the `values` of `topic` at `stamp` [ns], of this run or of one whose topics have the prefix `compared`.
 
-        sent: when [ns, wall time]; else a topic begins with the newest recording.
+        sent: time of sending [ns, wall time]; without it a topic begins with the newest recording.
         """
         known_as = topic if compared is None else f"{compared}/{topic}"
         for loggers in self._loggers_for(known_as, stamp, new_publisher, sent):
             loggers.log(topic, stamp, *values, compared=compared is not None)
 
     def log_lasting(self, topic: str, *values: Any, stamp: int | None = None, compared: bool = False) -> None:
-        """Log what is valid until it comes again, now and in later recordings.
+        """Log values that hold until they come again, in this and later recordings.
 
-        stamp: its own [ns]; None, or one of wall time: the newest of the recording.
+        stamp: their own [ns]; None, or a wall time: the newest stamp of the recording.
         """
         self._lasting[topic, compared] = values
         at = self._newest.latest if stamp is None or stamp >= WALL_TIME else stamp
@@ -133,7 +134,7 @@ class Recordings:
             loggers.log(topic, at, *values, compared=compared)
 
     def poll(self) -> None:
-        """Send rows that are due, close what is over, check the delivery, and retry destinations that were not open."""
+        """Send due rows, close ended recordings, check the delivery, and retry destinations that are not open."""
         self._close_before(min((number for number, *_ in self._position.values()), default=0), LATE)
         for recording in self._recordings.values():
             recording.poll()
@@ -161,13 +162,13 @@ class Recordings:
             destination.close()
 
     def discard(self) -> None:
-        """After an error: discard what is not complete."""
+        """After an error: discard incomplete output."""
         for recording in self._recordings.values():
             for _, delivery in recording.opened.values():
                 delivery.discard()
 
     def _loggers_for(self, topic: str, stamp: int, new_publisher: bool, sent: float) -> list[Loggers]:
-        """The loggers for a message of `topic` with `stamp` [ns]; `new_publisher`: its first from another publisher."""
+        """The loggers for a message of `topic` with `stamp` [ns]. new_publisher: it is a new publisher's first."""
         number, last, before = self._position.get(topic, (self._at(sent), stamp, sent))
         if stamp < last or new_publisher:
             if self._is_disorder(topic):
@@ -180,7 +181,7 @@ class Recordings:
         return recording.loggers
 
     def _at(self, sent: float) -> int:
-        """Number of the recording for what was `sent` then [ns, wall time]: the oldest one, if it is older than all."""
+        """The number of the recording for a message `sent` at this time [ns, wall time], or else the oldest."""
         begun = [number for number, recording in self._recordings.items() if recording.began <= sent]
         return max(begun, default=min(self._recordings))
 
@@ -189,7 +190,7 @@ class Recordings:
         return self._recordings[max(self._recordings)]
 
     def _may_begin(self, reason: str, began: float) -> bool:
-        """Begin the next recording, unless too many have begun recently; whether it began."""
+        """Begin the next recording, unless too many have begun recently. Returns whether it began."""
         now = time.monotonic()
         if len(self._begun) == MAXIMUM_RECORDINGS and now - self._begun[0] < MINUTE:
             if not self._limit_reported:
@@ -211,7 +212,7 @@ class Recordings:
         self._recordings[number] = recording
 
     def _open_missing(self, recording: Recording) -> None:
-        """Open the destinations that are not open, and log what is valid at all times."""
+        """Open the destinations that are not open, and log the data that hold at all times."""
         for index, destination in enumerate(self._destinations):
             if index in recording.opened:
                 continue
@@ -225,7 +226,7 @@ class Recordings:
                 loggers.log(topic, recording.latest, *values, compared=compared)
 
     def _close_before(self, number: int, late: int = 0) -> None:
-        """Close the recordings before `number` whose next one has been polled at least `late` times."""
+        """Close the recordings before `number` whose successor has been polled at least `late` times."""
         for each in [each for each in self._recordings if each < number]:
             following = self._recordings.get(each + 1)
             if following and following.polls < late:
@@ -234,10 +235,10 @@ class Recordings:
             self.incomplete |= self._recordings.pop(each).failed
 
     def _is_disorder(self, topic: str) -> bool:
-        """Whether stamps go back because several publishers send on `topic`, not because of a reset."""
+        """Whether stamps go back because of several publishers on `topic`, not because of a reset."""
         now = time.monotonic()
         if self._position[topic][0] < self._newest.number:
-            return False  # another topic has seen this reset already
+            return False  # this reset has been seen on another topic
         frequent = len(self._resets) == RESETS and now - self._resets[0] < SPAN
         if frequent and self._has_several_publishers(topic):
             if not self._disorder_reported:
@@ -251,7 +252,7 @@ class Recordings:
 
 
 def _reason(topic: str, last: int, stamp: int) -> str:
-    """Why a message with `stamp` [ns] begins a new recording after the one with stamp `last` [ns]."""
+    """The reason why a message with `stamp` [ns] begins a new recording after stamp `last` [ns]."""
     if stamp < last:
         return f"stamps of {topic} went back from {last / 1e9:g} s to {stamp / 1e9:g} s"
     return f"another node publishes {topic} from {stamp / 1e9:g} s on"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The framing of an .rrd file: finds the complete messages of a file that was cut off within a message.
+"""The framing of an .rrd file: finds the complete messages of a file that is cut off.
 
-A file begins with 12 bytes. Each message is its kind and its length (two little-endian 64-bit numbers), then its
+A file begins with 12 bytes. Each message has its kind and its length (two little-endian 64-bit numbers), then its
 content. A complete file ends with a footer after the last message (Rerun 0.41, `re_log_encoding`).
 """
 
@@ -16,7 +16,7 @@ from eel_common.files.input_file import InputFile
 
 HEADER_SIZE, MESSAGE_HEADER = 12, struct.Struct("<QQ")  # bytes
 BLOCK = 2**20  # bytes copied at once
-FOOTER, FOOTER_PLACE = b"RRF2FOOT", 12  # and how many bytes before the end it begins
+FOOTER, FOOTER_PLACE = b"RRF2FOOT", 12  # and its distance from the file's end [bytes]
 
 
 def is_complete(path: str | os.PathLike[str]) -> bool:
@@ -36,14 +36,14 @@ def end_of_whole_messages(path: str | os.PathLike[str]) -> int:
         while end + MESSAGE_HEADER.size <= size:
             file.seek(end)
             _, length = MESSAGE_HEADER.unpack(file.read(MESSAGE_HEADER.size))
-            if not length or end + MESSAGE_HEADER.size + length > size:  # zeros are left where a machine lost its power
+            if not length or end + MESSAGE_HEADER.size + length > size:  # a machine that lost its power leaves zeros
                 break
             end += MESSAGE_HEADER.size + length
     return end
 
 
 def cut_to_whole_messages(path: str | os.PathLike[str]) -> int:
-    """Truncate the file after its last complete message; returns the new size [bytes]."""
+    """Truncate the file after its last complete message. Returns the new size [bytes]."""
     end = end_of_whole_messages(path)
     if end < os.path.getsize(path):
         os.truncate(path, end)
@@ -52,9 +52,9 @@ def cut_to_whole_messages(path: str | os.PathLike[str]) -> int:
 
 @contextlib.contextmanager
 def complete_file(path: str | os.PathLike[str]) -> Iterator[pathlib.Path]:
-    """The file if it is complete, else a temporary copy of its complete messages.
+    """The file if it is complete, otherwise a temporary copy of its complete messages.
 
-    A copy, because an incomplete file may still be growing. `ValueError` where there is no regular file.
+    It is a copy because an incomplete file may still be growing. `ValueError` if there is no regular file.
     """
     path = pathlib.Path(path)
     InputFile(path).close()

@@ -13,12 +13,12 @@ from eel_viz.recording.destination import send_properties
 from eel_viz.settings import Settings
 
 SHORT = reprlib.Repr()
-SHORT.maxstring = 220  # characters of a law's name, which is not checked before
-LEVELS = ("INFO", "WARN", "ERROR", "WARN")  # of a DiagnosticStatus: OK, WARN, ERROR, STALE
+SHORT.maxstring = 220  # characters of a law's name, which is unchecked
+LEVELS = ("INFO", "WARN", "ERROR", "WARN")  # for the levels of a DiagnosticStatus: OK, WARN, ERROR, STALE
 
 
 class RunText(Summary):
-    """Logs to `stream`, by the methods of topics, and sends properties to its `recording`."""
+    """Logs to `stream`, through the methods of topics, and sends properties to its `recording`."""
 
     def __init__(self, recording: rr.RecordingStream, stream: BatchedStream, settings: Settings) -> None:
         super().__init__()
@@ -47,7 +47,7 @@ class RunText(Summary):
         self._log_event(stamp, f"law {SHORT.repr(name)} published", "INFO")
 
     def diagnostics(self, stamp: int, statuses: list[Status]) -> None:
-        """Log each status whose level or message has changed; the values go into the summary."""
+        """Log each status whose level or message has changed. The values go into the summary."""
         for status in statuses:
             if self.add_status(stamp, status.message, status.values):
                 self._write()
@@ -56,7 +56,7 @@ class RunText(Summary):
                 self._log_event(stamp, f"{status.name}: {status.message}", LEVELS[min(status.level, len(LEVELS) - 1)])
 
     def finish(self) -> None:
-        """Send what the diagnostics said last, before the recording is closed."""
+        """Send the last diagnostics, before the recording is closed."""
         if self.values:
             send_properties(self._recording, "diagnostics", self.numbers())
 
@@ -77,7 +77,7 @@ class RunText(Summary):
 
 
 def look_text(settings: Settings, body: Body | None = None) -> str:
-    """Markdown: what to look at, a sentence each, and the scales of the arrows; with what `body` has of parts."""
+    """Markdown: what to look at, one sentence each, with the scales of the arrows and the parts that `body` has."""
     scale = f"up to {settings.colour_limit:g} N m" if settings.colour_limit else "of the last 3 s"
     lines = [
         "Eyes show its head, the white arrow where it moves.",

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The destinations of a recording: a file, a running viewer, or a server that any viewer can connect to.
 
-The server runs in this process, and the streams of the recordings are its clients: nothing blocks without a viewer,
+The server runs in this process, and the streams of the recordings are its clients. So nothing blocks without a viewer,
 memory is bounded, and an open viewer switches to a new recording. A viewer that holds up the server is disconnected. A
-stream directly to an absent viewer would block for ever in the end, so the viewer's port is probed first.
+stream sent directly to an absent viewer would finally block for ever, so the viewer's port is probed first.
 """
 
 import ipaddress
@@ -40,12 +40,12 @@ class ServerDestination(Destination):
 
     def __init__(self, settings: Settings, log_info: LogFunction, log_warning: LogFunction) -> None:
         super().__init__(settings, live_rates(settings), log_info, log_warning, live=True)
-        port = self._free(settings.port)  # of one that is in use the server would only log
+        port = self._free(settings.port)  # the server would only log that a port is in use
         self._web_viewer: subprocess.Popen[bytes] | None = None
         address = ipaddress.IPv4Address(settings.address)
         self._here = "127.0.0.1" if address.is_unspecified else settings.address
         self._name = socket.gethostname() if address.is_unspecified else settings.address
-        # The web viewer's page requests the data: on this machine the server allows it by default.
+        # The web viewer's page requests the data. By default the server allows this on this machine.
         pages = None if address.is_loopback else [f"http://*:{settings.web_port}"]
         server = rr.GrpcServerSink(
             bind_ip=settings.address,
@@ -56,7 +56,7 @@ class ServerDestination(Destination):
         self.uri = f"rerun+http://{self._here}:{port}/proxy"
         self._host = rr.RecordingStream(APPLICATION, send_properties=False)
         self._host.set_sinks(server)
-        self._host.send_recording_name("(server)")  # a viewer lists it beside the runs
+        self._host.send_recording_name("(server)")  # viewers list it with the runs
         self._viewers = ViewerConnections(port)
         self._shown_uri = f"rerun+http://{self._name}:{port}/proxy"
         log_info(f"serving on {address}; to look at it, now or later: rerun {self._shown_uri}")
@@ -71,7 +71,7 @@ class ServerDestination(Destination):
     def close(self) -> None:
         """Close the servers, after the streams of the recordings."""
         close_stream(self._host)
-        if self._web_viewer is not None:  # it keeps nothing, and may have been stopped
+        if self._web_viewer is not None:  # it holds no data, and may have been stopped
             self._web_viewer.kill()
             self._web_viewer.wait()
 
@@ -89,7 +89,7 @@ class ServerDestination(Destination):
         self.log_info(f"look at it in a browser: http://{self._name}:{port}/?url={self._shown_uri}")
 
     def _free(self, port: int) -> int:
-        """`port`, or another one where that is in use."""
+        """`port`, or another one if it is in use."""
         if not listening(port):
             return port
         other = free_port()
@@ -98,7 +98,7 @@ class ServerDestination(Destination):
 
 
 class ViewerDestination(Destination):
-    """A viewer that another process has started; while it is absent or closed, nothing is sent."""
+    """A viewer started by another process. While it is absent or closed, nothing is sent."""
 
     def __init__(self, settings: Settings, log_info: LogFunction, log_warning: LogFunction) -> None:
         super().__init__(settings, live_rates(settings), log_info, log_warning, live=True)
@@ -107,10 +107,10 @@ class ViewerDestination(Destination):
             raise ValueError(f"viewer must look like rerun+http://127.0.0.1:9876/proxy, got {shown(settings.viewer)}")
         self._address = (address.hostname, address.port)
         self._missing_reported = False
-        self._attempts: list[threading.Thread] = []  # to connect, without an answer so far
+        self._attempts: list[threading.Thread] = []  # pending attempts to connect
 
     def open(self, number: int, name: str) -> Delivery | None:
-        """A stream to the viewer. Connects in a thread: one that listens but does not answer would block for ever."""
+        """A stream to the viewer. It connects in a thread, as a viewer that does not answer would block for ever."""
         host, port = self._address
         self._attempts = [attempt for attempt in self._attempts if attempt.is_alive()]
         if self._attempts:
@@ -133,7 +133,7 @@ class ViewerDestination(Destination):
         return ViewerDelivery(self, made[0])
 
     def disconnected(self) -> bool:
-        """Whether the viewer has been closed: a stream does not reconnect to one that is opened again."""
+        """Whether the viewer has been closed. A stream does not reconnect to a viewer that is opened again."""
         host, port = self._address
         if self._missing_reported or listening(port, host):
             return False
@@ -149,7 +149,7 @@ class ViewerDestination(Destination):
 
 
 def live_rates(settings: Settings) -> Rates:
-    """Of a viewer that shows the data as they come."""
+    """The rates of a live viewer."""
     return Rates(numbers=settings.rate, drawings=settings.rate, tick=LIVE_TICK)
 
 
@@ -158,8 +158,7 @@ def destinations(
 ) -> list[Destination]:
     """The destinations in `settings.sink`. `ValueError` if the only one is a file that cannot be written.
 
-    live: messages come from the network and do not wait, so a file that cannot be written later, or beside other sinks,
-    is retried.
+    live: messages come from the network and do not wait, so a file that fails later, or beside other sinks, is retried.
     """
     names = set(settings.sink)
     if "auto" in names:

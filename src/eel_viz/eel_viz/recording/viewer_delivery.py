@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Streams to viewers that may not read: to one that another process has started, and to the own server's.
+"""Streams to viewers that may stop reading: to a viewer of another process, and to this process's server.
 
-Logging to a viewer that does not read would block in the end. So one that was started elsewhere misses what comes until
-it reads, and one that holds up the server is disconnected.
+Logging to a viewer that does not read finally blocks. So a viewer of another process misses data until it reads again,
+and a viewer that holds up the server is disconnected.
 """
 
 import rerun as rr
@@ -14,27 +14,27 @@ VIEWER_FLUSH_TIMEOUT = 0.1  # s for one flush to a viewer
 
 
 class ViewerDelivery(Delivery):
-    """A stream to a viewer, which is given nothing while it does not read."""
+    """A stream to a viewer. It sends nothing while the viewer does not read."""
 
     RECOVERED = "the viewer reads again"
 
     def __init__(self, destination: Destination, stream: rr.RecordingStream) -> None:
         super().__init__(destination, stream)
-        self._stalled_since: float | None = None  # s: since when the viewer has not read
+        self._stalled_since: float | None = None  # s: start of the viewer's stall
         self._stall_reported = False
 
     @property
     def accepts_data(self) -> bool:
-        """Whether the viewer is there, and reads."""
+        """Whether the viewer exists and reads."""
         return super().accepts_data and not self.stalled
 
     @property
     def stalled(self) -> bool:
-        """Whether the last flush did not arrive: what is logged would fill this process's memory."""
+        """Whether the last flush did not arrive. Further data would fill this process's memory."""
         return self._stalled_since is not None
 
     def find_faults(self, now: float) -> None:
-        """Find out whether the viewer reads, and say so where that has changed."""
+        """Check whether the viewer reads, and report a change."""
         if self._arrived():
             if self._stall_reported:
                 self.destination.log_info(self.RECOVERED)
@@ -51,7 +51,7 @@ class ViewerDelivery(Delivery):
         )
 
     def close(self, end: float = 0.0) -> None:
-        """Flush and close the stream; one that blocks is detached instead."""
+        """Flush and close the stream. A blocked stream is detached instead."""
         if self.disconnected or self._arrived() or self.disconnected:
             close_stream(self.stream)
         else:
@@ -66,7 +66,7 @@ class ViewerDelivery(Delivery):
 
 
 class ServerDelivery(ViewerDelivery):
-    """A stream to the own server. A viewer that holds it up is disconnected, so that the others miss nothing."""
+    """A stream to the own server. A viewer that holds it up is disconnected, so that the others miss no data."""
 
     RECOVERED = "the server goes on"
 
@@ -76,7 +76,7 @@ class ServerDelivery(ViewerDelivery):
 
     @property
     def stalled(self) -> bool:
-        """Whether the server is held up by itself: while a viewer may be the reason, all is kept for the others."""
+        """Whether the server itself stands still. While a viewer may be the cause, data are kept for the others."""
         return self._stall_reported
 
     def find_faults(self, now: float) -> None:

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What robots have and eels do not: fins, joints and motors."""
+"""The parts of robots: fins, joints and motors."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Motors over time: how hard each works, the one that is nearest to its limit, and the power and work of all."""
+"""Motors over time: the load of each, the one closest to its limit, and the total power and work."""
 
 import numpy as np
 
@@ -19,7 +19,7 @@ SERIES = {
 
 
 class LoadMap(HeatMap):
-    """The motors from nose to tail over time; their loads, or where none has a limit their torques up to `limit`."""
+    """The motors from nose to tail over time: their loads, or without any limit their torques up to `limit`."""
 
     LEAST = 0.0
 

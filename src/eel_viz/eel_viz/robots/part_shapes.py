@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fins as half ellipses of their own area and span, turned about the hinge line at half chord; joints as rings;
-appendages as balls.
+"""Shapes of parts: fins as half ellipses of their own area and span, turned about the hinge line at half chord; joints
+as rings; appendages as balls.
 
 With the angle a, the root's normal n at rest and the section's axis E1 (towards the tail), the chord's direction
 towards the leading edge is sin(a) n - cos(a) E1, as in eel_core/fins.hpp.
@@ -13,7 +13,7 @@ from eel_viz.scene3d.centre_line import Resampling
 
 EDGE = 13  # vertices of a fin's round edge; one more is the middle of the root
 HALF_RING = 12  # points of half a joint's ring
-AROUND, AXLE = 1.12, 1.6  # half axes of the ring, and ends of the axle [half axes of the body]
+AROUND, AXLE = 1.12, 1.6  # of the ring and of the axle's ends [half axes of the body]
 
 
 class FinPlates:
@@ -49,7 +49,7 @@ class FinPlates:
 
 
 class AppendageBalls:
-    """Places the appendages of a `body`. radii: (A,) [m], of circles as large as their drag areas."""
+    """Places the appendages of a `body`. radii: (A,) [m], of circles whose areas are their drag areas."""
 
     def __init__(self, body: Body) -> None:
         self._stations, offsets, area = body.appendages[:, 0], body.appendages[:, 1:3], body.appendages[:, 3]
@@ -63,7 +63,7 @@ class AppendageBalls:
 
 
 class JointRings:
-    """Places the rings of the joints of a `body`, about it, each with the ends of its axle."""
+    """Places the rings around the joints of a `body`, each with the ends of its axle."""
 
     def __init__(self, body: Body) -> None:
         self._stations = np.array([joint.station for joint in body.joints])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws fins, joints, motors, appendages of one swimmer, by the methods of their topics; of a body without, nothing."""
+"""Draws fins, joints, motors and appendages of one swimmer, through the methods of their topics, if it has any."""
 
 import numpy as np
 import rerun as rr
@@ -12,11 +12,11 @@ from eel_viz.robots.part_shapes import AppendageBalls, FinPlates, JointRings
 from eel_viz.same_stamp import SameStamp
 from eel_viz.scene3d import colours, legend
 
-THIN, THICK = -1.5, -2.4  # pixels, as Rerun counts them: lines of a ring, and at the limit
+THIN, THICK = -1.5, -2.4  # negative: pixels in Rerun: lines of a ring, and of one at its limit
 
 
 class Parts:
-    """Draws, and logs the numbers, by the methods of topics."""
+    """Draws the parts and logs their numbers, through the methods of topics."""
 
     def __init__(self, stream: BatchedStream) -> None:
         self._stream = stream
@@ -68,7 +68,7 @@ class Parts:
         self._log_states(stamp, entities.JOINT_NUMBERS, states)
 
     def motor_states(self, stamp: int, motors: Motors) -> None:
-        """Log and draw torques, limits and powers of the motors, if there are any."""
+        """Log and draw torques, limits and powers of the motors, if any."""
         if len(motors.torque) and self._stream.number_due(entities.MOTOR_NUMBERS, stamp):
             self._log_names(stamp, entities.MOTOR_NUMBERS, "MotorStates", motors.names)
             values = {name: getattr(motors, name) for name in ("torque", "limit", "power")}

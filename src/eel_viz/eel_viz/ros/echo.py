@@ -20,7 +20,7 @@ from rclpy.utilities import remove_ros_args
 from eel_viz.bags.definitions import message_class
 
 NAME, COMMAND = "eel_echo", "eel echo"
-SHORT = 128  # elements of an array that are printed without --full-length
+SHORT = 128  # elements of an array printed without --full-length
 
 
 class Echo(ServedNode):
@@ -37,7 +37,7 @@ class Echo(ServedNode):
         self.failure = ""
 
     def poll(self) -> bool:
-        """Look for a publisher; False when the message of --once is printed, or after an error or time-out."""
+        """Look for a publisher. Returns False after the message of --once, an error or the time-out."""
         if self.failure or (self._options.once and self.printed):
             return False
         limit = self._options.timeout
@@ -75,7 +75,7 @@ class Echo(ServedNode):
 
 
 def picked(message: Any, field: str | None) -> Any:
-    """`message`, or its value at `field`, such as pose.position.x or status.0.name. `ValueError` if it has none."""
+    """`message`, or its value at `field`, such as pose.position.x or status.0.name. `ValueError` if it is missing."""
     value, path = message, []
     for name in field.split(".") if field else ():
         path.append(name)
@@ -87,14 +87,14 @@ def picked(message: Any, field: str | None) -> Any:
 
 
 def as_yaml(value: Any, *, short: int | None = None) -> str:
-    """YAML of a message or a part of one; arrays are cut after `short` elements."""
+    """YAML of a message or a part of it. Arrays are cut after `short` elements."""
     plain = _plain(value, short)
     text: str = yaml.safe_dump(plain, sort_keys=False, allow_unicode=True, default_flow_style=False, width=10**6)
     return text.replace("\n...\n", "\n")
 
 
 def _plain(value: Any, short: int | None) -> Any:
-    """The value with dictionaries, lists and numbers in place of messages and arrays."""
+    """The value with messages and arrays converted to dictionaries, lists and numbers."""
     if hasattr(value, "get_fields_and_field_types"):
         return {name: _plain(getattr(value, name), short) for name in value.get_fields_and_field_types()}
     if isinstance(value, bytes):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes markers and a path, which RViz and Foxglove show, of the swimmer's messages."""
+"""Makes markers and a path, for RViz and Foxglove, from the swimmer's messages."""
 
 from collections.abc import Sequence
 
@@ -17,7 +17,7 @@ from eel_viz.scene3d.skin import Skin
 from eel_viz.settings import MarkerSettings
 
 WIDTHS = (0.0044, 0.011)  # m: diameters of shaft and tip of the arrows along the body
-END_WIDTHS = (0.008, 0.018)  # m: of those at its ends
+END_WIDTHS = (0.008, 0.018)  # m: of the arrows at its ends
 RING_WIDTH = 0.003  # m
 
 
@@ -47,7 +47,7 @@ class ForceMarkers:
         self._settings = settings
 
     def markers(self, header: Header, backbone: Backbone, load: Load) -> list[Marker]:
-        """One marker for each arrow; those that a shape with more stations had are deleted."""
+        """One marker for each arrow. Markers left over from a shape with more stations are deleted."""
         markers = []
         for space, (places, forces), scale, colour, (shaft, tip) in (
             ("load", forces_along(backbone, load), self._settings.load_scale, colours.FORCE, WIDTHS),
@@ -64,7 +64,7 @@ class ForceMarkers:
 
 
 class FinMarker:
-    """The fins of one `body` as triangles, both sides of them."""
+    """The fins of one `body` as triangles, visible from both sides."""
 
     def __init__(self, body: Body) -> None:
         self._plates = FinPlates(body)
@@ -72,7 +72,7 @@ class FinMarker:
         self._corners = np.concatenate([corners, corners[:, ::-1]]).ravel()
 
     def markers(self, header: Header, backbone: Backbone, states: JointStates) -> list[Marker]:
-        """One marker; none where the `states` lack a fin."""
+        """One marker; none if the `states` lack a fin."""
         if not set(self._plates.names) <= set(states.names):
             return []
         vertices, _ = self._plates.place(backbone, states.angles_of(self._plates.names))
@@ -80,13 +80,13 @@ class FinMarker:
 
 
 class JointMarkers:
-    """The joints of one `body` as rings, in the colours of what their motors give of what they can."""
+    """The joints of one `body` as rings, coloured by their motors' torque / limit."""
 
     def __init__(self, body: Body) -> None:
         self._rings, self._count = JointRings(body), len(body.joints)
 
     def markers(self, header: Header, backbone: Backbone, motors: Motors) -> list[Marker]:
-        """One marker for each joint; none where the `motors` are not as many."""
+        """One marker for each joint; none if the number of `motors` differs."""
         if len(motors.torque) != self._count:
             return []
         shades, size = colours.LOADS[colours.load_index(motors.loads)], Vector3(x=RING_WIDTH)

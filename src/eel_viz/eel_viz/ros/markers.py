@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The node `markers`: publishes the swimmer as `visualization_msgs/MarkerArray` and `nav_msgs/Path`.
 
-RViz and Foxglove show them. Skin and arrows need messages of one stamp; a sample is drawn when all of its topics that
-have publishers have come. Rerun is not needed.
+RViz and Foxglove show them. Skin and arrows need messages of one stamp. So a sample is drawn when all of its topics
+with publishers have come. Rerun is not needed.
 """
 
 import sys
@@ -38,16 +38,16 @@ LOOK_PERIOD = 0.5  # s between two look-ups of the publishers
 
 
 class Markers(ParameterNode):
-    """Joins the messages of one stamp, and publishes at most `rate` of them per second of wall time. The last one is
-    always published, so that a run that pauses is shown where it stands."""
+    """Joins the messages of one stamp, and publishes at most `rate` samples per second of wall time. The last sample is
+    always published, so that a paused run is shown correctly."""
 
     def __init__(self) -> None:
         super().__init__(NAME)
         (self._settings,) = declare_all(self, MarkerSettings)
-        self._makers: dict[str, Any] = {"hydrodynamic_load": ForceMarkers(self._settings)}  # of markers, by topic
+        self._makers: dict[str, Any] = {"hydrodynamic_load": ForceMarkers(self._settings)}  # by topic
         self._waiting: OrderedDict[int, dict[str, Any]] = OrderedDict()  # stamp [ns]: messages by topic
         self._expected: set[str] = set(TOPICS)
-        self._newest: dict[str, Any] | None = None  # the last complete sample that has not been drawn
+        self._newest: dict[str, Any] | None = None  # the last complete sample not yet drawn
         self._drawn = self._looked = 0.0  # s, steady clock
         self._reported: set[tuple[str, str]] = set()  # topic and field of messages that cannot be shown
         self._markers = self.create_publisher(MarkerArray, "markers", 10)
@@ -57,7 +57,7 @@ class Markers(ParameterNode):
             self.create_subscription(kind, topic, lambda message, topic=topic: self._receive(topic, message), DEPTH)
 
     def poll(self) -> bool:
-        """Look up which topics have publishers, and draw what is due; True: the node continues."""
+        """Look up which topics have publishers, and draw what is due. Returns True: the node continues."""
         if time.monotonic() - self._looked > LOOK_PERIOD:
             self._looked = time.monotonic()
             self._expected = {"backbone"} | {topic for topic in TOPICS if self.count_publishers(topic)}
@@ -99,7 +99,7 @@ class Markers(ParameterNode):
             self._draw(sample)
 
     def _draw(self, sample: dict[str, Any]) -> None:
-        """Publish the `sample`, messages by topic, without those that cannot be shown."""
+        """Publish the `sample`, messages by topic, without unusable messages."""
         values: dict[str, Any] = {}
         for topic, message in sample.items():
             try:

@@ -2,7 +2,7 @@
 """The visualiser node: subscribes to every topic of a swimmer and logs the messages to Rerun.
 
 Subscriptions are reliable and keep all, so that no message is lost when the simulation runs as fast as possible. Times
-are the messages' stamps. The node runs until SIGINT or SIGTERM, or with `stop_with_publisher` until the swimmer's
+are the messages' stamps. The node runs until SIGINT or SIGTERM; with `stop_with_publisher` also until the swimmer's
 publishers have gone.
 """
 
@@ -34,7 +34,7 @@ CANNOT_START = 2  # exit status
 
 
 class Visualiser(ParameterNode):
-    """Subscribes to the topics of one swimmer, or two that are compared, and passes the messages to dispatchers."""
+    """Subscribes to the topics of one swimmer, or of two for comparison, and passes the messages to dispatchers."""
 
     def __init__(self) -> None:
         super().__init__(NAME)
@@ -67,7 +67,7 @@ class Visualiser(ParameterNode):
             self._subscribe(space, dispatcher)
 
     def poll(self) -> bool:
-        """Poll the recordings; False once the swimmer has gone, with `stop_with_publisher`."""
+        """Poll the recordings. Returns False after the swimmer has gone, with `stop_with_publisher`."""
         for dispatcher in self._dispatchers.values():
             dispatcher.poll()
         self._recordings.poll()
@@ -78,7 +78,7 @@ class Visualiser(ParameterNode):
         return not (self.settings.stop_with_publisher and self._presence.has_gone())
 
     def close(self) -> None:
-        """Close the recordings, and log what was received."""
+        """Close the recordings, and log the numbers of messages."""
         try:
             received = [dispatcher.finish() for dispatcher in self._dispatchers.values()]
         finally:
@@ -87,21 +87,21 @@ class Visualiser(ParameterNode):
 
     @property
     def failure(self) -> str:
-        """The reason for exit status 1; empty if there is none."""
+        """The reason for exit status 1; empty without one."""
         return "a recording lacks a part of its run" if self._recordings.incomplete else ""
 
     def take_messages(self, before: int) -> int:
-        """Log messages that have come; the number of those from `before` [ns]; 0: all."""
+        """Log waiting messages. Returns the number of those from `before` [ns]; 0: of all."""
         count = self._polled.take(before)
         self._presence.look(count)
         return count
 
     def drop_messages(self, before: int) -> tuple[int, bool]:
-        """Drop what waits; how many of them are from `before` [ns], and whether that is their number, not the least."""
+        """Drop waiting messages. Returns how many are from `before` [ns], and whether that is exact, not a minimum."""
         return self._polled.drop(before)
 
     def _subscribe(self, space: str, dispatcher: Dispatcher) -> None:
-        """Subscribe to the topics of the swimmer in the namespace `space`; the body first, as the others need it."""
+        """Subscribe to the topics of the swimmer in the namespace `space`, the body first: the others need it."""
         for name in READERS:
             topic = DIAGNOSTICS if name == "diagnostics" else f"{space}/{name}"
             kind = message_class(OWN.get(name) or GLOBAL[topic])
@@ -130,7 +130,7 @@ def main(arguments: list[str] | None = None) -> int:
     words, rows = sys.argv if arguments is None else [NAME, *arguments], help_rows(Settings)
     make, poll, take = Visualiser, Visualiser.poll, Visualiser.take_messages
     status = run_node(NAME, words, make, poll, take, about=ABOUT, parameters=rows, sim_time=True, complete=True)
-    # Not by Python's own way: a stream may be blocked, and a thread of LTTng, which ROS brings, may fork just then. It
+    # Not with Python's own exit: a stream may be blocked, and a thread of LTTng, part of ROS, may fork just then. It
     # would wait for a lock of Arrow, and the destructors of LTTng for the thread.
     return status if status == CANNOT_START else exit_immediately(status)
 

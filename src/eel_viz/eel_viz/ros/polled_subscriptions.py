@@ -2,7 +2,7 @@
 """Subscriptions that a node polls itself: many messages at once, instead of one executor call per message.
 
 An executor collects and waits on all entities of a node before each message. With eight topics that costs more than
-logging them. A `PolledGroup` is never executed, so messages stay in the KEEP_ALL histories until they are taken.
+logging. A `PolledGroup` is never executed, so messages stay in the KEEP_ALL histories until they are taken.
 """
 
 import time
@@ -18,18 +18,19 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
-TAKE_LIMIT = 0.2  # s after which `take` returns, so that the node hears calls and signals
-DROP_LIMIT = 0.5  # s after which `drop` returns: a node ends
-PROCESS = 12  # bytes of an endpoint's identifier that all endpoints of a process share (RTPS: the GUID's prefix)
-PAUSE = 0.3  # s between two messages, after which the publishers are looked up: no node starts faster
-GONE = 0.5  # s without publishers, in which no look has found a message: then a swimmer has gone
+TAKE_LIMIT = 0.2  # s: then `take` returns, so that the node answers calls and signals
+DROP_LIMIT = 0.5  # s: then `drop` returns, as the node ends
+PROCESS = 12  # bytes of an endpoint's identifier shared by all endpoints of a process (RTPS: the GUID's prefix)
+PAUSE = 0.3  # s: after a longer pause the publishers are looked up; no node starts faster
+GONE = 0.5  # s without publishers and messages, after which a swimmer has gone
 
 Receive = Callable[[bytes, Mapping[str, Any]], None]  # the serialised message, and the message info
-Show = Callable[[Any, bool, int], None]  # the message, whether it is another publisher's first, when it was sent [ns]
+Show = Callable[[Any, bool, int], None]  # the message, whether it is the first of a new publisher, time of sending [ns]
 
 
 class PolledSubscriptions:
-    """The subscriptions of `node`. Messages are taken as bytes: else rclpy would build one even if none has come."""
+    """The subscriptions of `node`. Messages are taken as bytes: rclpy would otherwise build one even if none has
+    come."""
 
     def __init__(self, node: Node) -> None:
         self._node, self._group = node, PolledGroup()
@@ -47,7 +48,7 @@ class PolledSubscriptions:
         self._node.destroy_subscription(subscription)
 
     def show(self, kind: type[Any], topic: str, show: Show, *qualities: QoSProfile) -> None:
-        """Subscribe likewise, once for each of the `qualities`; `show` gets a message that several receive once."""
+        """Subscribe likewise, once for each of the `qualities`. A message that several receive goes to `show` once."""
         deliveries = Deliveries()
 
         def receive(change: PublisherChange, data: bytes, about: Mapping[str, Any]) -> None:
@@ -63,21 +64,21 @@ class PolledSubscriptions:
             self.add(kind, topic, quality, partial(receive, self._changes[-1]))
 
     def note_publishers(self) -> None:
-        """Note the present publishers of all topics, for messages that are not yet taken."""
+        """Note the present publishers of all topics, for messages not yet taken."""
         for change in self._changes:
             change.note_publishers()
 
     def take(self, before: int = 0) -> int:
-        """Pass on waiting messages, one of each subscription in turn; the number of those from `before` [ns]; 0: all.
+        """Pass on waiting messages, one of each subscription in turn. Returns the number from `before` [ns]; 0: of all.
 
-        So no topic is left behind: neither one that is slow to show, nor one whose message comes a little after the
-        others'. It returns once nothing waits, or after a `TAKE_LIMIT`; the next call begins with the next
-        subscription. What raises an error is logged and left out.
+        So no topic falls behind: neither one that is slow to show, nor one whose message comes a little after the
+        others'. It returns when nothing waits, or after `TAKE_LIMIT`. The next call begins with the next subscription.
+        Messages that cause an error are logged and left out.
         """
         count, end, empty = 0, time.monotonic() + TAKE_LIMIT, 0
         while empty < len(self._receivers) and time.monotonic() <= end:
             subscription = next(iter(self._receivers))
-            self._receivers[subscription] = receive = self._receivers.pop(subscription)  # to the end of the row
+            self._receivers[subscription] = receive = self._receivers.pop(subscription)  # moved to the end
             taken = _take_one(subscription)
             empty += 1
             if taken is None:
@@ -91,7 +92,7 @@ class PolledSubscriptions:
         return count
 
     def drop(self, before: int) -> tuple[int, bool]:
-        """Drop what waits: the number of messages from `before` [ns], and whether these are all within `DROP_LIMIT`."""
+        """Drop waiting messages. Returns the number from `before` [ns], and whether `DROP_LIMIT` sufficed for all."""
         count, end = 0, time.monotonic() + DROP_LIMIT
         for subscription in self._receivers:
             while (taken := _take_one(subscription)) is not None:
@@ -106,25 +107,25 @@ class PolledSubscriptions:
 
 
 class PublisherChange:
-    """Detects that a message comes from another publisher than the one before, such as a restarted node.
+    """Detects that a message comes from a new publisher, such as a restarted node.
 
-    Stamps are not enough: the new node's may already lie beyond the last stamp of the old one. A message does not name
-    its publisher, but each publisher counts its messages, and discovery lists the publishers of a topic: `publishers()`
-    returns the present ones. So after a gap in the count or a pause they are looked up: a new one has taken over.
-    Messages may wait until their publisher has gone; so `note_publishers` must be called regularly.
+    Stamps are not enough: the new node's may lie beyond the last stamp of the old one. A message does not name its
+    publisher, but each publisher counts its messages, and discovery lists the publishers of a topic: `publishers()`
+    returns the present ones. After a gap in the count or a pause they are looked up: a new one has taken over. Messages
+    may wait until their publisher has gone, so `note_publishers` must be called regularly.
     """
 
     def __init__(self, publishers: Callable[[], set[Hashable]]) -> None:
         self._publishers = publishers
         self._seen: set[Hashable] = set()
-        self._known: set[Hashable] = set()  # those seen when messages came
+        self._known: set[Hashable] = set()  # publishers seen when messages came
         self._last: tuple[int | None, int] | None = None  # count of the last message, and its time of sending [ns]
 
     def note_publishers(self) -> None:
         self._seen |= self._publishers()
 
     def changes(self, count: int | None, sent: int) -> bool:
-        """Whether a message is the first of another publisher; `count`: its number there, `sent`: wall time [ns]."""
+        """Whether a message is the first of a new publisher. count: its number there. sent: wall time [ns]."""
         last, self._last = self._last, (count, sent)
         if last is None:
             self.note_publishers()
@@ -141,7 +142,7 @@ class PublisherChange:
 
 
 class SwimmerPresence:
-    """Whether the swimmer of the namespace of `node` is there: its publishers, or its messages."""
+    """Whether the swimmer in the namespace of `node` is present, by its publishers or its messages."""
 
     def __init__(self, node: Node) -> None:
         self._node, self._topic = node, node.resolve_topic_name(SWIMMER)
@@ -149,24 +150,24 @@ class SwimmerPresence:
         self._last_seen = self._looked = time.monotonic()
 
     def heard(self, topic: str) -> None:
-        """A message has come on `topic`; a law alone is not a swimmer."""
+        """Note a message on `topic`. A law alone does not make a swimmer."""
         self._present |= topic == self._topic
 
     def look(self, taken: int) -> None:
-        """So many messages have just been taken; what is not looked for may be waiting, however long that takes."""
+        """Note that `taken` messages have just been taken. Until the next call, others may be waiting."""
         self._looked = time.monotonic()
         if taken:
             self._last_seen = self._looked
 
     def has_gone(self) -> bool:
-        """Whether the swimmer was there and has gone, with all of its publishers and messages."""
+        """Whether the swimmer was present and has gone, with all of its publishers and messages."""
         if self._node.count_publishers(SWIMMER):
             self._present, self._last_seen = True, time.monotonic()
         return self._present and self._looked - self._last_seen >= GONE
 
 
 def _take_one(subscription: Subscription) -> Any:
-    """The next message that waits, and its message info; None if there is none."""
+    """The next waiting message, and its message info; None without one."""
     with subscription.handle:  # keeps it from being destroyed meanwhile
         return subscription.handle.take_message(subscription.msg_type, True)
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """`eel record`: record topics to a rosbag2 folder (MCAP), without `ros2 bag`.
 
-Messages are written undecoded. The bag is completed twice a second (see `growing_bag`), so that it opens however the
-recorder ends. The swimmer's topics are subscribed to from the start, so that no message of a run as fast as possible is
-lost; other topics as soon as they are discovered. At the end all is taken that was sent before (see `run_node`). Stamps
-in the bag are times of reception. Sample 0, which the dynamics node repeats while its run stands at the start, is
-written once for each run.
+Messages are written undecoded. The bag is completed twice a second (see `growing_bag`), so that it can be opened
+however the recorder ends. The swimmer's topics are subscribed to from the start, so that no message of a run as fast as
+possible is lost; other topics as soon as they are discovered. At the end all earlier messages are taken (see
+`run_node`). Stamps in the bag are times of reception. The dynamics node repeats sample 0 while its run stands at the
+start; it is written once for each run.
 """
 
 import argparse
@@ -32,7 +32,7 @@ from eel_viz.ros.polled_subscriptions import PolledSubscriptions, SwimmerPresenc
 
 NAME, COMMAND = "record", "eel record"
 LOOK_PERIOD = 0.2  # s between two look-ups of the topics
-SAVE_PERIOD = 0.5  # s between two saves of the bag, at least
+SAVE_PERIOD = 0.5  # s: least time between two saves of the bag
 LEAST_PERIOD_TO_COST = 15.0  # the least ratio of that period to the CPU time of a save
 STAMP = slice(4, 12)  # of a serialised message that begins with a header
 NOT_BY_DEFAULT = ("/rosout", "/parameter_events")  # recorded only by name
@@ -42,7 +42,7 @@ class Recorder(Node):
     """Subscribes to the raw messages of each topic and writes them to one bag.
 
     Attributes:
-        failure: the reason for exit status 1; empty if there is none.
+        failure: the reason for exit status 1; empty without one.
         counts: number of messages by topic.
     """
 
@@ -59,7 +59,7 @@ class Recorder(Node):
         self._subscribed: dict[str, tuple[Subscription, QoSProfile]] = {}
         self._offers: dict[str, list[QoSProfile]] = {}
         self._connections: dict[str, Connection] = {}
-        self._start: dict[str, bytes] = {}  # topic: the last sample 0 of a run that stands at it
+        self._start: dict[str, bytes] = {}  # topic: the last sample 0 of a run at its start
         self._refused: set[str] = set()
         self._began = self._looked = time.monotonic()
         self._presence = SwimmerPresence(self)
@@ -73,7 +73,7 @@ class Recorder(Node):
         self.get_logger().info(f"recording to {self._options.out}, end with Ctrl-C")
 
     def poll(self) -> bool:
-        """Look for new topics and save the bag; False when the recording is to end."""
+        """Look for new topics and save the bag. Returns False when the recording is to end."""
         now = time.monotonic()
         if now - self._looked >= LOOK_PERIOD:
             self._looked = now
@@ -97,22 +97,22 @@ class Recorder(Node):
             self.get_logger().warning(f"topics of unequal length: {short} has {least} samples, {long} has {most}")
 
     def take_messages(self, before: int) -> int:
-        """Record messages that have come; the number of those from `before` [ns]; 0: all. Save where it is time."""
+        """Record waiting messages, and save if due. Returns the number of those from `before` [ns]; 0: of all."""
         count = self._polled.take(before)
         self._presence.look(count)
         self._save_if_due(time.monotonic())
         return count
 
     def drop_messages(self, before: int) -> tuple[int, bool]:
-        """Drop what waits; how many of them are from `before` [ns], and whether that is their number, not the least."""
+        """Drop waiting messages. Returns how many are from `before` [ns], and whether that is exact, not a minimum."""
         return self._polled.drop(before)
 
     def _save_if_due(self, now: float) -> bool:
-        """Save the bag where it is time; False if that fails."""
+        """Save the bag if due. Returns False if that fails."""
         return now - self._saved < max(SAVE_PERIOD, LEAST_PERIOD_TO_COST * self._saving) or self._save()
 
     def _save(self) -> bool:
-        """Save the bag; whether that succeeded."""
+        """Save the bag. Returns whether that succeeded."""
         began = time.process_time()
         try:
             self._bag.save()
@@ -177,7 +177,7 @@ class Recorder(Node):
 
 
 def _stored(offer: QoSProfile) -> Qos:
-    """A publisher's quality of service as rosbag2 writes it."""
+    """A publisher's quality of service in the form of rosbag2."""
 
     def seconds(duration: Duration) -> QosTime:
         return QosTime(*divmod(duration.nanoseconds, 1_000_000_000))

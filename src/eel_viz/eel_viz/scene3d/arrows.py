@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws arrows in the world: the fluid's force along the body and at nose and tail, and how the water moves.
+"""Draws arrows in the world: the fluid's force along the body and at nose and tail, and the water's velocity.
 
 A load is in section axes, so it needs the backbone of the same stamp.
 """
@@ -17,19 +17,19 @@ from eel_viz.scene3d.centre_line import forces_along, forces_at_ends
 from eel_viz.scene3d.track import Wake
 from eel_viz.settings import Settings
 
-LONGEST = 0.16  # m: arrow of the water's velocity
+LONGEST = 0.16  # m: longest arrow of the water's velocity
 RADII = {entities.LOAD: 0.0022, entities.LOAD_ENDS: 0.004, entities.FLOW: 0.0018}  # m
 COLOURS = {entities.LOAD: colours.FORCE, entities.LOAD_ENDS: colours.ENDS, entities.FLOW: colours.FLOW}
 
 
 class Arrows:
-    """Draws arrows, and the wake, by the methods of topics; the scales are those of the `settings`."""
+    """Draws arrows, and the wake, through the methods of topics. The scales are those of the `settings`."""
 
     def __init__(self, stream: BatchedStream, settings: Settings) -> None:
         self._stream, self._settings = stream, settings
         self._both = SameStamp(self._draw)
         self._wake = Wake(stream, settings.wake_scale)
-        self._explained, self._fastest = False, 0.0  # m/s: of the water so far
+        self._explained, self._fastest = False, 0.0  # m/s: greatest water velocity so far
         for path, colour in COLOURS.items():
             stream.log_static(path, rr.Arrows3D.from_fields(colors=[colour], radii=[RADII[path]]))
 
@@ -45,7 +45,7 @@ class Arrows:
             self._both.second(stamp, load)
 
     def flow_vectors(self, stamp: int, position: np.ndarray, velocity: np.ndarray) -> None:
-        """Draw the water's velocities (n, 3) [m/s] at points (n, 3) [m] as arrows; the longest so far is `LONGEST`."""
+        """Draw the water's velocities (n, 3) [m/s] at points (n, 3) [m] as arrows. The fastest so far has `LONGEST`."""
         if self._stream.drawing_due("flow", stamp):
             self._fastest = max(self._fastest, float(np.linalg.norm(velocity, axis=1).max(initial=0.0)))
             self._log(stamp, entities.FLOW, position, LONGEST / max(self._fastest, 1e-9) * velocity)

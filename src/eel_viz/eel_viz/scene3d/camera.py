@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The cameras: frames that keep the swimmer in the picture, and the eye before them.
+"""The cameras: frames that keep the swimmer in the picture, and the eye in front of them.
 
-The eye of every view stands still in its frame, at `EYE` from the origin, and looks there. A frame has a place
-in the world, its centre, and a scale, its radius [m]. The radius is such that all that must be seen lies in `CLEAR`,
-the part of the picture without legend. So the eye steps back where the swimmer needs more room, and a swimmer of any
-length fills the picture alike. Each view must be at least `LEAST_ASPECT` times as wide as high.
+The eye of every view is fixed in its frame, at `EYE` from the origin, and looks at the origin. A frame has a place in
+the world, its centre, and a scale, its radius [m]. The radius is chosen so that all that must be seen lies in `CLEAR`,
+the part of the picture without legend. So the eye steps back if the swimmer needs more room, and swimmers of all
+lengths fill the picture equally. Each view must be at least `LEAST_ASPECT` times as wide as high.
 """
 
 import numpy as np
@@ -13,7 +13,7 @@ FIELD_OF_VIEW = np.radians(55.0)  # vertical; Rerun's default
 EYE_FROM = np.array((-0.43, -0.80, 0.53))  # direction of the eye, from the origin
 LEAST_ASPECT = 1.3
 CLOSE = 0.36  # least radius of a frame [body lengths]
-RELEASE = 2.5  # s: time constant with which a frame becomes smaller
+RELEASE = 2.5  # s: time constant of a shrinking frame
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:
@@ -30,7 +30,7 @@ CLEAR = {"right": 0.88 * LEAST_ASPECT * EDGE, "up": 0.86 * EDGE, "down": 0.70 * 
 
 
 def before_eye(ahead: float, right: float, up: float) -> np.ndarray:
-    """The point, (3,) [radii], at the given distances [radii] ahead of the eye, to its right and up."""
+    """The point, (3,) [radii], at these distances [radii] ahead of the eye, to its right and up."""
     return np.asarray(EYE + ahead * FORWARD + right * RIGHT + up * UP)
 
 
@@ -53,11 +53,11 @@ def least_radius(points: np.ndarray) -> float:
 class FollowFilter:
     """Low-pass filter of a moving point x: p'' + 2 w p' + w^2 p = 2 w x' + w^2 x, critically damped.
 
-    A steady motion is followed without lag; a quarter of an oscillation with a period of 1 s passes.
+    A steady motion is followed without lag. A quarter of an oscillation with a period of 1 s passes.
     """
 
     RATE = 0.8  # w [rad/s]
-    JUMP = 2.0  # s without a call, or back in time, after which the filter jumps to the point
+    JUMP = 2.0  # s without a call: the filter jumps to the point, as it does when time goes back
 
     def __init__(self) -> None:
         self._stamp: int | None = None
@@ -80,7 +80,7 @@ class FollowFilter:
 
 
 class FollowFrame:
-    """The frame that moves with one swimmer or two, and never turns. It grows at once, and shrinks slowly."""
+    """The frame that moves with one swimmer or two without turning. It grows at once, and shrinks slowly."""
 
     def __init__(self) -> None:
         self.filter = FollowFilter()
@@ -89,7 +89,7 @@ class FollowFrame:
     def follow(self, stamp: int, positions: np.ndarray, length: float) -> tuple[np.ndarray, float]:
         """Centre (3,) and radius [m] at `stamp` [ns].
 
-        positions: (N, 3) [m] in the world, of all that must be seen. length: of the body [m].
+        positions: (N, 3) [m] in the world, of everything that must be seen. length: of the body [m].
         """
         middle = self.filter.follow(stamp, positions.mean(axis=0))
         radius = least = max(CLOSE * length, least_radius(positions - middle))
@@ -101,13 +101,13 @@ class FollowFrame:
 
 
 class PathFrame:
-    """The frame of all places of the body so far; it grows."""
+    """The growing frame around all places of the body so far."""
 
     def __init__(self) -> None:
         self._low, self._high = np.full(3, np.inf), np.full(3, -np.inf)
 
     def include(self, positions: np.ndarray, length: float) -> tuple[np.ndarray, float]:
-        """Centre (3,) and radius [m] with the `positions` (N, 3) [m] of a body of `length` [m]."""
+        """Include the `positions` (N, 3) [m] of a body of `length` [m]. Returns centre (3,) and radius [m]."""
         np.minimum(self._low, positions.min(axis=0), out=self._low)
         np.maximum(self._high, positions.max(axis=0), out=self._high)
         middle = (self._low + self._high) / 2

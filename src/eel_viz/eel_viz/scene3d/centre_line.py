@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The backbone between its stations, cubic Hermite in position with the exact slope dr/dX = t1; loads on it.
 
-So the skin has its own abscissae, finer at the nose, and keeps its mesh when the number of stations changes.
+So the skin can have its own abscissae, finer at the nose, and keeps its mesh when the number of stations changes.
 """
 
 import numpy as np
@@ -9,7 +9,7 @@ from eel_common.attitude import section_axes, world_from_section
 
 from eel_viz.messages import Backbone, Load, same
 
-ALONG = 24  # forces that are shown between nose and tail, at most
+ALONG = 24  # most forces shown between nose and tail
 
 
 class Resampling:
@@ -30,7 +30,7 @@ class Resampling:
     def centre_line(self, position: np.ndarray, orientation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Position [m], (R, 3), and section axes, (R, 3, 3) with columns t1, t2, t3, both in the world frame.
 
-        `position` (M, 3) [m] and `orientation` (M, 4) are those of the message `Backbone` (REP-103 axes).
+        `position` (M, 3) [m] and `orientation` (M, 4) are as in the message `Backbone` (REP-103 axes).
         """
         axes = section_axes(orientation)
         position = np.asarray(position, dtype=float)
@@ -48,7 +48,7 @@ class Resampling:
 
 
 def forces_along(backbone: Backbone, load: Load) -> tuple[np.ndarray, np.ndarray]:
-    """Places [m] and forces per length [N/m] at stations as even as may be between the ends, each (n, 3), world."""
+    """Places [m] and forces per length [N/m] at nearly even stations between the ends, each (n, 3), world."""
     wanted = np.linspace(backbone.x[0], backbone.x[-1], ALONG + 2)[1:-1]
     chosen = np.unique(np.searchsorted(backbone.x, wanted - 1e-9))
     force = load.profiles.together("force_1", "force_2", "force_3")

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What each colour means, in every view alike; for colour-blind readers too.
+"""The meaning of each colour, the same in every view, and distinct for colour-blind readers.
 
 The colours of the axes are Okabe and Ito's orange, bluish green and sky blue. The diverging map goes from a light blue
-over the dark of the eel's back to a light red, so that both signs differ in hue and lightness from zero, and a body
-without torque looks as it is.
+through the dark of the eel's back to a light red. So both signs differ in hue and lightness from zero, and a body
+without torque keeps its own colour.
 """
 
 import numpy as np
@@ -14,20 +14,20 @@ Colour = tuple[int, int, int]  # red, green, blue: 0 to 255
 
 AXIS = ((230, 134, 40), (0, 170, 130), (86, 180, 233))  # section axes 1, 2, 3; also x, y, z
 ACTUATORS = (236, 84, 72)  # red: their power
-FORCE = (240, 218, 66)  # yellow: of the water along the body, and its power
-ENDS = (222, 80, 150)  # magenta: of the water at nose and tail, and its power
-WAKE = (150, 120, 235)  # violet: what the tail leaves in it, and its power
-FLOW = (112, 190, 216)  # pale blue: of the water without the swimmer
-PATH = (150, 172, 192)  # blue-grey: of the head
+FORCE = (240, 218, 66)  # yellow: the water's force along the body, and its power
+ENDS = (222, 80, 150)  # magenta: the water's force at nose and tail, and its power
+WAKE = (150, 120, 235)  # violet: momentum given to the wake, and its power
+FLOW = (112, 190, 216)  # pale blue: motion of the undisturbed water
+PATH = (150, 172, 192)  # blue-grey: path of the head
 COURSE = (150, 232, 196)  # mint: way points of a goal
 SPRINGS = (176, 132, 96)  # brown: springs and dampers of joints
 FIN = (186, 214, 130)  # lime: fins, and their power
-APPENDAGE = (170, 150, 200)  # lilac: what hangs on the body, and its power
+APPENDAGE = (170, 150, 200)  # lilac: appendages, and their power
 OTHER = (244, 244, 240)  # white: the run that is laid over this one
-PLAIN = (190, 196, 202)  # a quantity that is alone in its plot
+PLAIN = (190, 196, 202)  # a single quantity in its plot
 GREY = (150, 155, 160)  # no data
 LABEL = (205, 210, 215)  # letters on the ground of plots and of the legend
-NOTE = (255, 255, 255)  # letters before the water
+NOTE = (255, 255, 255)  # letters in front of the water
 TICK = (70, 76, 84)
 FRAME = (110, 116, 124)
 WATER_LINE = (30, 58, 80)
@@ -36,7 +36,7 @@ WATER_LABEL = (150, 180, 205)  # letters on the walls
 WATER_BACKGROUND = (9, 20, 33)
 PLOT_BACKGROUND = (13, 16, 17)
 WATER_DEEP, WATER_SHALLOW, WATER_FLOOR = (8, 20, 32), (24, 64, 90), (46, 108, 128)
-BACK, BELLY = (80, 98, 82), (226, 222, 200)  # of the skin
+BACK, BELLY = (80, 98, 82), (226, 222, 200)  # colours of the skin
 IRIS, PUPIL = (214, 178, 92), (8, 9, 10)
 
 _ANCHORS = np.array(
@@ -58,7 +58,7 @@ DIVERGING = (
     .round()
     .astype(np.uint8)
 )
-# of what a motor gives of what it can: from grey to white; the last entry, red, is its limit
+# of a motor's torque / limit: from grey to white; the last entry, red, is the limit
 LOADS = np.concatenate([np.linspace((84, 92, 102), (246, 246, 242), 255), [ACTUATORS]]).round().astype(np.uint8)
 
 
@@ -69,22 +69,23 @@ def dim(colour: Colour, factor: float = 0.45) -> Colour:
 
 
 def faded(colour: Colour, left: np.ndarray) -> np.ndarray:
-    """`colour` with the shares `left` (n,) of it, the rest that of the water: uint8 (n, 3)."""
+    """`colour` mixed with the water's: the shares `left` (n,) of it remain. uint8 (n, 3)."""
     mixed = np.outer(left, colour) + np.outer(1.0 - left, WATER_BACKGROUND)
     return np.asarray(mixed, dtype=np.uint8)
 
 
 def diverging(values: np.ndarray, limit: float) -> np.ndarray:
-    """Colours of signed `values`: -limit and below the bluest, 0 dark, +limit and above the reddest; uint8 (..., 3)."""
+    """Colours of signed `values`: bluest at -limit and below, dark at 0, reddest at +limit and above; uint8 (...,
+    3)."""
     return np.asarray(DIVERGING[diverging_index(values, limit)])
 
 
 def diverging_index(values: np.ndarray, limit: float) -> np.ndarray:
-    """Rows of `DIVERGING` that show `values`, uint8, same shape."""
+    """Rows of `DIVERGING` for `values`, uint8, same shape."""
     return np.clip((np.asarray(values) / limit + 1.0) * 127.5 + 0.5, 0, 255).astype(np.uint8)
 
 
 def load_index(loads: np.ndarray) -> np.ndarray:
-    """Rows of `LOADS` that show shares `loads` (...,) of what a motor can give, uint8: the last, red, at the limit."""
+    """Rows of `LOADS` for the `loads` (...,), torque / limit, uint8. The last row, red, is at the limit."""
     below = np.clip(np.nan_to_num(loads) * 254.0, 0.0, 254.0).round()
     return np.where(loads >= AT_LIMIT, 255, below).astype(np.uint8)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws the way points of a goal: the legs between them, and how near counts as reached."""
+"""Draws the way points of a goal: the legs between them, and the distance at which a point is reached."""
 
 from typing import Any
 
@@ -13,10 +13,10 @@ from eel_viz.scene3d import colours
 
 
 class Course:
-    """Draws the last course, valid at all times: its legs, a sphere about each point, a tube as wide about each leg.
+    """Draws the last course, for all times: its legs, a sphere about each point, a tube of that radius about each leg.
 
-    reach: their radius [body lengths], within which a way point counts as reached. Before the body's length is known
-    they are as wide as for a body of 1 m.
+    reach: the radius [body lengths] within which a way point is reached. Until the body's length is known, 1 m is
+    assumed.
     """
 
     def __init__(self, stream: BatchedStream, reach: float) -> None:
@@ -24,7 +24,7 @@ class Course:
         self._points: np.ndarray | None = None  # (n, 3) m
 
     def body(self, stamp: int, body: Body) -> None:
-        """Take the body's length; a course that is there already is drawn again."""
+        """Take the body's length, and redraw a course that exists."""
         self._length = body.length
         if self._points is not None:
             self.goal(stamp, self._points)
@@ -54,8 +54,8 @@ class Course:
 
 
 def turns_of_up_into(directions: np.ndarray) -> np.ndarray:
-    """Quaternions (n, 4) x y z w that turn the world's axis 3 into unit vectors (n, 3), by the shortest way."""
+    """Quaternions (n, 4) x y z w of the shortest rotations from the world's axis 3 to unit vectors (n, 3)."""
     x, y, z = directions.T
     turns = np.stack((-y, x, np.zeros_like(x), 1.0 + z), axis=1)
-    turns[z < -1.0 + 1e-9] = (1.0, 0.0, 0.0, 0.0)  # straight down, every way is as short
+    turns[z < -1.0 + 1e-9] = (1.0, 0.0, 0.0, 0.0)  # straight down, all ways are equally short
     return np.asarray(turns / np.linalg.norm(turns, axis=1)[:, None])

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The legend of the following views: a bar of the torque's colours, and what arrows and ribbon are.
+"""The legend of the following views: a bar of the torque's colours, and the meaning of arrows and ribbon.
 
-It stands at the lower edge of the picture, below `camera.CLEAR`, and so never before the swimmer.
+It stands at the lower edge of the picture, below `camera.CLEAR`, so it never covers the swimmer.
 """
 
 from collections.abc import Sequence
@@ -21,15 +21,15 @@ BAR_AT = (-0.50, -0.425)  # tangents: the middle of the bar
 BAR_SIZE = (0.27, 0.018)
 WORDS_AT = -0.42  # tangent: the height of the words
 FORCE_AT, ENDS_AT, WAKE_AT = -0.06, 0.27, 0.51  # tangents: the middles of the words
-PARTS_AT, RINGS_AT, BALLS_AT = -0.463, 0.30, -0.36  # tangents: the height of the words below, and the middles of
-# those of the rings and of the balls
+PARTS_AT, RINGS_AT, BALLS_AT = -0.463, 0.30, -0.36  # tangents: the height of the lower words, and the middles of
+# the words for rings and balls
 LETTERS = 0.020  # tangent: height of a capital
-BAND = (-0.60, -0.39)  # tangents: lower and upper edge of the ground of the legend
+BAND = (-0.60, -0.39)  # tangents: lower and upper edge of the legend's background
 STEPS = 33
 
 
 def log_bar(stream: BatchedStream) -> None:
-    """Log the bar and its ground, valid at all times."""
+    """Log the bar and its background, for all times."""
     middle = camera.before_eye(DISTANCE, *BAR_AT)
     along = np.linspace(-0.5, 0.5, STEPS)[:, None] * BAR_SIZE[0] * camera.RIGHT
     vertices = np.concatenate([middle + along, middle + along + BAR_SIZE[1] * camera.UP])
@@ -44,7 +44,7 @@ def log_bar(stream: BatchedStream) -> None:
 
 
 def log_limit(stream: BatchedStream, stamp: int, *, limit: float, unit: str, name: str) -> None:
-    """Log what the bar shows from `stamp` [ns] on: the values -limit to +limit of the quantity `name`."""
+    """Log the bar's range from `stamp` [ns] on: the values -limit to +limit of the quantity `name`."""
     under = camera.before_eye(DISTANCE, *BAR_AT) - 1.3 * LETTERS * camera.UP
     places = [under + share * BAR_SIZE[0] * camera.RIGHT for share in (-0.5, 0.0, 0.5)]
     stream.log(
@@ -55,14 +55,14 @@ def log_limit(stream: BatchedStream, stamp: int, *, limit: float, unit: str, nam
 
 
 def log_words(stream: BatchedStream, stamp: int) -> None:
-    """Log what arrows and ribbon are, in their colours."""
+    """Log the meaning of arrows and ribbon, in their colours."""
     arrows = (FORCE_AT, "force of the water", colours.FORCE), (ENDS_AT, "nose and tail", colours.ENDS)
     stream.log(stamp, f"{entities.LEGEND}/arrows", _words(WORDS_AT, arrows))
     stream.log(stamp, entities.WAKE_LEGEND, _words(WORDS_AT, [(WAKE_AT, "wake", colours.WAKE)]))
 
 
 def log_parts(stream: BatchedStream, *, fins: bool, joints: bool, appendages: bool) -> None:
-    """Log what plates, rings and balls are, below the other words, valid at all times."""
+    """Log the meaning of plates, rings and balls, below the other words, for all times."""
     words = {
         (FORCE_AT, "fins", colours.FIN): fins,
         (RINGS_AT, "joints, red at the limit", colours.LABEL): joints,
@@ -73,7 +73,7 @@ def log_parts(stream: BatchedStream, *, fins: bool, joints: bool, appendages: bo
 
 
 def _words(height: float, words: Sequence[tuple[float, str, Colour]]) -> rr.LineStrips3D:
-    """Each of the `words`: the tangent of its middle, what it says, and its colour."""
+    """Each of the `words` has the tangent of its middle, its text, and its colour."""
     at, texts, shades = zip(*words, strict=True)
     return _written([camera.before_eye(DISTANCE, right, height) for right in at], texts, shades)
 

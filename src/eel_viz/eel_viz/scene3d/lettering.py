@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Texts drawn as lines, in two dimensions and in three.
 
-The viewer's own labels stand on plates whose colour belongs to the viewer's theme: what is light enough for its dark
-theme cannot be read in its light one. These letters have our colour on our ground in both. The text itself is kept as
-the labels of the lines, which are not shown.
+The viewer's own labels have a background in the colour of the viewer's theme. A label that is light enough for the dark
+theme cannot be read in the light one. These letters have their own colour and background in both. The text itself is
+kept as the labels of the lines, which are not shown.
 
 The letters are Hershey's simplex Roman ones, by A. V. Hershey of the U.S. National Bureau of Standards, in the
 transcription of J. Hurt, Cognition Inc. They may be used freely with this acknowledgement.
@@ -18,7 +18,7 @@ import rerun as rr
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.colours import Colour
 
-# One line a letter: the letter, its width, its strokes. A digit n of a width or coordinate is the character 40 + n;
+# One line per letter: the letter, its width, its strokes. A digit n of a width or coordinate is the character 40 + n;
 # points are pairs of digits, x to the right and y up; y = DESCENT is the line on which letters stand.
 ZERO, DESCENT, CAPITAL, SPACE, UNKNOWN = 40, 7, 21.0, 14.0, "?"  # units of the letters; CAPITAL: height of a capital
 _LETTERS = """\
@@ -123,7 +123,7 @@ GLYPHS: dict[str, tuple[float, list[np.ndarray]]] = {" ": (SPACE, [])} | {
 def strokes_of(text: str, align: float = 0.5) -> list[np.ndarray]:
     """Polylines (n, 2) of `text` in heights of a capital, x to the right and y up.
 
-    The middle of the capitals is y = 0. align: the share of the width that lies left of x = 0.
+    The middle of the capitals is y = 0. align: the share of the width to the left of x = 0.
     """
     at, found = 0.0, []
     for letter in text:
@@ -136,7 +136,7 @@ def strokes_of(text: str, align: float = 0.5) -> list[np.ndarray]:
 def flat_texts(
     places: Any, texts: Sequence[str], height: float, shades: Sequence[Colour] = (), align: float = 0.5, **more: Any
 ) -> rr.LineStrips2D:
-    """The `texts` with their middles at `places` (n, 2) of a drawing whose y points down; height: of a capital."""
+    """The `texts` with their middles at `places` (n, 2) of a drawing whose y points down. height: of a capital."""
     strips, colour = _placed(places, texts, np.array(((height, 0.0), (0.0, -height))), shades, align)
     return rr.LineStrips2D(strips, labels=list(texts), show_labels=False, colors=colour, radii=STROKE, **more)
 
@@ -144,7 +144,7 @@ def flat_texts(
 def standing_texts(
     places: Any, texts: Sequence[str], right: np.ndarray, up: np.ndarray, shades: Sequence[Colour] = (), **more: float
 ) -> rr.LineStrips3D:
-    """The `texts` at `places` (n, 3); right, up: of their letters, (3,) or (n, 3), as long as capitals are high."""
+    """The `texts` at `places` (n, 3). right, up: directions of their letters, (3,) or (n, 3), as long as capitals."""
     strips, colour = _placed(places, texts, np.stack(np.broadcast_arrays(right, up), axis=-2), shades, **more)
     return rr.LineStrips3D(strips, labels=list(texts), show_labels=False, colors=colour, radii=STROKE)
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Says in the scene what a still picture cannot show: where the swimmer swims and how fast, and its greatest torque."""
+"""Notes in the scene on what a still picture cannot show: the swimmer's direction and speed, and its greatest
+torque."""
 
 import numpy as np
 import rerun as rr
@@ -11,27 +12,27 @@ from eel_viz.same_stamp import SameStamp
 from eel_viz.scene3d import camera, colours
 from eel_viz.scene3d.lettering import standing_texts
 
-PERIOD = 400_000_000  # ns: a speed that changed faster could not be read
+PERIOD = 400_000_000  # ns: a number that changed faster could not be read
 LETTERS = 0.043  # height of a capital [radii]
 AHEAD = (0.06, 0.26)  # from head to begin and end of the arrow [body lengths]
 NEARER = 0.25
-SLOW = 0.01  # body lengths per second, below which no direction is shown
+SLOW = 0.01  # body lengths per second: below this no direction is shown
 NAME = "greatest torque |C3| in 3 s"
-ABOVE, BESIDE = 0.28, 0.12  # of the words over the body, and over the arrow [radii]
-Frame = tuple[np.ndarray, float]  # centre (3,) and radius [m] of what the camera sees
+ABOVE, BESIDE = 0.28, 0.12  # distances of the words from the body, and from the arrow [radii]
+Frame = tuple[np.ndarray, float]  # centre (3,) and radius [m] of the camera's frame
 
 
 class Notes:
     """Draws the arrow ahead of the head with the head's speed, and the greatest torque C3 at its place.
 
-    Body, speed and torque come in messages of their own: a note is drawn once both that it needs of a stamp are there.
+    Body, speed and torque come in separate messages. A note is drawn when both of its messages of a stamp have come.
     """
 
     def __init__(self, stream: BatchedStream) -> None:
         self._stream = stream
         self._heading = SameStamp(self._draw_heading)
         self._torque = SameStamp(self._draw_torque)
-        self._words: dict[str, tuple[str, int]] = {}  # and when they were written [ns]
+        self._words: dict[str, tuple[str, int]] = {}  # words, and their time [ns]
         stream.log_static(entities.HEADING, rr.Arrows3D.from_fields(colors=[colours.NOTE], radii=[0.007]))
         leader = [[0.05 * camera.UP, (ABOVE - 1.2 * LETTERS) * camera.UP]]
         line = rr.LineStrips3D(leader, colors=[colours.NOTE], radii=rr.Radius.ui_points(0.5))
@@ -48,7 +49,7 @@ class Notes:
         self._heading.second(stamp, speed)
 
     def peak(self, stamp: int, place: float, size: float) -> None:
-        """Take the greatest C3 of the last seconds, its place [m] and its size [N m], at `stamp` [ns]."""
+        """Take the greatest C3 of the last seconds, its place [m] and its magnitude [N m], at `stamp` [ns]."""
         self._torque.second(stamp, (place, size))
 
     def _draw_heading(self, stamp: int, body: tuple[Backbone, np.ndarray, Frame], head_speed: float) -> None:
@@ -71,9 +72,9 @@ class Notes:
     def _write(
         self, stamp: int, path: str, words: str, place: np.ndarray, frame: Frame, *, above: float, period: int
     ) -> None:
-        """Move the `words` before `place` (3,) [m]; log their letters if they are new, `above` [radii] it.
+        """Move the `words` in front of `place` (3,) [m]. New words are logged as letters, `above` [radii] it.
 
-        period: for how long words stay at least [ns].
+        period: least time [ns] between two changes of the words.
 
         They are nearer to the eye by the share `NEARER`, and smaller, so that the body does not hide them.
         """

@@ -3,9 +3,9 @@
 
 A point of the surface is r(X) + b(X) cos(angle) t2 + a(X) sin(angle) t3, with b the half width (section axis 2) and a
 the half height (axis 3). The normal is the gradient of (y/b)^2 + (z/a)^2 - 1 in section axes, times a b / 2:
-(-(a cos^2 b' + b sin^2 a'), a cos, b sin). Half axes are interpolated in their squares, since they go like sqrt(X)
-at the nose. Where the body ends blunt, the skin is rounded within the last half height: it is nowhere wider than the
-body, nor longer.
+(-(a cos^2 b' + b sin^2 a'), a cos, b sin). Half axes are interpolated in their squares, as they behave like sqrt(X) at
+the nose. If the body ends blunt, the skin is rounded within the last half height: it is nowhere wider than the body,
+nor longer.
 """
 
 import numpy as np
@@ -15,10 +15,10 @@ from eel_viz.scene3d.centre_line import Resampling
 
 RINGS = 26
 SIDES = 12
-NOSE, TAIL = 0.06, 0.04  # shares of the length that have finer rings
-FLANK = 0.6  # sine of the greatest angle that a torque colours fully
-EYE_AT, EYE_HEIGHT = 0.04, 0.34  # of the eyes: X [lengths], and height above the middle [half heights]
-EYE_DEPTH = 0.06  # how far their middle lies in the skin [half heights]
+NOSE, TAIL = 0.06, 0.04  # shares of the length with finer rings
+FLANK = 0.6  # sine of the greatest angle that is coloured fully
+EYE_AT, EYE_HEIGHT = 0.04, 0.34  # eyes: X [lengths], and height above the middle [half heights]
+EYE_DEPTH = 0.06  # depth of their middle in the skin [half heights]
 EYE_SIZES = np.array(((0.32, 0.08, 0.32), (0.20, 0.095, 0.20)))  # half axes of iris and pupil [half heights]
 
 
@@ -29,8 +29,8 @@ class Skin:
 
     Attributes:
         x, half_width: of the rings [m], (rings,). triangles: indices of vertices, uint32 (T, 3).
-        shades: colours of the vertices without torque, uint8 (V, 3): dark back (+ axis 3), light belly, so roll shows.
-        eyes, eye_sizes: middles and half axes [m] of iris and pupil at either side, each (4, 3), in the nose's REP-103
+        shades: colours of the vertices without torque, uint8 (V, 3): dark back (+ axis 3), light belly, to show roll.
+        eyes, eye_sizes: middles and half axes [m] of iris and pupil on both sides, each (4, 3), in the nose's REP-103
             axes.
     """
 
@@ -40,7 +40,7 @@ class Skin:
         length = float(x[-1])
         self.x = length * _graded(rings)  # [m], (rings,)
         fine = length * np.sin(np.linspace(0.0, np.pi / 2, 800)) ** 2
-        rounded = max(float(half_height[-1]), 1e-9)  # m: over which the tail is rounded
+        rounded = max(float(half_height[-1]), 1e-9)  # m: length of the rounded tail
 
         def axis(half: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             """Half axis b and b b' at the rings: half the slope of the square, which is finite at both ends."""
@@ -85,14 +85,14 @@ class Skin:
         return np.repeat(Resampling(x, self.x).linear(values), self._sides)
 
     def coloured(self, x: np.ndarray, torque: np.ndarray, limit: float) -> np.ndarray:
-        """As `shades`, with the flanks coloured by the `torque` (M,) at stations `x`, deepest at `limit`."""
+        """The `shades`, with flanks coloured by the `torque` (M,) at stations `x`, deepest at `limit`."""
         shades = self.shades.copy()
         shades[self._flank] = colours.diverging(self.at_vertices(x, torque)[self._flank], limit)
         return shades
 
 
 def _graded(rings: int) -> np.ndarray:
-    """Abscissae from 0 to 1: finer at the nose and the tail, where they are quadratic, and even between."""
+    """Abscissae from 0 to 1: quadratic and finer at nose and tail, even in between."""
     nose, tail = max(4, rings // 5), max(3, rings // 6)
     middle = np.linspace(NOSE, 1.0 - TAIL, rings - nose - tail)
     ends = NOSE * (np.arange(nose) / nose) ** 2, 1.0 - TAIL * (np.arange(tail) / tail)[::-1] ** 2

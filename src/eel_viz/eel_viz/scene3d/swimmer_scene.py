@@ -15,12 +15,12 @@ from eel_viz.scene3d.skin import Skin, tiles
 from eel_viz.scene3d.water import WaterBox
 
 SHADOW_POINTS = 24
-BEHIND = 0.22  # of the distance from head to tail: how much of the wake is in the picture
-PATH_WATER_PERIOD = 400_000_000  # ns: its frame changes slowly
+BEHIND = 0.22  # length of the wake in the picture, relative to the distance from head to tail
+PATH_WATER_PERIOD = 400_000_000  # ns: the frame of the path changes slowly
 
 
 class SwimmerScene:
-    """Draws by the methods of topics. limit: of the torque's colours, which others keep up to date."""
+    """Draws through the methods of topics. limit: of the torque's colours, kept up to date elsewhere."""
 
     def __init__(self, stream: BatchedStream, limit: Limit) -> None:
         self._stream, self._limit = stream, limit
@@ -34,10 +34,10 @@ class SwimmerScene:
         stream.log_static(entities.SHADOW, shadow)
 
     def body(self, stamp: int, body: Body) -> None:
-        """Take the sections, and log what never changes of skin and eyes."""
+        """Take the sections, and log the constant data of skin and eyes."""
         self._skin = skin = Skin(body.x, body.half_width, body.half_height)
         self._stream.log_static(entities.SKIN, rr.Mesh3D.from_fields(triangle_indices=skin.triangles))
-        # until a torque comes; not static, for static colours would hide later ones
+        # until a torque comes; not static, as static colours would hide later ones
         self._stream.add_row(0, entities.SKIN, rr.Mesh3D, vertex_colors=skin.shades)
         shades = (colours.IRIS, colours.PUPIL) * 2
         eyes = rr.Ellipsoids3D(centers=skin.eyes, half_sizes=skin.eye_sizes, colors=shades, fill_mode="solid")
@@ -66,7 +66,7 @@ class SwimmerScene:
             self._stream.add_pose(stamp, entities.EYES, position[0], backbone.orientation[0])
 
     def internal_wrench(self, stamp: int, wrench: Profiles) -> None:
-        """Colour the flanks by the torque C3, and note the greatest of the last seconds at its place."""
+        """Colour the flanks by the torque C3, and show the greatest of the last seconds at its place."""
         if not self._stream.drawing_due("flanks", stamp):
             return
         limit, recent = self._limit.value, self._limit.recent
@@ -81,7 +81,7 @@ class SwimmerScene:
             self._stream.add_row(stamp, entities.SKIN, rr.Mesh3D, vertex_colors=shades)
 
     def _draw_shadow(self, stamp: int, backbone: Backbone) -> None:
-        """Draw the shadow on the floor, as wide as the body, below it."""
+        """Draw the shadow on the floor below the body, as wide as the body."""
         x = np.linspace(backbone.x[0], backbone.x[-1], SHADOW_POINTS)
         middle = np.stack([np.interp(x, backbone.x, column) for column in backbone.position.T], axis=1)
         along = np.gradient(middle[:, :2], axis=0)
@@ -96,7 +96,7 @@ class SwimmerScene:
 
 
 def in_sight(position: np.ndarray) -> np.ndarray:
-    """What must be in the picture of a body at `position` (M, 3) [m]: body, arrow, the beginning of the wake."""
+    """The points that must be in the picture of a body at `position` (M, 3) [m]: body, arrow, start of the wake."""
     ahead = position[:1] - position[-1:]
     return np.concatenate([position, position + AHEAD[1] * ahead, position - BEHIND * ahead])
 

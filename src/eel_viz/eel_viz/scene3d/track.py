@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws where the swimmer is and was: frames of head and tail, and the midline; the path of the head in short pieces
-and strobes of the midline, both shown up to the cursor; and the last seconds of two things, which fade out: the path of
-the head, and what the tail left in the wake.
+"""Draws the present and past places of the swimmer: frames of head and tail, and the midline; the head's path in short
+pieces and strobes of the midline, both shown up to the cursor; and two fading trails of the last seconds: the path of
+the head, and the momentum that the tail gave to the wake.
 """
 
 import numpy as np
@@ -25,10 +25,10 @@ class RecentRows:
     """The last seconds of a quantity of `width` numbers."""
 
     def __init__(self, width: int) -> None:
-        self._stamps, self._rows = np.empty(0), np.empty((0, width))  # ns, and the row of each
+        self._stamps, self._rows = np.empty(0), np.empty((0, width))  # ns, and the rows
 
     def add(self, stamp: int, row: np.ndarray) -> np.ndarray | None:
-        """Add a `row` (width,) at `stamp` [ns]; returns the previous one, None at first."""
+        """Add a `row` (width,) at `stamp` [ns]. Returns the previous one, None at first."""
         previous = self._rows[-1] if len(self._rows) else None
         begin = max(0, int(np.searchsorted(self._stamps, stamp - LENGTH * 1e9)) - 1)
         self._stamps = np.append(self._stamps[begin:], stamp)
@@ -36,20 +36,20 @@ class RecentRows:
         return previous
 
     def at(self, stamps: np.ndarray) -> np.ndarray:
-        """The quantity at `stamps` (...,) [ns], interpolated: float32 (..., width). Before the first row: that row."""
+        """The quantity at `stamps` (...,) [ns], interpolated: float32 (..., width). Before the first row, that row."""
         found = [np.interp(stamps, self._stamps, column) for column in self._rows.T]
         return np.stack(found, axis=-1).astype(np.float32)
 
 
 class Track:
-    """Draws midline, strobes, path, trail, and the frames of head and tail, by the methods of topics."""
+    """Draws midline, strobes, path, trail, and the frames of head and tail, through the methods of topics."""
 
     def __init__(self, stream: BatchedStream) -> None:
         self._stream = stream
         self._places = RecentRows(3)  # m
         self._ages = _ages() * 1e9  # ns, (PIECES, POINTS), from the present backwards
         stream.log_line_style(entities.TRACK, colours.dim(colours.PATH, 0.8), width=1.0)
-        left = 1.0 - np.arange(PIECES) / PIECES  # of the colour
+        left = 1.0 - np.arange(PIECES) / PIECES  # shares of the colour
         stream.log_line_style(entities.TRAIL, colours.faded(colours.PATH, left), width=0.5 + 1.1 * left)
         stream.log_line_style(entities.STROBES, colours.dim(colours.LABEL, 0.65), width=0.8)
         stream.log_static(entities.BACKBONE, rr.LineStrips3D.from_fields(colors=[colours.LABEL], radii=[0.0004]))
@@ -69,7 +69,7 @@ class Track:
             self._stream.add_pose(stamp, entities.HEAD, pose.position, pose.orientation)
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
-        """Draw the midline; it stays where it is the first of a `STROBE_PERIOD`."""
+        """Draw the midline. The first of each `STROBE_PERIOD` stays visible."""
         midline = backbone.position[None]
         if self._stream.number_due("backbone", stamp):
             if self._stream.due("strobe", stamp, STROBE_PERIOD):
@@ -80,9 +80,9 @@ class Track:
 
 
 class Wake:
-    """Draws a ribbon from the tail's path on: the momentum given to the wake per time, `scale` [m per N] wide.
+    """Draws a ribbon beside the tail's path: the momentum per time given to the wake, `scale` [m per N] wide.
 
-    A scheme: the model has no flow in the wake. So the ribbon stays where the tail was, also in a current.
+    This is a scheme: the model has no flow in the wake. So the ribbon stays where the tail was, even in a current.
     """
 
     def __init__(self, stream: BatchedStream, scale: float) -> None:
@@ -96,7 +96,7 @@ class Wake:
         stream.log_static(entities.WAKE, ribbon)
 
     def draw(self, stamp: int, tail: np.ndarray, momentum_rate: np.ndarray) -> None:
-        """Continue to the `tail`, (3,) [m], and the `momentum_rate`, (3,) [N], in the world, at `stamp` [ns]."""
+        """Extend it to the `tail`, (3,) [m], with the `momentum_rate`, (3,) [N], in the world, at `stamp` [ns]."""
         self._ends.add(stamp, np.concatenate([tail, tail + self._scale * momentum_rate]))
         self._stream.add_row(
             stamp, entities.WAKE, rr.Mesh3D, vertex_positions=self._ends.at(stamp - self._ages).reshape(-1, 3)
@@ -104,6 +104,6 @@ class Wake:
 
 
 def _ages() -> np.ndarray:
-    """Ages [s] of the trail's points, (PIECES, POINTS); a piece begins where the previous one ends."""
+    """Ages [s] of the trail's points, (PIECES, POINTS). A piece begins where the previous one ends."""
     first = np.arange(PIECES) * LENGTH / PIECES
     return first[:, None] + np.linspace(0.0, LENGTH / PIECES, POINTS)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws the water around a frame of `camera`: a floor with light on it, two walls behind the swimmer, and scales.
 
-The floor's light stands still in the world. It and the walls fade into the water with the distance. The floor's lines
-lie at round coordinates of the world, those of the walls at round depths. Some have a label: x and y along the floor,
-the depth (-z) along the edge between the walls. The box follows the frame by whole meshes, and takes the mesh that
-fits the frame's radius.
+The floor's light is fixed in the world. Floor and walls fade into the water with distance. The floor's lines lie at
+round coordinates of the world, the walls' lines at round depths. Some have a label: x and y along the floor, the depth
+(-z) along the edge between the walls. The box follows the frame in steps of whole meshes. The size of its mesh fits the
+frame's radius.
 """
 
 from functools import lru_cache
@@ -19,23 +19,23 @@ from eel_viz.scene3d.lettering import standing_texts
 from eel_viz.scene3d.skin import tiles
 
 MESHES = (1.0, 2.5, 5.0, 10.0)  # possible widths of a mesh, times a power of ten
-MESHES_IN_RADIUS = 1.4  # at least, where the mesh is chosen
-KEPT = (1.2, 5.0)  # meshes in the radius, between which the mesh stays
-ASIDE, ABOVE, BELOW = 2.4, 0.9, 1.0  # how far the box reaches from the centre at least [radii]
-LAG = 1.5  # meshes: how far the centre moves before the box follows
+MESHES_IN_RADIUS = 1.4  # least number of meshes in the radius when the mesh is chosen
+KEPT = (1.2, 5.0)  # meshes in the radius: range in which the mesh is kept
+ASIDE, ABOVE, BELOW = 2.4, 0.9, 1.0  # least distances of the box's faces from the centre [radii]
+LAG = 1.5  # meshes: movement of the centre before the box follows
 LETTERS = 0.085  # height of a label's capitals [radii]
-APART = {"x": 0.8, "y": 1.4, "depth": 0.4}  # labels along an edge, at least [radii]
-ALONG = {"x": (1.0, 0, 0), "y": (0, -1.7, 0), "depth": (0, -1.7, 0)}  # letters, on their wall; wider where it is slant
+APART = {"x": 0.8, "y": 1.4, "depth": 0.4}  # least distances of labels along an edge [radii]
+ALONG = {"x": (1.0, 0, 0), "y": (0, -1.7, 0), "depth": (0, -1.7, 0)}  # letters, on their wall; wider on a slanting one
 CORNER = 0.45  # from the corner to the first label of an edge [radii]
 LABELLED = 1.1 * camera.EDGE, 0.95 * camera.EDGE  # the part of the picture that has labels, as tangents
 TILES = 9  # vertices of the floor along each side
 FACE = np.stack(np.meshgrid(*2 * [np.linspace(0.0, 1.0, TILES)], indexing="ij"), axis=-1).reshape(
     -1, 2
 )  # along, across
-EDGE = np.flatnonzero(FACE[:, 1] % 1.0 == 0.0)  # of a wall: its lower and upper edge alone
+EDGE = np.flatnonzero(FACE[:, 1] % 1.0 == 0.0)  # of a wall: only its lower and upper edge
 GRID, LABELS, WALLS, FLOOR = "grid", "labels", "walls", "floor"
-TEXTURE, WAVES = 96, 7  # pixels of the floor's light along each side, and the waves that bundle it
-TILE = 2.0  # width of the floor's light, which then repeats [radii at which the mesh was chosen]
+TEXTURE, WAVES = 96, 7  # pixels of the floor's light along each side, and number of the waves that focus it
+TILE = 2.0  # period of the floor's light [radii when the mesh was chosen]
 
 
 class WaterBox:
@@ -64,7 +64,7 @@ class WaterBox:
         return 0.0 if self._box is None else self._box[0][2]
 
     def draw(self, stamp: int, centre: np.ndarray, radius: float) -> None:
-        """Draw the box at `stamp` [ns] around a frame, where it has changed."""
+        """Draw the box at `stamp` [ns] around a frame, as far as it has changed."""
         self._place(centre, radius)
         reach = radius / self._mesh
         low = self._anchor - np.ceil(np.array((ASIDE, ASIDE, BELOW)) * reach + LAG)
@@ -93,7 +93,7 @@ class WaterBox:
             colours.WATER_LINE if k % 2 else colours.WATER_LINE_MAJOR
             for k in np.concatenate([*numbers[:2], numbers[2][1:]])
         ]
-        placed: Any = np.array(strips) * self._mesh  # rerun's types have lists of strips alone
+        placed: Any = np.array(strips) * self._mesh  # rerun's types allow only lists of strips
         lines = rr.LineStrips3D.from_fields(strips=placed, colors=shades)
         self._stream.log(stamp, f"{self._root}/{GRID}", lines)
 
@@ -119,7 +119,7 @@ class WaterBox:
         bright: colours.Colour,
         pattern: np.ndarray | None = None,
     ) -> None:
-        """Log the mesh `name` with vertices at `places` (n, 3) [m], of the colour `bright` by shares `lit` (n,)."""
+        """Log the mesh `name` with vertices at `places` (n, 3) [m], in the colour `bright` by shares `lit` (n,)."""
         deep = np.array(colours.WATER_DEEP)
         mesh = rr.Mesh3D.from_fields(
             vertex_positions=places.astype(np.float32),
@@ -159,9 +159,9 @@ class WaterBox:
 
 @lru_cache(maxsize=1)
 def caustics() -> np.ndarray:
-    """Light below waves, uint8 (TEXTURE, TEXTURE, 3): rays that the slopes of a wavy surface turn aside; it repeats."""
+    """Light below waves, uint8 (TEXTURE, TEXTURE, 3), periodic: rays refracted by the slopes of a wavy surface."""
     chance = np.random.default_rng(3)
-    number = chance.integers(-4, 5, size=(WAVES, 2))  # of waves in a tile
+    number = chance.integers(-4, 5, size=(WAVES, 2))  # numbers of waves per tile
     phase = chance.uniform(0.0, 2.0 * np.pi, WAVES)
     rays = np.stack(np.meshgrid(*2 * [np.arange(0.0, 1.0, 0.25 / TEXTURE)]), axis=-1)
     slopes = np.cos(2.0 * np.pi * rays @ number.T + phase) @ (

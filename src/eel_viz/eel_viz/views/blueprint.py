@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The arrangements of a recording, as functions without data. Each fits a window of 1280 by 720 pixels.
 
-A recording carries all of them as tabs: those of `ARRANGEMENTS`, `robot` where the body has joints, and `compare` where
-another run is laid over this one.
-What a view shows is logged by the classes of recording/loggers.py under a path of entities.py.
+A recording carries all of them as tabs: those of `ARRANGEMENTS`, `robot` if the body has joints, and `compare` if
+another run is drawn over this one. The content of a view is logged by the classes of recording/loggers.py, under a
+path of entities.py.
 """
 
 from collections.abc import Callable
@@ -26,8 +26,8 @@ from eel_viz.views.views import (
     texts,
 )
 
-REPEATED_FROM = 0.4  # of a run: from here on it is repeated, for the swim is settled by then
-POWER_SHOWN = 4.0  # s: duration of the last power that is shown, so that its scale fits the swim and not its start
+REPEATED_FROM = 0.4  # of a run: playback repeats the rest, where the swim is settled
+POWER_SHOWN = 4.0  # s: window of the shown power, so that its scale fits the swim and not its start
 TORQUE_MAP = "Torque C3 over body and time"
 LOAD_MAP = "Torque of each motor in time, as a share of its limit, red at it; in N m without limits"
 HARDEST = "Hardest-working motor [N m]: torque red, limit white"
@@ -54,9 +54,9 @@ def overview(look: Look) -> rrb.Container:
 
 
 def power_name(look: Look) -> str:
-    """The name of the plot of powers, as long as a window of 1280 pixels shows; a flow's is blue, where there is one.
+    """The name of the plot of powers, short enough for a window of 1280 pixels. A flow's power, if any, is blue.
 
-    Beside fins and dampers the nose is not named: its colour is that in the scene's legend.
+    Beside fins and dampers the nose is not named: its colour is the same in the scene's legend.
     """
     named = {
         "nose magenta": not (look.fins and look.joints),
@@ -68,7 +68,7 @@ def power_name(look: Look) -> str:
 
 
 def energy_name(look: Look) -> str:
-    """The name of the plot of energies; weight and springs have a curve where they have some."""
+    """The name of the plot of energies. Weight and springs have curves if there are any."""
     return f"Energy [J]: body grey, water yellow, weight blue{', springs brown' if look.joints else ''}"
 
 
@@ -86,7 +86,7 @@ def torques(look: Look) -> rrb.Container:
 
 
 def robot(look: Look) -> rrb.Container:
-    """The motors: how hard they work, the one nearest to its limit, power and work."""
+    """The motors: their loads, the one closest to its limit, power and work."""
     return rrb.Horizontal(
         rrb.Vertical(following_view(look), texts(look), row_shares=[2.3, 1.0]),
         rrb.Vertical(
@@ -127,7 +127,7 @@ def motion(look: Look) -> rrb.Container:
 
 
 def swimmer(look: Look) -> rrb.Container:
-    """The swimmer alone, for films."""
+    """Only the swimmer, for films."""
     return rrb.Horizontal(following_view(look), name="swimmer")
 
 
@@ -168,8 +168,8 @@ def arrangement(
 ) -> rrb.Blueprint:
     """All arrangements as tabs, `first` in front. `ValueError` for an unknown one.
 
-    live: the time cursor follows the newest data; otherwise it plays, and repeats the swim, or all of a run whose end
-    is not known. comparison: with another run.
+    live: the time cursor follows the newest data; otherwise it plays and repeats the swim, or all of a run of unknown
+    end. comparison: with another run.
     """
     checked_choice("blueprint", first, ARRANGEMENTS)
     asked_for = {"compare": comparison, "robot": look.joints}

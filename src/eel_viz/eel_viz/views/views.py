@@ -14,7 +14,7 @@ from eel_viz import entities
 from eel_viz.plots import heat_map, profile_plot
 from eel_viz.scene3d import camera, colours
 
-MARGIN = 0.05  # of a run's duration: time after its end, for the last label of the axis
+MARGIN = 0.05  # of a run's duration: margin after its end, for the last label of the axis
 LOADS = entities.LOAD, entities.LOAD_ENDS
 FRAMES = entities.HEAD, entities.TAIL
 WAKE = entities.WAKE, entities.WAKE_LEGEND
@@ -22,9 +22,9 @@ WAKE = entities.WAKE, entities.WAKE_LEGEND
 
 @dataclass(frozen=True, kw_only=True)
 class Look:
-    """What is shown of `frames`, the axes of head and tail, and of the `wake`; the `end` of the run [s], 0: unknown.
+    """Options of a view: `frames`, the axes of head and tail; the `wake`; and the `end` of the run [s], 0: unknown.
 
-    fins, joints: whether the body has some.
+    fins, joints: whether the body has any.
     """
 
     frames: bool = False
@@ -35,7 +35,7 @@ class Look:
 
     @property
     def hidden(self) -> tuple[str, ...]:
-        """The entities that are not shown."""
+        """The hidden entities."""
         return (entities.BACKBONE, *(() if self.frames else FRAMES), *(() if self.wake else WAKE))
 
 
@@ -43,7 +43,7 @@ PLAIN = Look()
 
 
 def following_view(look: Look, *, both: bool = False) -> rrb.Spatial3DView:
-    """Three dimensions; the camera moves with the swimmer without turning; with `both`, with two swimmers."""
+    """A 3D view. The camera moves with the swimmer, or with `both` swimmers, without turning."""
     not_here = (entities.WATER, entities.LEGEND) if both else (entities.BOTH_WATER, entities.OTHER)
     return _three_dimensions(
         "Both swimmers, the other as hoops" if both else "Swimmer",
@@ -54,7 +54,7 @@ def following_view(look: Look, *, both: bool = False) -> rrb.Spatial3DView:
 
 
 def path_view(look: Look) -> rrb.Spatial3DView:
-    """Three dimensions; the camera keeps all places so far in the picture."""
+    """A 3D view. The camera keeps the whole path so far in the picture."""
     return _three_dimensions(
         "Path so far",
         entities.WHOLE_PATH,
@@ -67,7 +67,7 @@ def path_view(look: Look) -> rrb.Spatial3DView:
 def _three_dimensions(
     name: str, origin: str, *, left_out: Sequence[str], hidden: Sequence[str], with_past: Sequence[str] = ()
 ) -> rrb.Spatial3DView:
-    """A view from the frame `origin`. with_past: entities of which all is shown that lies before the time cursor."""
+    """A view from the frame `origin`. with_past: entities shown with everything before the time cursor."""
     start, end = rrb.TimeRangeBoundary.infinite(), rrb.TimeRangeBoundary.cursor_relative()
     past = rrb.VisibleTimeRanges([rrb.VisibleTimeRange(entities.TIMELINE, start=start, end=end)])
     overrides: dict[str | EntityPath, Any] = {path: [past] for path in with_past}
@@ -78,7 +78,7 @@ def _three_dimensions(
         contents=[f"{entities.WORLD}/**", *(f"- {path}/**" for path in left_out)],
         background=colours.WATER_BACKGROUND,
         line_grid=rrb.LineGrid3D(visible=False),
-        # else the viewer takes another one as soon as somebody logs an entity in a named frame
+        # otherwise the viewer changes it as soon as an entity is logged in a named frame
         spatial_information=rrb.SpatialInformation(target_frame=f"tf#{origin}"),
         eye_controls=rrb.EyeControls3D(position=camera.EYE, look_target=(0, 0, 0), eye_up=(0, 0, 1)),
         overrides=overrides,
@@ -101,7 +101,7 @@ def _drawing(root: str, name: str, x: tuple[float, float], y: tuple[float, float
 
 
 def texts(look: Look) -> rrb.Container:
-    """What to look at; and the run's summary, the log, and the residual, as tabs."""
+    """What to look at; and as tabs the run's summary, the log, and the energy residual."""
     return rrb.Horizontal(
         rrb.TextDocumentView(name="What to look at", origin=entities.LOOK),
         rrb.Tabs(
@@ -115,7 +115,7 @@ def texts(look: Look) -> rrb.Container:
 def series_view(look: Look, name: str, *paths: str, last: float = 0.0) -> rrb.TimeSeriesView:
     """Values over time, of the whole run or of the `last` seconds before the cursor.
 
-    The name says which colour is what, so no legend covers the curves.
+    The name gives the meaning of the colours, so no legend covers the curves.
     """
     start = end = rrb.TimeRangeBoundary.infinite()
     if last:
