@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 from setuptools import find_packages, setup
 
-COMMANDS = {  # of `eel`, in the order of its list: the folder of each
+COMMANDS = {  # commands of `eel` in the order of its list, with their folders
     "sweep": "sweeps",
     "optimise": "optimisation",
     "identify": "identification",

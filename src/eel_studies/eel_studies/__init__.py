@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Studies: many swims for one question."""
+"""Studies: many swims that answer one question."""
 
 import eel_command  # noqa: F401  first: Ctrl-C ends a command during the other imports
 

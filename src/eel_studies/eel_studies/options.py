@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The options that the commands of studies share: the scene that a study is about, ranges, and counts."""
+"""Options shared by the commands of studies: the scene under study, ranges, and counts."""
 
 import argparse
 
@@ -14,20 +14,20 @@ ABOUT = "a .yaml file (docs/howto/scenes.md), or a gait by name"
 
 
 def add_scene_options(parser: Parser, *left_out: str, several: bool = False) -> None:
-    """Add the options of `chosen` to the `parser` of a command, but those `left_out`. several: of several scenes."""
+    """Add the options that `chosen` reads to the `parser`, except those `left_out`. several: for several scenes."""
     parser.add_argument("swim", nargs="*" if several else "?", metavar="SCENE", help=f"{ABOUT} (falling)")
     add_options(parser, "--set")
     add_changes(parser, *left_out)
 
 
 def chosen(name: str | None, options: argparse.Namespace) -> Swim:
-    """The swim of the file called `name`, or of the gait, with what the `options` change."""
+    """The swim of the file or the gait called `name`, changed by the `options`."""
     swim, numbers = swim_from(name or "falling", options), set_numbers(options.set)
     return point_at(numbers, swim, {}, swim) if numbers else swim
 
 
 def ranges_of(option: str, texts: list[str], bounds: str = "") -> dict[str, tuple[float, float]]:
-    """The two numbers by name that an `option` NAME=LOW:HIGH gives. bounds: of them, in the words of an error."""
+    """The two numbers by name from an `option` NAME=LOW:HIGH. bounds: rule for them, in the words of an error."""
     found = {}
     for name, text in named_texts(option, texts):
         try:
@@ -39,7 +39,7 @@ def ranges_of(option: str, texts: list[str], bounds: str = "") -> dict[str, tupl
 
 
 def check_least(options: argparse.Namespace, **least: int) -> None:
-    """`ValueError` for an option below the `least` value that it may have."""
+    """`ValueError` for an option below its `least` value."""
     for name, low in least.items():
         if getattr(options, name) < low:
             raise ValueError(f"--{name} must be {low} or more, got {getattr(options, name)}")

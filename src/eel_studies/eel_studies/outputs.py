@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the command of a study leaves behind: pictures, tables, and the parts of a page that it writes anew."""
+"""The output of a study's command: pictures, tables, and the parts of a page that it rewrites."""
 
 import argparse
 import csv
@@ -16,7 +16,7 @@ from eel_dynamics.runs.storage.tables import needed
 
 from eel_studies.pictures import PICTURES, Draw, write_picture
 
-NEW = "<!-- {name}: written by `{command}` -->\n<!-- end of {name} -->\n\n"  # a part of a page that there is not yet
+NEW = "<!-- {name}: written by `{command}` -->\n<!-- end of {name} -->\n\n"  # a missing part of a page
 
 
 def add_output_options(parser: Parser) -> None:
@@ -26,7 +26,7 @@ def add_output_options(parser: Parser) -> None:
 
 
 class Table(NamedTuple):
-    """Rows of texts below a head. left: the columns that are aligned to the left, in `text`."""
+    """Rows of texts below a head. left: the columns that `text` aligns to the left."""
 
     head: Sequence[str]
     rows: Sequence[Sequence[str]]
@@ -45,28 +45,29 @@ class Table(NamedTuple):
         return markdown.table(self.head, self.rows)
 
     def write_csv(self, path: Path) -> None:
-        """Write the table to `path`. `NotWritten` where it cannot be completed."""
+        """Write the table to `path`. `NotWritten` if it cannot be completed."""
         with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
             csv.writer(file).writerows((self.head, *self.rows))
 
 
 def checked_outs(command: str, options: argparse.Namespace) -> list[Path]:
-    """The files that --out of a `command` names: tables (.csv) and `PICTURES`. `ValueError` for another suffix."""
+    """The files of --out of a `command`: tables (.csv) and `PICTURES`. `ValueError` for other suffixes."""
     return [checked_out(command, out, (*PICTURES, ".csv")) for out in options.out]
 
 
 def write_files(paths: list[Path], table: Callable[[Path], object], draw: Draw, size: tuple[float, float]) -> None:
-    """Write each of the `paths`, and tell so: a .csv by table(path), a picture of `size` [inches] by draw(figure)."""
+    """Write each of the `paths` and report it: a .csv by table(path), a picture of `size` [inches] by draw(figure)."""
     for path in paths:
         table(path) if path.suffix == ".csv" else write_picture(draw, size, path)
         print(f"written to {written_as(path)}")
 
 
 class Outputs:
-    """The pictures and the page of a `command`, by its `options`; each is told when it is written.
+    """The pictures and the page of a `command`, from its `options`. It reports each file that it writes.
 
-    parts: names of the parts that the page must have, unless it is new. Before all work, `ValueError`: a page cannot be
-    written, or lacks a part; `OSError`: it cannot be read, or the folder not be made; `ImportError`: no matplotlib.
+    parts: names of the parts that an existing page must have. Errors are raised before any work: `ValueError` if a page
+    cannot be written or lacks a part; `OSError` if it cannot be read, or the folder not made; `ImportError` without
+    matplotlib.
     """
 
     def __init__(self, command: str, options: argparse.Namespace, parts: Iterable[str] = ()):
@@ -90,9 +91,10 @@ class Outputs:
         suffixes: tuple[str, ...] = ("png", "svg"),
         settings: dict[str, Any] | None = None,
     ) -> str:
-        """Draw with `draw(figure)` of `size` [inches] into the folder; returns the picture as the page links it.
+        """Draw with `draw(figure)` of `size` [inches] into the folder. Returns the picture's link in the page.
 
-        name: of the file, which ends in each of the `suffixes`; the page links the last one. settings: of matplotlib.
+        name: of the file. A file is written for each of the `suffixes`; the page links the last. settings:
+        matplotlib's.
         """
         paths = [self.folder / f"{name}.{suffix}" for suffix in suffixes]
         write_picture(draw, size, *paths, settings=settings)
@@ -101,16 +103,16 @@ class Outputs:
         return f"![{title}]({os.path.relpath(paths[-1], self.page.parent if self.page else '.')})"
 
     def write_table(self, name: str, table: Table) -> None:
-        """Write the `table` that the page summarises beside it, as `name`.csv. Without a page, nothing is written."""
+        """Write the `table` that the page summarises to `name`.csv beside the page. Without a page, do nothing."""
         if self.page:
             path = self.page.with_name(f"{name}.csv")
             table.write_csv(path)
             print(f"written to {written_as(path)}")
 
     def write(self, parts: dict[str, str], values: dict[str, str] | None = None) -> None:
-        """Write the `parts` of the page, and the `values` within its sentences, by name.
+        """Write the `parts` of the page, and the `values` inside its sentences, by name.
 
-        A new page has the parts alone. Without a page, nothing is written. `NotWritten`: it cannot be completed.
+        A new page has only the parts. Without a page, nothing is written. `NotWritten` if it cannot be completed.
         """
         page = self.page
         if page is None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The pictures of the studies: one style, and files (.png, .svg, .pdf) that are the same each time.
+"""The pictures of the studies: one style, and files (.png, .svg, .pdf) that are reproducible.
 
 Colours are those of Okabe and Ito, distinct for colour-blind readers. Each has its own dash for print without colour.
 Colour maps are perceptually uniform (cividis) or diverging without red and green (PuOr).
@@ -14,7 +14,7 @@ from eel_common.files.output_file import replacing
 
 Figure: TypeAlias = Any  # of matplotlib, which takes longer to import than all the rest
 Axes: TypeAlias = Any
-Draw: TypeAlias = Callable[[Figure], object]  # into an empty figure
+Draw: TypeAlias = Callable[[Figure], object]  # draws into an empty figure
 BLACK, BLUE, ORANGE, GREEN, PURPLE = "#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7"
 PALE_BLUE, GREY = "#d9e6f0", "#888888"
 LOOKS = (  # of several curves in one panel: colour, dash, mark
@@ -42,7 +42,7 @@ SETTINGS: dict[str, Any] = {
 PICTURES = ".png", ".svg", ".pdf"
 METADATA = {".png": {"Software": None}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}  # None: left out
 COLOUR_BAR = "<colorbar>"  # label that matplotlib gives the axes of a colour bar
-PITCH_RAMPS = ((1.0, 3.0), (6.0, 8.0))  # s, intervals in which the falling gait bends in pitch: t1 to t3 and t4 to t6
+PITCH_RAMPS = ((1.0, 3.0), (6.0, 8.0))  # s, intervals with pitch bends of the falling gait: t1 to t3 and t4 to t6
 
 
 def mark_pitch(panels: Iterable[Axes]) -> None:
@@ -53,7 +53,7 @@ def mark_pitch(panels: Iterable[Axes]) -> None:
 
 
 def legend_above(figure: Figure, columns: int = 2) -> None:
-    """One legend above all panels of a figure, where it covers no curve; curves of the same name are listed once."""
+    """One legend above all panels of a figure, clear of the curves. Curves of the same name are listed once."""
     named: dict[str, Any] = {}
     for axes in figure.axes:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
@@ -68,7 +68,7 @@ def along_way(points: np.ndarray, ahead: np.ndarray) -> np.ndarray:
 
 
 def letter_panels(figure: Figure) -> None:
-    """Put (a), (b), ... above the panels of a figure, where it has more than one; colour bars have none."""
+    """Put (a), (b), ... above the panels of a figure with more than one, except colour bars."""
     panels = [axes for axes in figure.axes if axes.get_label() != COLOUR_BAR]
     for number, axes in enumerate(panels if len(panels) > 1 else ()):
         axes.set_title(f"({chr(ord('a') + number)})", loc="left", fontsize="medium", fontweight="bold")
@@ -77,8 +77,8 @@ def letter_panels(figure: Figure) -> None:
 def write_picture(draw: Draw, size: tuple[float, float], *paths: Path, settings: dict[str, Any] | None = None) -> None:
     """Draw with `draw(figure)` into an empty matplotlib figure, and write it to each of the `paths`.
 
-    size: width and height [inches]. The suffix of a path gives the format. settings: of matplotlib, in place of those
-    in `SETTINGS`. `ImportError` without matplotlib; `NotWritten` where a file cannot be completed.
+    size: width and height [inches]. The suffix of a path gives the format. settings: of matplotlib, instead of those
+    in `SETTINGS`. `ImportError` without matplotlib; `NotWritten` if a file cannot be completed.
     """
     import matplotlib.figure  # here: it takes longer to import than all the rest
 

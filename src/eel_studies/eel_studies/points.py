@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Points of a study: one run each, with numbers of the gait, the scene, the body or the initial state by name.
+"""Points of a study: one run each, with named numbers of the gait, the scene, the body or the initial state.
 
 | name | what it sets |
 |---|---|
@@ -51,14 +51,14 @@ Measure = Callable[[Run], dict[str, Any]]  # run -> {name: number}
 AccuracyLike = str | float | Accuracy
 Stations = int | np.ndarray
 Progress = Callable[[int, int], object] | bool | None  # as in `sweep`
-GROUPS = "scene.", "body.", "initial."  # what begins a name of theirs
+GROUPS = "scene.", "body.", "initial."  # prefixes of their names
 FLOW, FINS, ROBOT = "flow.", "fins.", "robot."
 POSITIONS = ("position_x", "position_y", "position_z")
 VELOCITIES = ("omega_x", "omega_y", "omega_z", "v_x", "v_y", "v_z")
 
 
 class SwimSettings(NamedTuple):
-    """What is measured of the points of a study, and further arguments of `simulate`."""
+    """The measures of a study's points, and further arguments of `simulate`."""
 
     measure: Measure | tuple[str, ...]  # run -> {name: number}, or names of MEASURES
     estimate: bool = True
@@ -69,9 +69,9 @@ class SwimSettings(NamedTuple):
         return self.measure(run) if callable(self.measure) else measures_of(run, self.measure, periods)
 
     def without_the_rest(self, point: Swim, every_sample: bool = True) -> Swim:
-        """The `point` without ledger, internal wrench, and samples on the way, where no named measure reads them.
+        """The `point` without ledger, internal wrench, and intermediate samples, unless a named measure reads them.
 
-        every_sample: whether samples on the way are kept anyhow.
+        every_sample: whether intermediate samples are kept anyway.
         """
         if callable(self.measure):
             return point
@@ -100,7 +100,7 @@ def batch_of_points(
 
 
 def run_of_point(point: Swim, how: SwimSettings) -> Run:
-    """Simulate one `point`. `SimulationStopped` where it does not come to its end."""
+    """Simulate one `point`. `SimulationStopped` if it stops early."""
     setup = SimulationSetup.of(**point.swimmer, most_evaluations=how.most_evaluations)
     swim = swim_of(SwimRequest.of(Run, point.law, setup, point.duration, point.sample_period, estimate=how.estimate))
     if swim.stopped is not None:
@@ -116,9 +116,9 @@ def base_point(
     robot: Robot | str | None = None,
     gait: Gait = "straight",
 ) -> Swim:
-    """What the points of a study share: all that a `gait` which is a whole swim has, and what replaces it.
+    """The settings that the points of a study share: those of a `gait` that is a whole swim, and their replacements.
 
-    Without a `body` it is that of the robot. friction: of the default scene. `ValueError` names what does not fit.
+    Without a `body`, the robot's is taken. friction: of the default scene. `ValueError` names a bad argument.
     """
     base = gait if isinstance(gait, Swim) else Swim(None, checked_body(None), Scene(friction=friction), accuracy)
     found = checked_robot(robot_of(robot) if isinstance(robot, str) else robot)
@@ -129,10 +129,10 @@ def base_point(
 
 
 def point_at(values: Numbers, gait: Gait, numbers: Numbers, base: Swim) -> Swim:
-    """The swim of these `values` by name; all else is as in `numbers`, by the same names, and in `base`.
+    """The swim of these `values` by name. The rest comes from `numbers`, with the same names, and from `base`.
 
-    gait: its name, a function of numbers that returns a law, or a whole swim. `ValueError` tells the point and what
-    does not fit.
+    gait: its name, a function of numbers that returns a law, or a whole swim. `ValueError` names the point and the
+    fault.
     """
     if not (isinstance(gait, (str, Swim)) or callable(gait)):
         raise ValueError(
@@ -144,7 +144,7 @@ def point_at(values: Numbers, gait: Gait, numbers: Numbers, base: Swim) -> Swim:
 
 
 def law_of_terms(law: object) -> Law:
-    """The `law` that a gait returned. `ValueError` for anything but a `Law`: a `SampledLaw` has no terms."""
+    """The `law` that a gait returned. `ValueError` for any other type: a `SampledLaw` has no terms."""
     if not isinstance(law, Law):
         raise ValueError(f"gait must return a Law, whose terms are known, got {shown(law)}")
     return law
@@ -203,7 +203,7 @@ def _point(values: Numbers, gait: Gait, base: Swim) -> Swim:
 
 
 def _of_robot(robot: Robot | None, numbers: Numbers) -> str:
-    """A hint where one of the `numbers` that are no gait's is the robot's."""
+    """A hint if one of the `numbers` that the gait lacks is a robot's."""
     for name, value in numbers.items():
         with suppress(ValueError, TypeError):
             _robot_with(robot, {name: value})
@@ -218,7 +218,7 @@ def _robot_with(robot: Robot | None, numbers: Numbers) -> Robot:
 
 
 def fins_with(fins: tuple[Fin, ...], changes: Numbers) -> tuple[Fin, ...]:
-    """The `fins` with other fields, or other gains of those that hold the roll."""
+    """The `fins` with changed fields, or changed gains of those that hold the roll."""
     if changes and not fins:
         raise ValueError(f"fins have no field {shown(next(iter(changes)))}: the scene has no fins")
     check_names("fins", changes, (*(item.name for item in fields(Fin)), *GAINS))
@@ -235,7 +235,7 @@ def fins_with(fins: tuple[Fin, ...], changes: Numbers) -> tuple[Fin, ...]:
 
 
 def _flow_with(flow: Flow | None, changes: Numbers) -> Flow | None:
-    """The `flow` with other fields; of a sum, whose parts may have the same, none can be changed."""
+    """The `flow` with changed fields. A sum of flows cannot be changed, as its parts may share field names."""
     if not changes:
         return flow
     known = [item.name for item in fields(flow)] if type(flow) in KINDS.values() else []  # type: ignore[arg-type]
@@ -255,7 +255,7 @@ def _start(start: InitialState, changes: Numbers) -> InitialState:
 
 
 def check_names(group: str, given: Numbers, known: Iterable[str]) -> None:
-    """`ValueError` for a name among those `given` that the `group` does not have."""
+    """`ValueError` for one of the names `given` that the `group` does not have."""
     for name in given:
         if name not in known:
             hint = did_you_mean(name, known)

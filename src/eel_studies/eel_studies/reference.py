@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Swims that are compared: tried without a word, timed in turns, and against two methods on two grids.
+"""Comparison of swims: attempted in silence, timed in turns, and judged by two methods on two grids.
 
-Two grids may have nearly the same error, so the pair must agree better than what it is to judge.
+Two grids may have nearly the same error. So the pair must agree better than the run that it judges.
 """
 
 import statistics
@@ -16,9 +16,9 @@ from eel_dynamics.runs.companion import relative_errors
 
 from eel_dynamics import Accuracy, Run, SimulationStopped, Swim
 
-DEARER = 10.0  # times, that the next pair takes
-LONG = 0.5  # s, of a swim whose CPU time is known well enough from one round
-REFERENCES = tuple(  # finer ones, where the first do not agree
+DEARER = 10.0  # factor of the next pair's time
+LONG = 0.5  # s, one round is enough to time a longer swim
+REFERENCES = tuple(  # finer ones, for use if the first do not agree
     (
         Accuracy(name="pair", resolution=points, tolerance=tolerance),
         Accuracy(name="adams", resolution=points + 20.0, tolerance=0.3 * tolerance, method="adams", order=6),
@@ -28,7 +28,7 @@ REFERENCES = tuple(  # finer ones, where the first do not agree
 
 
 def attempt(swim: Swim, **how: Any) -> Run | Exception:
-    """The run of `swim`, or why there is none. how: as in `Swim.run`. It shows no progress."""
+    """The run of `swim`, or the error that prevented it. how: as in `Swim.run`. It shows no progress."""
     try:
         return swim.run(**{"progress": lambda reached, left: None} | how)
     except (SimulationStopped, ValueError) as error:
@@ -36,7 +36,7 @@ def attempt(swim: Swim, **how: Any) -> Run | Exception:
 
 
 def attempts(swims: Iterable[Swim], **how: Any) -> list[Run | Exception]:
-    """`attempt` of each of the `swims`, over threads, without warnings, which the runs keep."""
+    """`attempt` of each of the `swims`, over threads. Warnings are not shown, as the runs keep them."""
     with warnings.catch_warnings(action="ignore"):
         return in_threads(lambda swim: attempt(swim, **how), swims)
 
@@ -44,10 +44,10 @@ def attempts(swims: Iterable[Swim], **how: Any) -> list[Run | Exception]:
 def cpu_seconds(
     swims: list[Swim], duration: float, rounds: int, say: Callable[[str], object] = lambda text: None
 ) -> list[float]:
-    """CPU time [s] on one core of `duration` [s] of each of the `swims`, set-up included, without samples.
+    """CPU time [s] on one core of `duration` [s] of each of the `swims`, with set-up, without samples.
 
-    Medians over `rounds`, in which the swims take turns, but for those that take `LONG`; infinite where one stops.
-    say(text): called with each round.
+    Medians over `rounds`, in which the swims take turns; swims longer than `LONG` are timed once. Infinite if one
+    stops. say(text): called with each round.
     """
 
     def timed(swim: Swim) -> float:
@@ -70,11 +70,10 @@ def cpu_seconds(
 def reference_of(
     swim: Swim, wanted: float, *, least: int = 1, seconds: float = np.inf, **how: Any
 ) -> tuple[Run, float]:
-    """A run of `swim` to compare others with, and its relative distance from another method on another grid.
+    """A run of `swim` for comparison with others, and its relative distance from another method on another grid.
 
-    The first of the `REFERENCES` that agree to `wanted`; else those that agree best. least: the first pair that is
-    tried. seconds: of CPU time, which no further pair may take. how: as in `Swim.run`. `SimulationStopped` where none
-    comes to its end.
+    The first of the `REFERENCES` that agree to `wanted`; otherwise those that agree best. least: the first pair to try.
+    seconds: limit of CPU time for a further pair. how: as in `Swim.run`. `SimulationStopped` if none reaches its end.
     """
     best: tuple[Run, float] | None = None
     stop: Exception | None = None
@@ -96,7 +95,7 @@ def reference_of(
 
 
 def front(rows: list[Any], error: Any, cost: Any) -> list[Any]:
-    """The Pareto front: those `rows` that no other row beats in both error and cost, the cheapest first."""
+    """The Pareto front: the `rows` that no other row beats in both error and cost, the cheapest first."""
     best, result = np.inf, []
     for row in sorted(rows, key=lambda row: (cost(row), error(row))):
         if error(row) < best:

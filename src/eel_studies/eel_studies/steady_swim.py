@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Swims that begin at the speed that they are to keep, so that a few periods show their steady state."""
+"""Swims that begin at their final speed, so that a few periods show the steady state."""
 
 from typing import Any
 
@@ -9,11 +9,11 @@ from eel_dynamics.analysis.averaging_window import common_period
 from eel_gaits import Law
 from eel_studies.points import Numbers, law_of_terms
 
-SAMPLES = 16  # in a period
+SAMPLES = 16  # per period
 
 
 def swim_times(law: Law, length: float, periods: int) -> dict[str, Any]:
-    """Duration and sample period [s] of so many `periods` of `law`, whose samples are whole parts of its period.
+    """Duration and sample period [s] of a swim of so many `periods` of `law`. Samples divide the period evenly.
 
     length: of the body [m]. `ValueError` for a law without terms or without a period.
     """
@@ -24,5 +24,5 @@ def swim_times(law: Law, length: float, periods: int) -> dict[str, Any]:
 
 
 def at_speed(numbers: Numbers, speed: float) -> Numbers:
-    """The `numbers` with which the head begins to swim ahead at `speed` [m/s], unless they have a velocity already."""
+    """The `numbers` with a start at `speed` [m/s] ahead, unless they have a velocity already."""
     return {"initial.v_x": speed} | numbers

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Numbers of a swim by name, beside those of `points`: what a map can be drawn over. A further one is a line of `OWN`.
+"""Numbers of a swim by name, in addition to those of `points`, for the axes of maps. A new one is a line of `OWN`.
 
 | name | what it sets |
 |---|---|
 | `period`, `scene.viscosity`, `flow.core`, `fins.area`, `robot.kp`, `initial.v_x`, `accuracy` ... | as in `points` |
 | `amplitude` | factor of the law's curvature |
-| `density_ratio` | density of the body by that of the water |
-| `spin` | turns/s of the head about all three of its axes alike |
+| `density_ratio` | density of the body / density of the water |
+| `spin` | turns/s of the head, the same about all three axes |
 | `flow_speed` | m/s: size of the flow's velocity |
 | `step` | s: fixed steps of the classical method |
 | `tolerance`, `resolution`, `method` | settings given one by one |
 
-Where the period changes, so does the duration: a map shows as many periods everywhere.
+The duration scales with the period, so that a map shows the same number of periods everywhere.
 """
 
 from collections.abc import Callable
@@ -30,11 +30,11 @@ from eel_gaits.gaits.numbers import Periodic
 from eel_dynamics import Accuracy, Scene, Swim
 from eel_studies.points import point_at
 
-RESOLUTION = 36.0  # points per body length where a setting in time is given: the error in space stays below 1e-3
+RESOLUTION = 36.0  # points per body length for given settings in time: the error in space stays below 1e-3
 
 
 def varied(swim: Swim, values: dict[str, Any]) -> Swim:
-    """The `swim` with these `values` by name. `ValueError` for what does not fit."""
+    """The `swim` with these `values` by name. `ValueError` for an unsuitable one."""
     period = _longest_period(swim)
     swim = point_at({name: value for name, value in values.items() if name not in OWN}, swim, {}, swim)
     for name, value in values.items():
@@ -46,7 +46,7 @@ def varied(swim: Swim, values: dict[str, Any]) -> Swim:
 
 
 def labelled(name: str) -> str:
-    """The `name` of a number with its unit in brackets, for an axis; as it is where its unit depends on the part."""
+    """The `name` of a number for an axis, with its unit in brackets unless that depends on the part."""
     kinds, field = (Scene, Fin, RollHold, Joint, Servo, PassiveTail, Muscle, Periodic), name.rpartition(".")[2]
     units = {item.metadata.get("unit") for kind in kinds for item in fields(kind) if item.name == field}
     unit = units.pop() if len(units) == 1 else ""

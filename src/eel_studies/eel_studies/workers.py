@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Distributes tasks over threads, or with Dask over processes of this machine or of others.
 
-Threads are enough on one machine: the mechanics run without the GIL. The tasks of a process that dies are reassigned to
-the others.
+Threads suffice on one machine, as the mechanics run without the GIL. If a process dies, its tasks go to the others.
 """
 
 import multiprocessing
@@ -14,13 +13,13 @@ from typing import Any, NamedTuple, TypeVar
 from eel_common.wording import shown
 from eel_dynamics.runs.storage.tables import needed
 
-PROCESSES = "processes"  # as a scheduler: of this machine
+PROCESSES = "processes"  # as a scheduler: processes of this machine
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 
 class Workers(NamedTuple):
-    """An executor, and how many tasks it does at a time."""
+    """An executor, and the number of tasks that it runs at a time."""
 
     pool: Executor
     parallel: int
@@ -28,11 +27,11 @@ class Workers(NamedTuple):
     def results(
         self, task: Callable[[Item], Result], items: Iterable[Item]
     ) -> Iterator[tuple[Item, Result | None, BaseException | None]]:
-        """Do `task(item)` for every one of the `items`.
+        """Run `task(item)` for each of the `items`.
 
-        Yields (item, result, None) in order of completion, or (item, None, error) for one that failed. The error is
-        that of the task, or reports that the item killed several workers. What has not begun when the caller ends is
-        not begun any more.
+        Yields (item, result, None) in order of completion, or (item, None, error) for a failure. The error is the
+        task's, or reports that the item killed several workers. When the caller ends, tasks that have not begun are
+        cancelled.
         """
         futures = {self.pool.submit(task, item): item for item in items}
         try:
@@ -46,12 +45,12 @@ class Workers(NamedTuple):
 
 @contextmanager
 def workers_of(scheduler: Any, count: int) -> Iterator[Workers]:
-    """The workers that a `scheduler` gives.
+    """The workers of a `scheduler`.
 
-    None: `count` threads of this process. Else those of Dask: an address ("tcp://host:8786"), a client or a cluster.
-    "processes": a cluster of `count` processes of this machine, which ends with the context. `ValueError` where the
-    scheduler cannot be reached. `OSError` where processes of this machine have no semaphores: a container without
-    /dev/shm. `ImportError` without Dask.
+    None: `count` threads of this process. Otherwise Dask's: an address ("tcp://host:8786"), a client or a cluster.
+    "processes": a cluster of `count` processes on this machine, which ends with the context. `ValueError` if the
+    scheduler cannot be reached. `OSError` if processes have no semaphores here: a container without /dev/shm.
+    `ImportError` without Dask.
     """
     if scheduler is None:
         with ThreadPoolExecutor(count, thread_name_prefix="sweep") as pool:

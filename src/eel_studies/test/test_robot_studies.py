@@ -73,7 +73,7 @@ def test_gradients_are_differences_of_fine_swims(robot, at):
 def test_gradients_tell_of_motors_at_their_limits_and_have_their_error():
     at = {"robot.torque_limit": 0.3}
     robot = Robot.named("eight_servos")
-    with pytest.warns(UserWarning, match=r"motors come to their limits, which are kinks \(joint_3"):
+    with pytest.warns(UserWarning, match=r"motors reach their limits, which are kinks \(joint_3"):
         found = gradient(MEASURES, at, robot=robot.changed(torque_limit=0.3), scene=PLANE, duration=2.0, accuracy=1e-3)
     ends = [swum(robot.changed(torque_limit=each), accuracy=FINE, stations=2) for each in (0.303, 0.297)]
     plain = (ends[0].position[-1, 0] - ends[1].position[-1, 0]) / 0.006

@@ -28,7 +28,7 @@ from eel_studies.outputs import Table
 from eel_studies.pictures import BLUE, ORANGE, PICTURES, Figure, legend_above, write_picture
 
 NAME = "eel compare"
-DURATION = 10.0  # s, of two gaits
+DURATION = 10.0  # s, default duration of two gaits
 SIZE = 6.8, 6.4  # inches
 STYLES: tuple[dict[str, Any], ...] = ({"color": BLUE}, {"color": ORANGE, "linestyle": (0, (4, 2))})
 
@@ -47,8 +47,8 @@ def _add_options(parser: Parser) -> None:
 
 @command(
     NAME,
-    "Draw two runs over one another, and print the measures of both with their difference. A gait "
-    "beside a file swims in the body and scene of the file, and as long.",
+    "Draw two runs in one picture, and print the measures of both with their difference. A gait "
+    "beside a file swims with the body, scene and duration of the file.",
     add_options=_add_options,
 )
 def main(options: argparse.Namespace) -> None:
@@ -69,7 +69,7 @@ def main(options: argparse.Namespace) -> None:
 
 
 def _swum(options: argparse.Namespace, name: str, like: Run | None) -> Run:
-    """The run of the gait `name`: what no option says is as in the run `like`, where there is one."""
+    """The run of the gait `name`. Without an option, the settings are those of the run `like`, if given."""
     body, scene, duration = Body.boyer2010(), Scene(), DURATION
     if like is not None:
         body, scene, duration = like.body, like.scene, float(like.time[-1])
@@ -88,7 +88,7 @@ def _swum(options: argparse.Namespace, name: str, like: Run | None) -> Run:
 
 
 def table_of(first: Run, second: Run, names: list[str]) -> str:
-    """The measures that either run has, and by how much those of the second are greater; relative to the first."""
+    """The measures of either run, and the second's difference from the first, relative to the first."""
     rows = []
     one, two = measures_of(first), measures_of(second)
     for name, (unit, *_) in MEASURES.items():
@@ -101,7 +101,7 @@ def table_of(first: Run, second: Run, names: list[str]) -> str:
 
 
 def draw(figure: Figure, runs: tuple[Run, Run], names: list[str]) -> None:
-    """Draw the paths of both heads from above, and in time their speeds and the greatest torques along the bodies."""
+    """Draw the paths of both heads from above, and their speeds and greatest torques over time."""
     path, speed, torque = figure.subplots(3, 1, height_ratios=(2, 1, 1))
     for run, name, style in zip(runs, names, STYLES, strict=True):
         path.plot(run.position[:, 0], run.position[:, 1], label=name, **style)

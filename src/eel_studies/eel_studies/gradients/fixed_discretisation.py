@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One grid and one sequence of steps for neighbouring swims, so that their difference is that of the swims alone.
+"""The same grid and the same sequence of steps for neighbouring swims, so that only the swims differ.
 
-Steps of fixed length end on the breakpoints of the law's ramps. The step is chosen such that each span between two of
-them has the same number of steps in all swims. A parameter that moves a ramp then stretches its steps.
+Steps of fixed length end on the breakpoints of the law's ramps. The step is chosen so that each span between two
+breakpoints has the same number of steps in all swims. A parameter that moves a ramp then stretches its steps.
 """
 
 import math
@@ -16,12 +16,12 @@ from eel_dynamics.model.initial_state import time_scale
 
 from eel_dynamics import Swim
 
-SHORTER = 0.002  # part of a step by which the next one that is tried is shorter
+SHORTER = 0.002  # relative decrease from one trial step to the next
 TRIALS = 500
 
 
 def fixed_steps(accuracy: "str | float | Accuracy") -> Accuracy:
-    """The settings for the target of `accuracy`, with fixed steps. `ValueError` for settings that have none."""
+    """Settings with fixed steps for the target of `accuracy`. `ValueError` for settings without fixed steps."""
     settings = Accuracy.of(accuracy)
     if settings.step is not None or settings.fixed is not None:
         return settings
@@ -33,7 +33,7 @@ def fixed_steps(accuracy: "str | float | Accuracy") -> Accuracy:
 
 
 def step_of(point: Swim) -> float:
-    """The length [s] of the fixed steps of the `point`, whose accuracy is that of its scene."""
+    """The length [s] of the fixed steps of the `point`, from the accuracy of its scene."""
     settings: Accuracy = point.accuracy
     if settings.step is not None:
         return settings.step
@@ -44,7 +44,7 @@ def step_of(point: Swim) -> float:
 
 
 def on_one_grid(points: list[Swim], step: float) -> list[Swim]:
-    """The `points` with the grid that the first one needs, and one number of steps, no longer than `step` [s]."""
+    """The `points` with the grid that the first one needs, and the same number of steps, of `step` [s] or less."""
     law, body, flow, accuracy = points[0].law, points[0].body, points[0].flow, points[0].accuracy
     of_flow = 0.0 if flow is None else body.length / flow.traits.shortest_wave
     waves = max(1.0, check_law(law, body.length), of_flow)
@@ -60,7 +60,7 @@ def breakpoints_of(point: Swim) -> list[float]:
 
 
 def common_step(breakpoints: list[list[float]], step: float) -> float:
-    """The longest step [s], up to `step`, with which all swims take as many steps in each span; else `step`."""
+    """The longest step [s], up to `step`, that gives all swims as many steps in each span; otherwise `step`."""
     for trial in range(TRIALS):
         length = step * (1.0 - SHORTER * trial)
         if len({tuple(_counts(times, length)) for times in breakpoints}) == 1:

@@ -10,9 +10,9 @@
         return -found.value[0], -found.derivative[0]
 
 The derivatives are central differences of two swims per parameter, all in one batch, on one grid and with one sequence
-of fixed steps: no step control adds noise. Their error is measured as that of a run is: by companions with coarser
-settings and twice the difference. A swim of a robot tells first how many steps it needs, and whether its motors come to
-their limits, which are kinks: then the differences are larger.
+of fixed steps: step control adds no noise. Their error is measured as that of a run is: by companions with coarser
+settings and twice the difference. For a robot, one swim first finds how many steps are needed, and whether motors reach
+their limits. Limits are kinks, which need larger differences.
 """
 
 import warnings
@@ -50,10 +50,10 @@ from eel_studies.points import (
     point_at,
 )
 
-RELATIVE_STEP = 1e-5  # of a parameter; of one unit where its value is 0
-ROBOT_STEP, KINKED_STEP = 1e-3, 1e-2  # the same of a robot, and of one whose motors come to their limits
+RELATIVE_STEP = 1e-5  # of a parameter's value, or of 1 unit if that is 0
+ROBOT_STEP, KINKED_STEP = 1e-3, 1e-2  # the same for a robot, and for a robot whose motors reach their limits
 PRINTED = "printed"  # the friction law that jumps
-COMPANION_STEP = 2.0  # times the steps, of the companions
+COMPANION_STEP = 2.0  # times the step: the companions' step
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -64,14 +64,14 @@ class Gradient(EqualByFields):
     by: tuple[str, ...]  #: names of the parameters
     at: np.ndarray  #: (P,) values of the parameters
     value: np.ndarray  #: (N,) measures there
-    derivative: np.ndarray  #: (N, P) measure's unit by parameter's unit: the Jacobian
+    derivative: np.ndarray  #: (N, P) the Jacobian: measure's unit / parameter's unit
     error: np.ndarray  #: (N, P) estimated errors of the derivatives; NaN without an estimate
-    steps: np.ndarray  #: (P,) differences of the parameters to either side
+    steps: np.ndarray  #: (P,) step of each parameter to either side
     warnings: tuple[str, ...]
     run: Run  #: the swim at these values
 
     def __getitem__(self, measure: str) -> dict[str, float]:
-        """The derivatives of a `measure` by the name of the parameter."""
+        """The derivatives of a `measure`, by the name of the parameter."""
         if measure not in self.of:
             raise KeyError(measure)
         return dict(zip(self.by, self.derivative[self.of.index(measure)].tolist(), strict=True))
@@ -106,14 +106,14 @@ def gradient(
     `studies.points`: numbers of the gait, "scene.density", "body.lateral_drag", "initial.v_x" and the like. gait: its
     name, or a function of `numbers` and the parameters that returns a law. duration [s], body, scene, sample_period
     [s], stations, threads, most_evaluations: as in `simulate_batch`. accuracy: a target, or settings with fixed steps.
-    steps: differences by name, in place of 1e-5 of the value (1e-3 of a robot's,
-    1e-2 where its motors come to their limits; of 1 where it is 0). estimate: state the derivatives'
-    own errors; False: two swims per parameter, and no more. progress: as in `sweep`, by swims.
+    steps: differences by name; by default 1e-5 of the value (1e-3 for a robot, 1e-2 if its motors reach their limits;
+    of 1 if the value is 0). estimate: also estimate the derivatives' errors; False: only two swims per parameter.
+    progress: as in `sweep`, by swims.
 
-    Swims beside the one at the values have its grid and step; of ledger, internal wrench and samples on the way they
-    have what the measures, or a warning, need. Measures over whole periods take as many periods of each swim, so that
-    they do not jump with the period. What may spoil a derivative is warned of, and is in `Gradient.warnings`.
-    `ValueError` names what does not fit; `SimulationStopped`: a swim stopped.
+    The other swims have the grid and step of the swim at the values. They have ledger, internal wrench and intermediate
+    samples only if the measures, or a warning, need them. Measures over whole periods take the same number of periods
+    from each swim, so that they do not jump with the period. Warnings name what may spoil a derivative; they are also
+    in `Gradient.warnings`. `ValueError` names a bad argument; `SimulationStopped`: a swim stopped.
     """
     measure = of if callable(of) else checked_measures("of", of, estimate=False)
     if not isinstance(parameters, dict) or not parameters:
@@ -164,7 +164,7 @@ def gradient(
 
 
 class _Differences(NamedTuple):
-    """Measures of a swim, and their central differences: of the runs at the values, above them, and below them."""
+    """Measures of a swim and their central differences, from the runs at the values, above them, and below them."""
 
     runs: list[Run]
     names: tuple[str, ...]
@@ -173,7 +173,7 @@ class _Differences(NamedTuple):
 
     @staticmethod
     def of(runs: list[Run], how: SwimSettings, apart: np.ndarray) -> "_Differences":
-        """The differences of `runs`, whose parameters lie `apart` (P,) to either side."""
+        """The differences of `runs` whose parameters are shifted by `apart` (P,) to either side."""
         periods = _periods(runs[0])
         found = [how.measured(run, periods) for run in runs]
         names = tuple(found[0])
@@ -187,8 +187,8 @@ class _Differences(NamedTuple):
     def distance(self, coarser: "_Differences") -> np.ndarray:
         """The estimated errors (N, P) of the derivatives, from those with `coarser` settings.
 
-        The distance of the derivatives, and as much of them as the swims and the measure itself are apart: these are
-        so where two derivatives agree by chance.
+        They are the distance of the derivatives, and the relative distance of the swims and the measure itself, in case
+        two derivatives agree by chance.
         """
         least = np.finfo(float).tiny
         apart = np.abs(self.value - coarser.value) / np.maximum(np.abs(self.value), least)
@@ -223,7 +223,7 @@ def _run(batch: Batch, index: int) -> Run:
 
 def _of_robot(point: Swim, accuracy: Accuracy, how: SwimSettings) -> tuple[float, float, tuple[str, ...]]:
     """Relative differences for the robot of the `point`, the longest step [s], and a line on motors at their limits."""
-    given = accuracy.target is None  # settings with steps of their own
+    given = accuracy.target is None  # the settings give fixed steps
     run = _run(batch_of_points([point if given else point._replace(accuracy=accuracy)], how, threads=1), 0)
     longest = np.inf if given else 0.5 * float(run.time[-1]) / max(1, run.steps)
     assert run.robot is not None and run.motor_torque is not None and run.motor_power is not None
@@ -231,7 +231,7 @@ def _of_robot(point: Swim, accuracy: Accuracy, how: SwimSettings) -> tuple[float
     names = [joint.name for joint, yes in zip(run.robot.joints, limited.T, strict=True) if yes.any()]
     if not names:
         return ROBOT_STEP, longest, ()
-    line = f"motors come to their limits, which are kinks ({', '.join(names)}): derivatives have the error that is told"
+    line = f"motors reach their limits, which are kinks ({', '.join(names)}): derivatives have the error that is told"
     return KINKED_STEP, longest, (line,)
 
 
@@ -245,7 +245,7 @@ def _steps_of(at: dict[str, float], steps: dict[str, float] | None, relative: fl
 
 
 def _jumps(runs: list[Run], names: tuple[str, ...]) -> tuple[str, ...]:
-    """One line where the printed friction jumps between two swims, else none."""
+    """One line if the printed friction jumps between two swims, otherwise none."""
     pairs = zip(names, runs[1 : 1 + len(names)], runs[1 + len(names) :], strict=True)
     shares = {name: share_across_jump(above, below) for name, above, below in pairs}
     crossed = [name for name, share in shares.items() if share]
@@ -264,9 +264,9 @@ def may_jump(scene: Scene) -> bool:
 
 
 def share_across_jump(one: Run, other: Run) -> float:
-    """Share of samples and stations at which two runs lie on different sides of the printed friction's jump; 0 without.
+    """Share of samples and stations where two runs are on opposite sides of the printed friction's jump; 0 without it.
 
-    The speed V1 along the body is that of the backbone through the water, from splines through the samples.
+    The speed V1 is the backbone's velocity along itself through the water, from splines through the samples.
     """
     if not may_jump(one.scene) or len(one.time) < 4:
         return 0.0

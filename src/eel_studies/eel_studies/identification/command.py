@@ -43,7 +43,7 @@ def _add_options(parser: Parser) -> None:
     parser.add_argument(
         "file",
         nargs="+",
-        help="a table or .npz of columns time, x, y (perhaps z), or time and a robot's joints, or speed and numbers "
+        help="a table or .npz with columns time, x, y (perhaps z); or time and a robot's joints; or speed and numbers "
         "of the gait; a run (.nc); a bag. All of one kind",
     )
     about = "a parameter and its first guess: body.FIELD, scene.FIELD, robot.FIELD, initial.v_x, a number of the "
@@ -106,7 +106,7 @@ def main(options: argparse.Namespace) -> None:
 
 
 def _gait(options: argparse.Namespace, files: list[MeasuredFile]) -> Gait:
-    """The gait that was asked for, or the law that is in the file."""
+    """The gait of the options, or the law in the file."""
     if options.gait is not None:
         return str(options.gait)
     law = files[0].law
@@ -124,7 +124,7 @@ def _gait(options: argparse.Namespace, files: list[MeasuredFile]) -> Gait:
 
 
 def _common(name: str, files: list[MeasuredFile]) -> Any:
-    """The body or the scene, by its `name`, of all files that hold one. `ValueError` where they are not the same."""
+    """The body or the scene, by its `name`, shared by all files that hold one. `ValueError` if they differ."""
     known = [getattr(file, name) for file in files if getattr(file, name) is not None]
     if any(each != known[0] for each in known[1:]):
         raise ValueError(f"--{name} must be given: the files do not have one {name}")
@@ -132,7 +132,7 @@ def _common(name: str, files: list[MeasuredFile]) -> Any:
 
 
 def _scene(options: argparse.Namespace, files: list[MeasuredFile]) -> Scene:
-    """The scene that was asked for, or that of the files. The friction is blended unless --scene says otherwise."""
+    """The scene of the options, or of the files. The friction is blended unless --scene sets it."""
     scene: Scene | None = None if options.scene else _common("scene", files)
     if scene is None:
         return scene_of(options.scene, Scene(friction="blended"))
@@ -140,7 +140,7 @@ def _scene(options: argparse.Namespace, files: list[MeasuredFile]) -> Scene:
 
 
 def draw_identified(figure: Figure, found: Identified, measured: Measurements) -> None:
-    """Draw what was `found` of `measured`, in that order, into an empty matplotlib figure."""
+    """Draw the result `found` from `measured`, in the same order, into an empty matplotlib figure."""
     left, middle, right = figure.subplots(1, 3)
     draw = {MeasuredPath: _draw_paths, MeasuredAngles: _draw_angles, MeasuredSpeed: _draw_speeds}[type(measured[0])]
     middle.set(xlabel="t [s]", title="residuals")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The least-squares problem of `identify`: unknowns, residuals, how they are brought to their least, the result."""
+"""The least-squares problem of `identify`: unknowns, residuals, minimisation, and the result."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -13,29 +13,29 @@ from eel_studies.identification.prediction import Predicted, Swims, placed, plac
 from eel_studies.identification.statistics import Block, correlation_of, gauss_newton_covariance, undetermined, whitened
 
 POSITIVE = ("body.", "scene.", "robot.")  # parameters that stay above 0
-LEAST = 1e-6  # of the first guess, in place of 0
-PASSES = 4  # of the fit, each with the correlation of the one before
-SAME = 0.01  # change of the correlation that needs no further pass
-UNLIKELY = 1e-3  # probability of such residuals, for the noise given, below which a warning names the misfit
-INSENSITIVE = 1e-8  # relative derivative of an axis below which no parameter moves the point along it
+LEAST = 1e-6  # of the first guess: lower bound instead of 0
+PASSES = 4  # passes of the fit, each with the correlation found in the last one
+SAME = 0.01  # smaller changes of the correlation end the passes
+UNLIKELY = 1e-3  # probability of the residuals for the given noise, below which a warning reports a misfit
+INSENSITIVE = 1e-8  # relative derivative along an axis, below which no parameter moves the point along it
 TOLERANCE = 1e-6  # of the unknowns and of the sum of squares, relative
-MOST_EVALUATIONS = 50  # of the model, in a pass
+MOST_EVALUATIONS = 50  # of the model, per pass
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Identified(EqualByFields):
-    """P parameters that were fitted to measurements."""
+    """P parameters fitted to measurements."""
 
     names: tuple[str, ...]
     value: np.ndarray  #: (P,)
     error: np.ndarray  #: (P,) standard errors
     low: np.ndarray  #: (P,) interval
     high: np.ndarray  #: (P,)
-    level: float  #: probability with which an interval covers the true value
+    level: float  #: probability that an interval covers the true value
     covariance: np.ndarray  #: (P, P)
     noise: float  #: standard deviation of the measurements' errors [m], [rad] or [m/s]
-    correlation: float  #: of one error of a path with the next, at the median time between samples
-    residuals: tuple[np.ndarray, ...]  #: measured less predicted: (T, D) [m], (T, J) [rad] or (1,) [m/s] of each
+    correlation: float  #: of successive errors of a path, at the median time between samples
+    residuals: tuple[np.ndarray, ...]  #: measured minus predicted, each: (T, D) [m], (T, J) [rad] or (1,) [m/s]
     runs: tuple[Run, ...]  #: the swims with the values found, one per measurement
     warnings: tuple[str, ...]
 
@@ -51,7 +51,7 @@ class Identified(EqualByFields):
 
     @property
     def numbers(self) -> dict[str, float]:
-        """The values by name, as `numbers` of `gradient`, `sweep` and `optimise` take them."""
+        """The values by name, for the argument `numbers` of `gradient`, `sweep` and `optimise`."""
         return dict(zip(self.names, self.value.tolist(), strict=True))
 
     def table(self) -> str:
@@ -68,7 +68,7 @@ class Identified(EqualByFields):
 
 
 class Fit:
-    """Fits parameters, from their values `first`, to what was `measured`. `ValueError`: they are not determined."""
+    """Fits parameters to `measured`, from their values `first`. `ValueError` if they are not determined."""
 
     def __init__(
         self,
@@ -89,17 +89,17 @@ class Fit:
 
     @property
     def values(self) -> np.ndarray:
-        """The parameters (P,) reached."""
+        """The present parameters (P,)."""
         return self._unknown[: len(self.names)]
 
     @property
     def blocks(self) -> list[Block]:
-        """Residuals and derivatives at the values reached."""
+        """Residuals and derivatives at the present values."""
         found = zip(self._measured, self._compared(), strict=True)
         return [block for each, compared in found for block in _blocks(each.time, *compared)]
 
     def solve(self, noise: float | None) -> None:
-        """Minimise the sum of squares, with errors as they are correlated. `ValueError`: singular, or too few."""
+        """Minimise the sum of squares with correlated errors. `ValueError`: singular, or too few measurements."""
         count, unknowns = count_of(self._measured), len(self._unknown)
         if count < (least := unknowns + (noise is None)):
             known = "" if noise is not None else ", or the noise be given"
@@ -114,7 +114,7 @@ class Fit:
         self._progress(len(self._known), len(self._known))
 
     def result(self, noise: float | None, level: float) -> Identified:
-        """What was found, with the intervals of this `level`."""
+        """The result, with intervals of this `level`."""
         from scipy.stats import chi2, norm, t
 
         covariance, squares = gauss_newton_covariance(self.blocks, self.correlation)
@@ -184,7 +184,7 @@ class Fit:
             )
 
     def _predicted(self) -> list[Predicted]:
-        """Of each measurement, at the values reached."""
+        """The prediction of each measurement at the present values."""
         key = self.values.tobytes()
         if key not in self._known:
             at = dict(zip(self.names, self.values.tolist(), strict=True))
@@ -193,7 +193,7 @@ class Fit:
         return self._known[key]
 
     def _compared(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """Of each measurement: measured less predicted (T, D), and derivatives (T, D, U) of what is predicted."""
+        """For each measurement: measured minus predicted (T, D), and derivatives (T, D, U) of the prediction."""
         place = len(self.names)
         for each, found in zip(self._measured, self._predicted(), strict=True):
             value, by_parameters = found.value, found.derivative
@@ -207,7 +207,7 @@ class Fit:
 
 
 def _blocks(time: np.ndarray, residual: np.ndarray, derivative: np.ndarray) -> Iterator[Block]:
-    """A block for each column, of the instants at which it is known."""
+    """A block for each column, with the instants at which it is known."""
     for column, known in enumerate(np.isfinite(residual).T):
         step = np.diff(time[known])
         if known.any():
@@ -216,7 +216,7 @@ def _blocks(time: np.ndarray, residual: np.ndarray, derivative: np.ndarray) -> I
 
 
 def _informative(measured: Measurement, found: Predicted, values: np.ndarray) -> Measurement:
-    """A path without its height, where no parameter moves the point up or down: its errors tell nothing then."""
+    """A path without its height if no parameter moves the point up or down: the height's errors are then irrelevant."""
     if not isinstance(measured, MeasuredPath) or measured.position.shape[1] == 2:
         return measured
     derivative = np.abs(found.derivative * np.where(values, values, 1.0))

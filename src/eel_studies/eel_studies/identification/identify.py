@@ -6,9 +6,9 @@
     found["body.lateral_drag"]        # (1.93, 1.88, 1.98): value, and its 95 % interval
     print(found.table())
 
-Nonlinear least squares with the derivatives of `gradient`. The intervals are those of the linearised problem
-(Gauss-Newton), with the size of the errors and their correlation in time from the residuals. They hold where the model
-is right and the errors are small: an error of the model is in no interval.
+Nonlinear least squares with the derivatives of `gradient`. The intervals come from the linearised problem
+(Gauss-Newton); the errors' size and correlation in time come from the residuals. The intervals hold if the model is
+right and the errors are small. They do not include errors of the model.
 """
 
 import warnings
@@ -49,17 +49,17 @@ def identify(
     threads: int | None = None,
     progress: Progress = False,
 ) -> Identified:
-    """The `parameters` with which the model comes nearest to what was `measured`, and their intervals.
+    """The `parameters` with which the model fits the measurements best, and their intervals.
 
     parameters: first guesses by name, with the names of `studies.points`: "body.lateral_drag", "scene.density",
     "initial.v_x", "robot.kp" and the like. Those of body, scene and robot stay above 0. measured: one or several paths,
-    joint angles of a robot, or steady speeds; each may have `numbers` of its own. Of each path a displacement and a
-    turn about the vertical are fitted too, as the axes of a laboratory are its own. gait, numbers, body, robot,
-    accuracy, threads: as in `optimise`. scene: by default that of the library with blended friction. noise: standard
-    deviation of the errors [m], [rad] or [m/s], where it is known; None: from the residuals. level: of the intervals.
-    progress: as in `sweep`, by evaluations.
+    joint angles of a robot, or steady speeds; each may have its own `numbers`. For each path a displacement and a turn
+    about the vertical are also fitted, as the laboratory's axes are arbitrary. gait, numbers, body, robot, accuracy,
+    threads: as in `optimise`. scene: by default the library's with blended friction. noise: standard deviation of the
+    errors [m], [rad] or [m/s], if known; None: from the residuals. level: of the intervals. progress: as in `sweep`, by
+    evaluations.
 
-    `ValueError` names what does not fit, and parameters that the measurements do not determine; `SimulationStopped`: a
+    `ValueError` names a bad argument, and parameters that the measurements do not determine; `SimulationStopped`: a
     swim stopped.
     """
     if not isinstance(parameters, dict) or not parameters:

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What was measured, from a file: a path or steady speeds in a table, a saved run, or a bag.
+"""Measurements from a file: a path or steady speeds in a table, a saved run, or a bag.
 
     time, x, y, perhaps z      a path: a row for each instant, [s, m]
     time, joint_1, ...         angles of a robot's joints by their names: a row for each instant, [s, rad]
-    speed, other columns       steady speeds: a row for each swim, [m/s]; the others are numbers of the swim, as period
+    speed, other columns       steady speeds: a row for each swim, [m/s]; other columns are numbers of it, as period
 
-Tables are of text with a header, or .npz archives of columns. A run (.nc) and a bag give the path of a point of the
-backbone, or the joint angles, the law and the body; a run the scene and the robot too.
+Tables are text with a header, or .npz archives of columns. A run (.nc) or a bag gives the path of a point of the
+backbone, or the joint angles; and the law and the body. A run also gives the scene and the robot.
 """
 
 from dataclasses import replace
@@ -27,17 +27,17 @@ from eel_gaits import Law
 from eel_studies.identification.measurements import MeasuredAngles, MeasuredPath, MeasuredSpeed
 from eel_studies.points import VELOCITIES
 
-LEVEL = 1e-6  # rad, about: the x and y of the quaternion of a head that counts as level
-NEAR = 1e-6  # part of the body's length by which a run's station may lie elsewhere than the one asked for
+LEVEL = 1e-6  # rad, about: a head whose quaternion has a smaller x and y is level
+NEAR = 1e-6  # part of the body's length: tolerance for the requested station of a run
 
 
 class MeasuredFile(NamedTuple):
-    """The measurements of a file, and what it tells of the swim."""
+    """The measurements in a file, and its information on the swim."""
 
-    measured: list[Any]  # of MeasuredPath, of MeasuredAngles, or of MeasuredSpeed
+    measured: list[Any]  # MeasuredPath, MeasuredAngles or MeasuredSpeed
     law: Law | None = None
     body: Body | None = None
-    scene: Scene | None = None  # of the motion alone
+    scene: Scene | None = None  # with motion only
     robot: Robot | None = None
 
 
@@ -49,11 +49,11 @@ def read_measured(
     robot: Robot | None = None,
     angles: bool = False,
 ) -> MeasuredFile:
-    """What the file or bag at `path` holds. station [m]: X of the point of a path. namespace: of a bag's swimmer.
+    """The content of the file or bag at `path`. station: [m], X of a path's point. namespace: of a bag's swimmer.
 
-    robot: that swims. angles: take the angles of its joints, in place of a path.
+    robot: the robot that swims. angles: read the angles of its joints, not a path.
 
-    `ValueError` in one line names the file, and the line or column of a table, that does not fit.
+    `ValueError` in one line names the file, and the line or column of a table, at fault.
     """
     if is_table(path, ".npz"):
         table = read_table(path)

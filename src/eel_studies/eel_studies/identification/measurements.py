@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What was measured of a swim: the path of a point of the body, a robot's joint angles, or a steady speed.
+"""Measurements of a swim: the path of a point of the body, a robot's joint angles, or a steady speed.
 
-Each has `values` (T, D) at the times (T,); NaN where unknown.
+Each has `values` (T, D) at the times (T,), with NaN where unknown.
 """
 
 from collections.abc import Sequence
@@ -21,12 +21,12 @@ class MeasuredPath:
     """The path of one point of the backbone.
 
     Attributes:
-        time: [s], (T,), rising from 0 or later, in the law's own time.
-        position: [m], (T, 2) or (T, 3), in axes of the laboratory: z up, and x, y wherever they point.
-        station: X [m] of the point that was tracked; 0 is the nose.
+        time: [s], (T,), rising, from 0 or later, in the law's own time.
+        position: [m], (T, 2) or (T, 3), in axes of the laboratory: z up, x and y in any direction.
+        station: X [m] of the tracked point; 0 is the nose.
         numbers: of this swim, by the names of `studies.points`, such as {"period": 0.8, "initial.v_x": 0.2}.
 
-    `ValueError` names what does not fit.
+    `ValueError` names a bad attribute.
     """
 
     time: np.ndarray
@@ -63,11 +63,11 @@ class MeasuredAngles:
     """The angles of a robot's joints.
 
     Attributes:
-        time: [s], (T,), rising from 0 or later, in the law's own time. The robot begins as in `simulate`.
+        time: [s], (T,), rising from 0 or later, in the law's own time. The robot starts as in `simulate`.
         angles: [rad], (T, J), of the robot's joints in their order and sign; NaN where unknown.
         numbers: of this swim, as in `MeasuredPath`.
 
-    `ValueError` names what does not fit.
+    `ValueError` names a bad attribute.
     """
 
     time: np.ndarray
@@ -105,7 +105,7 @@ class MeasuredSpeed:
 
     @property
     def time(self) -> np.ndarray:
-        """(1,): it has no instants."""
+        """(1,): a single dummy time."""
         return np.zeros(1)
 
     @property
@@ -119,7 +119,7 @@ Measurements = list[MeasuredPath] | list[MeasuredAngles] | list[MeasuredSpeed] |
 
 
 def count_of(measured: Sequence[Measurement]) -> int:
-    """How many numbers were measured."""
+    """The number of measured values."""
     return sum(int(np.isfinite(each.values).sum()) for each in measured)
 
 

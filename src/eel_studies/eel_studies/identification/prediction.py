@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the model says of each measurement, and its derivatives by the unknowns.
+"""The model's prediction of each measurement, and its derivatives with respect to the unknowns.
 
-The unknowns are the parameters, then for each path where and how the laboratory's axes lie: a displacement (D,) and a
-turn about the vertical, r_measured = R(turn) r + displacement. These need no further swims.
+The unknowns are the parameters, then for each path the placement of the laboratory's axes: a displacement (D,) and a
+turn about the vertical, r_measured = R(turn) r + displacement. Placements need no further swims.
 """
 
 import warnings
@@ -20,13 +20,13 @@ from eel_studies.points import Gait, Numbers, law_of_terms, point_at
 from eel_studies.steady_swim import at_speed, swim_times
 
 PERIODS = 12  # of a swim at a measured speed
-SAMPLES = 40  # in a period, of a path: a cubic spline through them is exact to a millionth of the amplitude
+SAMPLES = 40  # per period of a path: a cubic spline through them is exact to a millionth of the amplitude
 LONGEST_SAMPLE = 0.05  # s
 SPEED = "mean_speed"
 
 
 class Predicted(NamedTuple):
-    """Of one measurement: what the model says (T, D), its derivatives (T, D, P) by the parameters, and the run."""
+    """For one measurement: the prediction (T, D), its derivatives (T, D, P) by the parameters, and the run."""
 
     value: np.ndarray
     derivative: np.ndarray
@@ -34,7 +34,7 @@ class Predicted(NamedTuple):
 
 
 class Swims(NamedTuple):
-    """How the measured swims are simulated: arguments of `gradient`."""
+    """Simulates the measured swims. The fields are arguments of `gradient`."""
 
     gait: Gait
     numbers: Numbers
@@ -42,7 +42,7 @@ class Swims(NamedTuple):
     threads: int | None
 
     def predicted(self, measured: Any, at: dict[str, float]) -> Predicted:
-        """What the model says of `measured` where the parameters are `at`: positions in its axes, angles, a speed."""
+        """The prediction of `measured` with the parameters `at`: positions in its axes, angles, or a speed."""
         numbers, steady = {**self.numbers, **measured.numbers}, isinstance(measured, MeasuredSpeed)
         numbers = at_speed(numbers, measured.speed) if steady else numbers
         law = point_at(at, self.gait, numbers, self.base).law
@@ -88,7 +88,7 @@ def values_at(measured: MeasuredPath | MeasuredAngles) -> Callable[[Run], dict[s
 
 
 def placement_of(path: MeasuredPath, positions: np.ndarray) -> np.ndarray:
-    """The displacement (D,) and the turn that lay `positions` (T, D) best on the measured ones, (D + 1,)."""
+    """The displacement (D,) and the turn that fit `positions` (T, D) best to the measured ones, (D + 1,)."""
     ours, theirs = positions - positions.mean(axis=0), path.position - path.position.mean(axis=0)
     cosine = np.sum(ours[:, :2] * theirs[:, :2])
     sine = np.sum(ours[:, 0] * theirs[:, 1] - ours[:, 1] * theirs[:, 0])

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Least squares with errors that are correlated in time, and the intervals that follow.
+"""Least squares with errors correlated in time, and the resulting intervals.
 
 Errors of one path's axis at times t_j, t_k have the covariance s^2 rho^(|t_j - t_k| / d), d the median step in time: an
 autoregressive process of order 1; rho = 0 is white noise. The factor rho maximises the restricted likelihood of the
-residuals (Patterson and Thompson, Biometrika 58 (1971)), which allows for the unknowns that were fitted.
+residuals (Patterson and Thompson, Biometrika 58 (1971)), which accounts for the fitted unknowns.
 """
 
 from typing import NamedTuple
@@ -11,20 +11,21 @@ from typing import NamedTuple
 import numpy as np
 
 MOST_CORRELATED = 0.999
-SINGULAR = 1e-6  # ratio of the least to the greatest sensitivity below which derivatives are round-off
-NAMED = 0.1  # share of a combination above which a parameter is named
+SINGULAR = 1e-6  # ratio of the least to the greatest sensitivity, below which derivatives are round-off
+NAMED = 0.1  # a parameter with a larger share of a combination is named
 
 
 class Block(NamedTuple):
     """Residuals in time order, and their derivatives: one axis of a path, or one speed."""
 
-    step: np.ndarray  # (n - 1,) times between them, in units of the median one
-    residual: np.ndarray  # (n,) measured less predicted
-    derivative: np.ndarray  # (n, P + Q) of the prediction, by the parameters and by the placements
+    step: np.ndarray  # (n - 1,) times between them, in units of the median
+    residual: np.ndarray  # (n,) measured minus predicted
+    derivative: np.ndarray  # (n, P + Q) of the prediction, by parameters and placements
 
 
 def whitened(blocks: list[Block], correlation: float) -> tuple[np.ndarray, np.ndarray, float]:
-    """Residuals (N,) and derivatives (N, P + Q) with independent errors of equal size, and log|V| of the errors."""
+    """Residuals (N,) and derivatives (N, P + Q) scaled to independent errors of equal size, and log|V| of the
+    errors."""
     rows, log = [], 0.0
     for block in blocks:
         both = np.column_stack((block.residual, block.derivative))
@@ -37,7 +38,7 @@ def whitened(blocks: list[Block], correlation: float) -> tuple[np.ndarray, np.nd
 
 
 def correlation_of(blocks: list[Block]) -> float:
-    """rho of greatest restricted likelihood; 0 where no residuals follow each other in time."""
+    """The rho of greatest restricted likelihood; 0 if no residuals are successive in time."""
     from scipy.optimize import minimize_scalar
 
     if not any(len(block.step) for block in blocks):
@@ -65,9 +66,9 @@ def gauss_newton_covariance(blocks: list[Block], correlation: float) -> tuple[np
 
 
 def undetermined(blocks: list[Block], names: tuple[str, ...], values: np.ndarray) -> str:
-    """The relative changes of the parameters that leave the measurements as they are, in words; empty without any.
+    """The relative changes of the parameters that do not change the measurements, in words; empty if there are none.
 
-    Placements are taken out: what they could make good tells nothing of the parameters.
+    Placements are projected out: an effect that a placement can cancel does not determine a parameter.
     """
     derivative = np.concatenate([block.derivative for block in blocks])
     sensitivity, placement = derivative[:, : len(names)] * values, derivative[:, len(names) :]

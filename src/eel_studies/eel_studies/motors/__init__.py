@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a gait asks of a robot's motors, and what they make of it."""
+"""The demands of a gait on a robot's motors, and how well the motors meet them."""

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel motors`: whether a robot's motors follow a gait, and how that depends on one of its numbers.
+"""`eel motors`: check whether a robot's motors follow a gait, and how that depends on one of its numbers.
 
 eel motors eight_servos straight --scene planar=true
 eel motors my_robot.urdf straight --servo kp=20 kd=0.5
 eel motors eight_servos straight --vary torque_limit=0.3,0.5,1,3 --out limits.png
 eel motors passive_tail straight --vary bending_stiffness=0.1,0.3,1 --vary period=0.5,1,2 --out tails.png
-eel motors sixteen_servos swim.nc --vary torque_limit=0.3,0.4,0.5        # asked to swim as a run or a bag did
+eel motors sixteen_servos swim.nc --vary torque_limit=0.3,0.4,0.5        # asked to swim like a run or a bag
 """
 
 import argparse
@@ -33,16 +33,16 @@ from eel_studies.varied import labelled
 
 NAME = "eel motors"
 RECORDED = ".nc", ".mcap", ".db3"
-DEMAND = 8  # joints an axis, of what an imposed swim takes
+DEMAND = 8  # joints per axis, for the torques of an imposed swim
 MOST_VARIED = 2
-WIDE = 5.0  # ratio of the greatest to the least value, from which the axis is logarithmic
+WIDE = 5.0  # ratio of the greatest to the least value, above which the axis is logarithmic
 MOST_TICKS = 7
 PANELS: dict[str, Callable[[MotorFigures], float]] = {
     "speed [m/s]": lambda figures: figures.speed,
     "tracking error [%]": lambda figures: 100.0 * figures.tracking_error,
     "energy [J/m]": lambda figures: figures.energy_per_metre,
 }
-Panels = dict[str, list[list[float]]]  # by their names, of each comparison the figures at its values
+Panels = dict[str, list[list[float]]]  # by panel name: for each comparison, the figures at its values
 Varied = tuple[str, Sequence[float | None]]
 
 
@@ -65,8 +65,8 @@ def _add_options(parser: Parser) -> None:
 
 @command(
     NAME,
-    "Swim a robot, and print what each joint does in the steady part: the angle that the gait asks "
-    "for, the servo's error, rate, torque against its limit, and power. With --vary a row for each value.",
+    "Swim a robot, and print for each joint in the steady part: the angle that the gait demands, "
+    "the servo's error, rate, torque against its limit, and power. With --vary, a row for each value.",
     add_options=_add_options,
 )
 def main(options: argparse.Namespace) -> None:
@@ -94,7 +94,7 @@ def main(options: argparse.Namespace) -> None:
 
 
 def _compared(robot: Robot, swim: Swim, first: Varied, second: Varied | None = None) -> list[Comparison]:
-    """The figures over the values of the `first` name, for each of the values of the `second`."""
+    """The figures over the values of the `first` name, once for each value of the `second`."""
     if second is None:
         return [comparison(robot, swim, *first)]
     name, values = second
@@ -103,7 +103,7 @@ def _compared(robot: Robot, swim: Swim, first: Varied, second: Varied | None = N
 
 
 def _swim(options: argparse.Namespace) -> Swim:
-    """The swim of a scene or a gait; of a run or a bag its law, body and duration, and what an imposed swim takes."""
+    """The swim of a scene or a gait; of a run or a bag its law, body and duration, with a note of its torques."""
     name = options.swim or "straight"
     if Path(name).suffix not in RECORDED and not Path(name).is_dir():
         return chosen(name, options)
@@ -136,13 +136,13 @@ def _values(field: str, text: str) -> list[float | None]:
 
 
 def panels_of(comparisons: Sequence[Comparison]) -> Panels:
-    """The `PANELS` whose figures are known."""
+    """The `PANELS` with known figures."""
     found = {label: [[of(figures) for _, figures in each] for each in comparisons] for label, of in PANELS.items()}
     return {label: rows for label, rows in found.items() if np.isfinite([*chain(*rows)]).any()}
 
 
 def draw(figure: Figure, comparisons: Sequence[Comparison], panels: Panels) -> None:
-    """Draw a curve for each of the `comparisons` in each of the `panels`; a value of none is left out."""
+    """Draw a curve for each of the `comparisons` in each of the `panels`, without the value none."""
     for axes, (label, rows) in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels.items(), strict=True):
         for index, (each, row) in enumerate(zip(comparisons, rows, strict=True)):
             colour, dash, mark = LOOKS[index % len(LOOKS)]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Will the motors do it? What each joint of a robot does in the steady part of a swim, as numbers and as a table.
+"""Can the motors follow the gait? Each joint of a robot in the steady part of a swim, as numbers and as a table.
 
-The steady part is the second half of the swim, in whole periods of the law. A servo's error is its angle less its
-reference, the law's bend over the part of the body that its joint stands for.
+The steady part is the second half of the swim, in whole periods of the law. A servo's error is its angle minus its
+reference, which is the integral of the law's curvature over the joint's part of the body.
 """
 
 from collections.abc import Iterator, Sequence
@@ -21,13 +21,13 @@ from eel_studies.outputs import Table
 from eel_studies.points import ROBOT
 from eel_studies.varied import varied
 
-SAMPLES = 100  # in a period
-STATIONS = 5  # enough for what is read of a run
+SAMPLES = 100  # per period
+STATIONS = 5  # enough for the figures
 
 
 class JointFigures(NamedTuple):
-    """One joint in the steady part. All but the shares and the mean power are greatest magnitudes, or root mean
-    squares (rms)."""
+    """One joint in the steady part. The numbers are greatest magnitudes, or root mean squares (rms), except the share
+    and the mean power."""
 
     name: str
     position: float  # m
@@ -35,7 +35,7 @@ class JointFigures(NamedTuple):
     angle: float  # rad
     error_rms: float  # rad
     rate: float  # rad/s
-    torque: float  # N m, of the motor
+    torque: float  # N m, motor torque
     torque_rms: float  # N m
     torque_limit: float  # N m; infinite without one
     at_limit: float  # share of the time
@@ -47,10 +47,10 @@ class MotorFigures:
     """The steady part of a `run`.
 
     Attributes:
-        speed: [m/s] of the centre of mass, along the way from the part's start to its end.
-        power: [W] of the actuators: of motors, and of what imposes the law; less what they take back.
-        drawn_power: [W] that the motors draw where nothing is taken back; NaN without motors.
-        tracking_error: root mean square of the servos' errors over that of their references; NaN without a reference.
+        speed: [m/s] of the centre of mass, along the line from the part's start to its end.
+        power: [W] of the actuators: motors, or whatever imposes the law; net of the power they take back.
+        drawn_power: [W] of the motors if they take no power back; NaN without motors.
+        tracking_error: RMS of the servos' errors, divided by the RMS of their references; NaN without a reference.
     """
 
     run: Run
@@ -62,7 +62,7 @@ class MotorFigures:
 
     @property
     def energy_per_metre(self) -> float:
-        """Drawn energy [J/m]; that of `power` without motors."""
+        """Drawn energy [J/m]; without motors, the energy from `power`."""
         power = self.power if np.isnan(self.drawn_power) else self.drawn_power
         return power / self.speed if self.speed > 0.0 else np.inf
 
@@ -139,7 +139,7 @@ def _rms(values: np.ndarray, axis: int | None = None) -> Any:
 
 
 def steady_part(law: Any, time: np.ndarray) -> slice:
-    """The samples of the second half, in whole periods of the `law`."""
+    """The samples of the second half, limited to whole periods of the `law`."""
     period = max((term.period for term in getattr(law, "terms", ())), default=0.0)
     span = 0.5 * (time[-1] - time[0])
     if 0.0 < period <= span:
@@ -148,15 +148,15 @@ def steady_part(law: Any, time: np.ndarray) -> slice:
 
 
 def motor_swim(robot: Robot, swim: Swim) -> MotorFigures:
-    """The figures of a `robot` that swims a `swim`."""
+    """The figures of a `robot` in a `swim`."""
     period = max((term.period for term in swim.law.terms), default=0.0) if isinstance(swim.law, Law) else 0.0
     body = robot.body or swim.body
     return motor_figures(swim.run(robot=robot, body=body, sample_period=(period or 1.0) / SAMPLES, stations=STATIONS))
 
 
 def with_number(robot: Robot, swim: Swim, name: str, value: float | None) -> tuple[Robot, Swim]:
-    """The same with another number: a field of the robot where it has it (`Robot.with_numbers`), else one of the swim
-    (`studies.varied`)."""
+    """The robot and the swim with one number changed: a field of the robot if it has it (`Robot.with_numbers`), else of
+    the swim (`studies.varied`)."""
     own = name.removeprefix(ROBOT)
     if name.startswith(ROBOT) or robot.has(own):
         return robot.with_numbers({own: value}), swim
@@ -169,14 +169,14 @@ def with_number(robot: Robot, swim: Swim, name: str, value: float | None) -> tup
 
 
 def comparison(robot: Robot, swim: Swim, field: str, values: Sequence[float | None]) -> "Comparison":
-    """The figures of a `robot` that swims a `swim`, for each of the `values` of a `field` of one of them."""
+    """The figures of a `robot` in a `swim`, for each of the `values` of a `field` of either."""
     changed = [with_number(robot, swim, field, value) for value in values]
     return Comparison(field, tuple(values), tuple(in_threads(lambda each: motor_swim(*each), changed)))
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """Figures over the `values` of a `field` of a robot or its swim. named: what else was changed, in words."""
+    """Figures over the `values` of a `field` of a robot or its swim. named: other changes, in words."""
 
     field: str
     values: tuple[float | None, ...]

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The function and the command `optimise`: the gait of least cost at each speed."""
+"""The function and the command `optimise`: the gait of least cost for each speed."""

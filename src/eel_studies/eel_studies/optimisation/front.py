@@ -14,10 +14,10 @@ from eel_dynamics import Run
 from eel_studies.outputs import Table
 from eel_studies.pictures import BLUE, GREY, LOOKS, PICTURES, Axes, Figure, along_way, write_picture
 
-BOUND = 1e-3  # of the bounds' distance: nearer to one of them is at it
+BOUND = 1e-3  # of the bounds' distance: a closer value is at the bound
 SIZE = 9.0, 5.6  # inches
 MOST_GAITS = 5
-PHASES = 9  # midlines in a period
+PHASES = 9  # midlines per period
 FAR = 2.0  # times the front's greatest cost and speed: gaits beyond are not drawn
 
 
@@ -25,8 +25,8 @@ FAR = 2.0  # times the front's greatest cost and speed: gaits beyond are not dra
 class Front(EqualByFields):
     """The gaits of least cost at S speeds, by P parameters, slowest first.
 
-    Speeds and costs are those of `runs`, whose errors are estimated; they begin at the wanted speed, and last twice as
-    long as the swims of the search.
+    Speeds and costs are those of `runs`, whose errors are estimated. The runs begin at the wanted speed, and last twice
+    as long as the swims of the search.
     """
 
     cost_name: str  #: measure that was minimised
@@ -38,7 +38,7 @@ class Front(EqualByFields):
     speed: np.ndarray  #: (S,) m/s
     cost: np.ndarray  #: (S,), unit of the measure `cost_name`
     runs: tuple[Run, ...]
-    tried: np.ndarray  #: (N, 2) speed [m/s] and cost of the gaits that were tried
+    tried: np.ndarray  #: (N, 2) speed [m/s] and cost of all gaits tried
     warnings: tuple[str, ...]
 
     def __len__(self) -> int:
@@ -49,13 +49,13 @@ class Front(EqualByFields):
 
     @property
     def at_bound(self) -> np.ndarray:
-        """(S, P) bool: parameters that lie at a bound, which then decides."""
+        """(S, P) bool: parameters that lie at a bound, which limits the result."""
         place = (self.values - self.low) / (self.high - self.low)
         return np.asarray((place < BOUND) | (place > 1.0 - BOUND))
 
     @property
     def dominated(self) -> np.ndarray:
-        """(S,) bool: gaits for which another one is at least as fast and costs less."""
+        """(S,) bool: gaits that another one dominates: it is at least as fast and costs less."""
         faster = self.speed[None] >= self.speed[:, None]
         return np.asarray(np.any(faster & (self.cost[None] < self.cost[:, None]), axis=1))
 
@@ -84,7 +84,7 @@ class Front(EqualByFields):
     def draw(self, path: str | Path) -> None:
         """Draw the front, the parameters and the gaits into a file (.png, .svg, .pdf).
 
-        `ValueError` for another suffix; `ImportError` without matplotlib; `OSError` where the file cannot be written.
+        `ValueError` for other suffixes; `ImportError` without matplotlib; `OSError` if the file cannot be written.
         """
         path = Path(path)
         if path.suffix not in PICTURES:
@@ -133,7 +133,7 @@ def _draw_parameters(axes: Axes, front: Front) -> None:
 
 
 def _draw_gait(axes: Axes, run: Run, speed: float) -> None:
-    """Midlines over the last period from above, in the axes of the way: ahead to the right."""
+    """Midlines over the last period from above, in axes along the path: ahead to the right."""
     analysis = run.analysis()
     window = analysis.window
     period = window.period

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Speed and cost of a gait by its parameters, and their derivatives: what an optimiser asks for.
+"""Speed and cost of a gait as functions of its parameters, with derivatives, for an optimiser.
 
-An optimiser sees each parameter as a number from 0 to 1, its place between its bounds: by its logarithm where both are
-above 0. Speed and cost go nearly like powers of a period or a length.
+An optimiser sees each parameter as a number from 0 to 1, its place between its bounds: logarithmic if both bounds are
+above 0. Speed and cost are nearly powers of a period or a length.
 """
 
 import warnings
@@ -18,22 +18,22 @@ from eel_studies.gradients.gradient import gradient
 from eel_studies.points import Gait, Numbers, law_of_terms, point_at
 from eel_studies.steady_swim import at_speed, swim_times
 
-STEP = 1e-5  # of the bounds' distance: differences of the derivatives to either side
+STEP = 1e-5  # of the bounds' distance: difference to either side, for derivatives
 SPEED, CHANGE = "mean_speed", "speed_change"
-STEADY = 0.05  # greatest change of the speed within the swim of a gait that is counted as tried
-STRIDE = 0.5  # body lengths per period: of a gait whose speed is not known
-LONGER = 2  # times the periods, of the swim that is kept
+STEADY = 0.05  # greatest change of the speed within a swim that counts as steady
+STRIDE = 0.5  # body lengths per period: start of a gait of unknown speed
+LONGER = 2  # times the periods, for the final swim
 
 
 class NoSteadySwim(RuntimeError):
-    """A swim stopped, or has no speed or cost, so that no derivative can be taken there."""
+    """A swim stopped, or has no speed or cost, so no derivative exists there."""
 
 
 @dataclass
 class GaitProblem:
-    """The gaits between the bounds `low` and `high` (P,) of the parameters `names`, and what has been tried of them.
+    """The gaits between the bounds `low` and `high` (P,) of the parameters `names`, and the gaits tried so far.
 
-    base: body, scene, accuracy. cost: the name of a measure. periods: of each swim; the later half is measured.
+    base: body, scene, accuracy. cost: the name of a measure. periods: periods per swim; the later half is measured.
     """
 
     names: tuple[str, ...]
@@ -45,7 +45,7 @@ class GaitProblem:
     cost: str
     periods: int
     threads: int | None
-    tried: list[tuple[float, float]] = field(default_factory=list)  # speed and cost of each gait that swam steadily
+    tried: list[tuple[float, float]] = field(default_factory=list)  # speed and cost of each steady gait
     jumps: bool = False  # the printed friction jumped between two swims of a derivative
 
     def values(self, place: np.ndarray) -> dict[str, float]:
@@ -55,19 +55,19 @@ class GaitProblem:
         return dict(zip(self.names, found.tolist(), strict=True))
 
     def law(self, place: np.ndarray) -> Law:
-        """The law at a `place` (P,). `ValueError` where the parameters make none."""
+        """The law at a `place` (P,). `ValueError` if the parameters are invalid together."""
         return law_of_terms(point_at(self.values(place), self.gait, self.numbers, self.base).law)
 
     def measured(self, places: np.ndarray, speed: float | None) -> np.ndarray:
-        """Speed [m/s] and cost (N, 2) at `places` (N, P), of swims that begin at `speed` [m/s]; NaN where one stops.
+        """Speed [m/s] and cost (N, 2) at `places` (N, P), of swims that begin at `speed` [m/s]; NaN if one stops.
 
-        None: they begin at half a body length per period.
+        speed: None starts them at half a body length per period.
         """
         return np.array(in_threads(lambda place: self._measured(place, speed), places, self.threads))
 
     def derivatives(self, place: np.ndarray, speed: float) -> tuple[np.ndarray, np.ndarray]:
-        """Speed and cost (2,) at a `place` (P,), and their derivatives (2, P) by the place. `NoSteadySwim`: none."""
-        place = np.clip(place, STEP, 1.0 - STEP)  # so that no swim leaves the bounds
+        """Speed and cost (2,) at a `place` (P,), and their derivatives (2, P) by the place; or `NoSteadySwim`."""
+        place = np.clip(place, STEP, 1.0 - STEP)  # no swim may leave the bounds
         at = self.values(place)
         size = np.where(self._by_power, np.log(self._ratio) * list(at.values()), self.high - self.low)
         with warnings.catch_warnings():
@@ -95,7 +95,7 @@ class GaitProblem:
         return found.value, found.derivative * size
 
     def run(self, place: np.ndarray, speed: float) -> Run:
-        """A longer swim at a `place` (P,), with profiles along the body and its own error estimated."""
+        """A longer swim at a `place` (P,), with profiles along the body and an error estimate."""
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # the run keeps them
             return self._swim(place, speed, LONGER * self.periods, 51, estimate=True)

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The gait of least cost at each speed: `optimise`.
+"""The gait of least cost for each speed: `optimise`.
 
     front = optimise({"period": (0.4, 3.0), "amplitude_0": (0.0, 2.0), "amplitude_2": (0.0, 6.0)}, [0.2, 0.4, 0.6])
     print(front.table())
     front.draw("front.png")
     front.runs[1].law                # the gait for 0.4 m/s
 
-Gaits spread over the bounds are tried first. For each speed the search begins from the best of them and from the gait
-found for the speed before. It minimises the cost with the speed as a constraint.
+First, gaits spread over the bounds are tried. For each speed the search begins from the best of them and from the gait
+found for the previous speed. It minimises the cost with the speed as a constraint.
 """
 
 import warnings
@@ -29,11 +29,11 @@ from eel_studies.optimisation.searches import METHODS
 from eel_studies.points import AccuracyLike, Gait, Numbers, Progress, base_point
 from eel_studies.steady_swim import swim_times
 
-SPREAD_OVER_BOUNDS = 16  # gaits per parameter that are tried first
-MORE_STARTS = 2  # from which a search begins where the first ones missed the speed
-MISSED = 0.01  # relative difference of the kept swim's speed from the wanted one, above which a warning names it
-NOT_KEPT = 0.05  # the same, of a speed that only the swims of the search had, since they began with it
-PENALTY = 20.0  # for a missed speed, in the order of the starts
+SPREAD_OVER_BOUNDS = 16  # first gaits, per parameter
+MORE_STARTS = 2  # further starts if the first ones missed the speed
+MISSED = 0.01  # relative error of the final swim's speed, above which a warning names it
+NOT_KEPT = 0.05  # the same, for a speed that only the search's short swims had, as they began with it
+PENALTY = 20.0  # for a missed speed, when starts are ranked
 
 
 def optimise(
@@ -56,17 +56,17 @@ def optimise(
 ) -> Front:
     """The gaits of least `cost` at `speeds` (S,) [m/s] over the water, by parameters within their `bounds`.
 
-    bounds: (low, high) by name, with the names of `studies.points`. gait: its name, a function of numbers that
-    returns a law, or a `Swim`, as of `load_scene`, with all that it has. numbers: what else is held fixed, by the same
-    names. body, accuracy, threads: as in `gradient`.
-    scene: by default that of the library with blended friction, whose derivatives have no jump; a current is left out.
+    bounds: (low, high) by name, with the names of `studies.points`. gait: its name, a function of numbers that returns
+    a law, or a whole `Swim`, as from `load_scene`. numbers: other numbers, held fixed, by the same names. body,
+    accuracy, threads: as in `gradient`.
+    scene: by default the library's with blended friction, whose derivatives have no jump; a current is left out.
     cost: the name of a measure (`analysis.measures.MEASURES`). periods: of each swim, which begins at the wanted speed;
-    its later half is measured. method: "gradient" (SLSQP), or "cma", which needs the package cma, of the extra `[cma]`.
-    starts: gaits from which each search by gradients begins, besides the one before. seed: of what is random.
+    its later half is measured. method: "gradient" (SLSQP), or "cma", which needs the package cma (extra `[cma]`).
+    starts: gaits from which each search by gradients begins, besides the previous speed's. seed: of random numbers.
     progress: as in `sweep`, by speeds.
 
-    A speed that no gait reaches is left out, with a warning that names the speeds that are reached. `ValueError` names
-    what does not fit, or says that no speed is reached; `ImportError`: a package is missing.
+    A speed that no gait reaches is left out, with a warning that names the speeds reached. `ValueError` names a bad
+    argument, or says that no speed is reached; `ImportError`: a package is missing.
     """
     low, high = _checked_bounds(bounds)
     wanted = checked_row("speeds", speeds, None)
@@ -162,14 +162,14 @@ def _checked_bounds(bounds: Any) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _merit(measured: np.ndarray, speed: float) -> np.ndarray:
-    """What makes a gait a good start for `speed` [m/s]: little cost, and its speed near; (N,), the least is best."""
+    """The merit (N,) of gaits as starts for `speed` [m/s]: low cost, and a speed close to it; the least is best."""
     scale = np.nanmedian(np.abs(measured[:, 1])) if np.isfinite(measured[:, 1]).any() else 1.0
     worth = measured[:, 1] / scale + PENALTY * np.abs(np.log(np.maximum(measured[:, 0], 1e-9) / speed))
     return np.where(np.isfinite(worth), worth, np.inf)
 
 
 def _missed(wanted: np.ndarray, met: list[float], tried: np.ndarray) -> Iterator[str]:
-    """One line for the speeds that no gait was found for."""
+    """One line about the speeds for which no gait was found."""
     left = [f"{speed:.4g}" for speed in wanted.tolist() if speed not in met]
     if left:
         reached = "no gait that was tried swims steadily"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Searches for the place of least cost at a given speed: by derivatives (SLSQP of SciPy), or by CMA-ES (cma).
 
-Each is a function (problem, starts, speed, seed) -> place (P,), or None where none of its swims has that speed.
+Each is a function (problem, starts, speed, seed) -> place (P,), or None if none of its swims has that speed.
 """
 
 import contextlib
@@ -12,24 +12,24 @@ from eel_dynamics.runs.storage.tables import needed
 
 from eel_studies.optimisation.gait_problem import STEP, GaitProblem, NoSteadySwim
 
-MET = 1e-3  # relative difference of a speed that has been met
-EVALUATIONS, TOLERANCE = 25, 3e-4  # of SLSQP: at most, and the change of the cost that ends it, relative
-MISSED_SPEED = 30.0  # weight of the squared logarithm of a missed speed, beside the constraint
-# Penalty of CMA-ES for a missed speed: of the cost's logarithm by the speed's. It is exact where it is steeper
-# than the front, whose cost grows with the second or third power of the speed.
+MET = 1e-3  # a speed is met within this relative difference
+EVALUATIONS, TOLERANCE = 25, 3e-4  # of SLSQP: most evaluations, and the relative change of the cost that ends it
+MISSED_SPEED = 30.0  # weight of the squared logarithm of a missed speed, added to the constraint
+# Penalty of CMA-ES for a missed speed: in the cost's logarithm, per logarithm of speed. It is exact if steeper
+# than the front, where the cost grows with the second or third power of the speed.
 PENALTY = 6.0
-SPREAD, GENERATIONS = 0.2, 150  # of CMA-ES: first standard deviation, of the bounds' distance; most generations
-WORST = 1e3  # of a gait that does not swim
+SPREAD, GENERATIONS = 0.2, 150  # of CMA-ES: initial standard deviation, of the bounds' distance; most generations
+WORST = 1e3  # cost of a gait that does not swim
 
 
 def by_gradients(problem: GaitProblem, starts: np.ndarray, speed: float, seed: int) -> np.ndarray | None:
-    """Sequential least-squares programming with `gradient`, from each of the `starts` (S, P); the best end."""
+    """Sequential least-squares programming with `gradient`, from each of the `starts` (S, P); the best result."""
     ends = [end for start in starts if (end := _slsqp(problem, start, speed)) is not None]
     return min(ends, key=lambda end: end[0])[1] if ends else None
 
 
 def _slsqp(problem: GaitProblem, start: np.ndarray, speed: float) -> tuple[float, np.ndarray] | None:
-    """Cost and place of the end of one search; None where it does not meet the speed."""
+    """Cost and place at the end of one search; None if it misses the speed."""
     import scipy.optimize
 
     known: dict[bytes, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
@@ -43,10 +43,10 @@ def _slsqp(problem: GaitProblem, start: np.ndarray, speed: float) -> tuple[float
         return known[key][:2]
 
     def with_missed_speed(place: np.ndarray) -> tuple[float, np.ndarray]:
-        """Cost by its first value and the squared miss of the speed, and the derivative (P,).
+        """Cost divided by its first value plus the squared miss of the speed, and the derivative (P,).
 
-        The second changes no solution. Without it, the line search of SLSQP may refuse a step that brings the speed and
-        costs as much as it should.
+        The second term changes no solution. Without it, the line search of SLSQP may refuse a step that meets the
+        speed at a cost that is right for it.
         """
         (swum, cost), (by_speed, by_cost) = found(place)
         missed = np.log(swum / speed)
@@ -74,7 +74,7 @@ def _slsqp(problem: GaitProblem, start: np.ndarray, speed: float) -> tuple[float
 
 
 def _ended(measured: list[np.ndarray], speed: float) -> bool:
-    """Whether the last two gaits have the speed, and the same cost."""
+    """Whether the last two gaits have the wanted speed, and the same cost."""
     if len(measured) < 2:
         return False
     (before, cost), (after, last) = measured[-2:]
@@ -84,12 +84,12 @@ def _ended(measured: list[np.ndarray], speed: float) -> bool:
 
 
 def by_cma(problem: GaitProblem, starts: np.ndarray, speed: float, seed: int) -> np.ndarray | None:
-    """Covariance matrix adaptation from the first of the `starts` (S, P); it takes the speed and cost of swims alone.
+    """Covariance matrix adaptation from the first of the `starts` (S, P), from speeds and costs without derivatives.
 
     `ImportError` without the package cma.
     """
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of matplotlib's absence, on import
+        warnings.simplefilter("ignore")  # its import warns of missing matplotlib
         cma = needed("cma", "method 'cma' of optimise", "eel_studies[cma]")
     options = {"bounds": [0.0, 1.0], "maxiter": GENERATIONS, "tolfun": 5e-4, "tolx": 2e-3, "verbose": -9}
     options["seed"] = seed + 1  # 0 is the clock

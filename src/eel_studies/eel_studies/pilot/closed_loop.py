@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A pilot and a simulation in a closed loop, in one process, as the nodes are over topics in lockstep."""
+"""A pilot and a simulation in a closed loop, in one process: like the nodes in lockstep over topics."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -22,32 +22,32 @@ class Voyage:
 
     time: np.ndarray  # (T,) s
     head: np.ndarray  # (T, 3) m, position
-    position: np.ndarray  # (T, 3) m, without the swing of the head, as the pilot estimates it
+    position: np.ndarray  # (T, 3) m, the pilot's estimate, without the swing of the head
     heading: np.ndarray  # (T,) rad, mean over a period
     roll: np.ndarray  # (T,) rad, of the plane of the beat
     wanted_heading: np.ndarray  # (T,) rad
     wanted_height: np.ndarray  # (T,) m
-    misses: tuple[float, ...]  # m, least distance of the head to each way point that was passed
-    news: tuple[str, ...]  # what the pilot reported
+    misses: tuple[float, ...]  # m, least distance of the head from each passed way point
+    news: tuple[str, ...]  # the pilot's reports
 
     @property
     def heading_error(self) -> np.ndarray:
-        """(T,) rad, size."""
+        """(T,) rad, magnitude."""
         off = self.heading - self.wanted_heading
         return np.asarray(np.abs(np.remainder(off + np.pi, 2.0 * np.pi) - np.pi))
 
     @property
     def last(self) -> np.ndarray:
-        """(T,) bool: the last part, which counts where something is held."""
+        """(T,) bool: the last part, in which held quantities are judged."""
         return np.asarray(self.time >= self.time[-1] - LAST_PART)
 
     @property
     def depth_error(self) -> float:
-        """The greatest of the last part [m]."""
+        """The greatest error [m] in the last part."""
         return float(np.abs(self.position[:, 2] - self.wanted_height)[self.last].max())
 
     def distance_from(self, spot: np.ndarray) -> float:
-        """The greatest of the last part [m]."""
+        """The greatest distance [m] in the last part."""
         return float(np.linalg.norm(self.position - spot, axis=1)[self.last].max())
 
 
@@ -61,9 +61,9 @@ def swim_with(
     each: Callable[[Simulation], None] = lambda simulation: None,
     **start: Any,
 ) -> Voyage:
-    """Let the `pilot` swim for `duration` [s] at most, or `until(pilot)`.
+    """Let the `pilot` swim for at most `duration` [s], or until `until(pilot)` is true.
 
-    scene: by default the motion alone. start: keywords of `Simulation`, such as position and twist. each(simulation) is
+    scene: by default with motion only. start: keywords of `Simulation`, such as position and twist. each(simulation):
     called at each step.
     """
     scene = scene or Scene(internal_wrench=False, ledger=False)

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How much fin holds the roll of a gait: the window of area and gain, and what long swims do in it."""
+"""Fins that hold the roll of a gait: the window of area and gain, and long swims in it."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel roll-hold`: the window in which fins hold the roll of a gait, over two of their numbers.
+"""`eel roll-hold`: map where fins hold the roll of a gait, over two of their numbers.
 
 eel roll-hold straight                                                        # area and gain of the pair at X = 0.5 m
 eel roll-hold turning --fins "pair station=0.3 ..." --over fins.k_p=0.5:10 --over fins.time_constant=0.01:0.5
@@ -31,7 +31,7 @@ OVER = ["fins.area=2e-4:5e-3", "fins.k_p=0.5:16"]
 PARTS = "gaits", "window"
 SIZE = 9.0, 4.0  # inches
 PUSH, LONG, DIVE = 0.05, 40.0, 10.0  # rad/s of roll at the start; s, of the straight and of the falling gait
-EXPECTED = {  # area [m^2], k_p of a pair at X = 0.2 m: roll, depth, way to the side by an independent prototype
+EXPECTED = {  # area [m^2], k_p of a pair at X = 0.2 m: roll, depth and drift, by an independent prototype
     (0.0, 0.0): ("17 rad", "22 m", "0.90 m"),
     (1e-3, 2.0): ("0.06 rad", "0.07 m", ""),
     (2e-3, 2.0): ("", "", "0.21 m"),
@@ -81,7 +81,7 @@ def main(options: argparse.Namespace) -> None:
 
 
 def page_parts(outputs: Outputs, points: int) -> dict[str, str]:
-    """The parts of the page, with windows of so many `points` along each side."""
+    """The parts of the page, with windows of `points` by `points`."""
     ahead, amidships = holding(1e-3, 2.0), fins_from_text(PAIR)
     windows = [
         roll_window(_swim(straight(), fins), ranges_of("--over", OVER), points, f"fins at X = {fins[0].station:g} m")
@@ -94,7 +94,7 @@ def page_parts(outputs: Outputs, points: int) -> dict[str, str]:
 
 
 def draw_windows(figure: Any, windows: list[RollWindow]) -> None:
-    """Growth in a period over two numbers, side by side; within the line disturbances decay."""
+    """Growth per period over two numbers, side by side. Inside the line disturbances decay."""
     for part, window in zip(np.atleast_1d(figure.subfigures(1, len(windows))), windows, strict=True):
         item, growth = window.map, window.growth
         label = "growth in a period, log10: below 0 roll is held"

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What each term of the model does to a scene, and the smallest scene within a tolerance: `eel terms`."""
+"""The effect of each term of the model on a scene, and the smallest scene within a tolerance: `eel terms`."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel terms`: swim a scene without each term of the model, and find the smallest scene that will do.
+"""`eel terms`: swim a scene without each term of the model, and find the smallest scene that suffices.
 
 eel terms scene.yaml
 eel terms straight --set period=0.7 --tolerance 0.05 --out small.yaml
@@ -33,7 +33,7 @@ def _add_options(parser: Parser) -> None:
 
 @command(
     NAME,
-    "Swim a scene with each term of the model off in turn. Print what that changes, and the CPU time; "
+    "Swim a scene with each term of the model off in turn. Print the change and the CPU time; "
     "then recommend the smallest scene within a tolerance, swum once more against the whole one.",
     add_options=_add_options,
 )

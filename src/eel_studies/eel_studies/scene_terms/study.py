@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What each term does to a swim, and the smallest scene that stays within a tolerance of the whole one.
+"""The effect of each term on a swim, and the smallest scene that stays within a tolerance of the whole one.
 
-Each effect is a relative difference from the swim with all terms: of the head's path (as `accuracy` has it), of the
-mean speed, of the greatest torque and of the cost of transport. All swims are a hundred times as exact as the tolerance
-where the motion allows, and each measures its own error: what lies below it is not told apart. Times are CPU times of
-one core; the swims take turns, and medians count.
+Each effect is a relative difference from the swim with all terms: of the head's path (in the sense of `accuracy`), the
+mean speed, the greatest torque and the cost of transport. All swims are a hundred times as exact as the tolerance, if
+the motion allows it. Each estimates its own error; smaller effects are not resolved. Times are CPU times on one core.
+The swims take turns, and medians count.
 """
 
 import warnings
@@ -26,17 +26,17 @@ from eel_studies.scene_terms.terms import TERMS, WITHIN, terms_of, without
 MEASURES = {"mean_speed": "speed", "greatest_torque": "torque", "cost_of_transport": "cost of transport"}
 EFFECTS = ("path", *MEASURES.values())
 FINER = 1e-2  # of the tolerance: the error of the swims that are compared
-EXACT_ENOUGH = 0.1  # of the tolerance, which the discretisation of the recommended scene may take
-COARSEST_COMPARED = 1e-4  # of these swims, whatever the tolerance
+EXACT_ENOUGH = 0.1  # of the tolerance: most error from the recommended scene's discretisation
+COARSEST_COMPARED = 1e-4  # coarsest target of these swims
 LEAST_TOLERANCE = 1e-7
 ROUNDS = 5  # of timing
-# A swim without a term may take so many times the whole scene's evaluations per second, and at least so many.
+# Limit of a swim without a term: so many times the whole scene's evaluations per second, and at least so many.
 DEARER, LEAST_EVALUATIONS = 100.0, 1e4
 
 
 @dataclass(frozen=True)
 class Effect:
-    """What leaving out a term does. Relative; NaN where a measure is not defined, infinite where the swim `stopped`."""
+    """The effect of leaving out a term. Relative; NaN for an undefined measure, infinite if the swim `stopped`."""
 
     path: float
     speed: float
@@ -48,12 +48,12 @@ class Effect:
 
     @property
     def values(self) -> tuple[float, ...]:
-        """Those of `EFFECTS`."""
+        """The values of `EFFECTS`."""
         return self.path, self.speed, self.torque, self.cost_of_transport
 
     @property
     def worst(self) -> float:
-        """The greatest of those that are defined."""
+        """The greatest defined value."""
         return max(abs(value) for value in self.values if not np.isnan(value))
 
 
@@ -61,7 +61,7 @@ class Effect:
 class Terms:
     """The effects of all terms on a `swim`, and the recommended scene.
 
-    effects: by name of the term. dropped: the terms that `recommended` does without; together they have the effect
+    effects: by name of the term. dropped: the terms that `recommended` lacks; together they have the effect
     `together`, its coarser accuracy included. within: whether that is within the `tolerance`.
     """
 
@@ -73,12 +73,12 @@ class Terms:
     dropped: list[str]
     recommended: Swim
     together: Effect
-    restored: list[str]  # terms with little effect of their own, which the others need
-    growth_rate: float  # 1/s, of errors; 0 where the motion is not sensitive
+    restored: list[str]  # terms with little effect alone, but needed with others
+    growth_rate: float  # 1/s, of errors; 0 for a motion that is not sensitive
 
     @property
     def left_out(self) -> list[str]:
-        """The terms that the recommended scene does without; parts of another one that goes are not named."""
+        """The terms that the recommended scene lacks. Parts of a term that is left out are not named."""
         parts = {part for name in self.dropped for part in WITHIN.get(name, ())}
         return [name for name in self.dropped if name not in parts]
 
@@ -88,7 +88,7 @@ class Terms:
         return self.together.worst <= self.tolerance
 
     def table(self) -> Table:
-        """A row for each term, and those of the whole and the recommended scene."""
+        """A row for each term, and one each for the whole and the recommended scene."""
         rows = [("nothing", *("",) * len(EFFECTS), f"{1e3 * self.whole.seconds:.3g}", "")]
         for name, effect in sorted(self.effects.items(), key=lambda item: -item[1].worst):
             rows.append((name, *self._cells(effect), self._verdict(name)))
@@ -126,11 +126,11 @@ class Terms:
 
 
 def terms(swim: Swim, tolerance: float = 0.02) -> Terms:
-    """What each term of the model does to `swim`, and the smallest scene that differs by at most `tolerance`.
+    """The effect of each term of the model on `swim`, and the smallest scene that differs by at most `tolerance`.
 
-    Terms with a small effect go together; where their sum is too great, the greatest of them come back. The scene that
-    is left is swum once more, at an accuracy of a tenth of the tolerance, against the whole one. `ValueError` for what
-    does not fit; `SimulationStopped` where the whole scene cannot be swum.
+    Terms with a small effect are left out together. If their joint effect is too large, the largest of them come back.
+    The remaining scene is swum again, at an accuracy of a tenth of the tolerance, against the whole one. `ValueError`
+    for a bad argument; `SimulationStopped` if the whole scene cannot be swum.
     """
     checked_instance("swim", swim, Swim)
     tolerance = number("tolerance", tolerance, minimum=LEAST_TOLERANCE, maximum=1.0)
@@ -164,7 +164,7 @@ def terms(swim: Swim, tolerance: float = 0.02) -> Terms:
 
 
 def _may_go(without: Swim, swim: Swim) -> bool:
-    """Whether the scene `without` a term swims by the same law, and has a file where `swim` has one."""
+    """Whether the scene `without` a term has the same law as `swim`, and can be written to a file if `swim` can."""
     if without.law is not swim.law:
         return False
     for each in (swim, without):
@@ -187,7 +187,7 @@ def _effect(run: Run | Exception, whole: Run) -> Effect:
 
 
 def _measures(run: Run) -> dict[str, float]:
-    """The `MEASURES` of a run; the greatest torque at a sample where none is known between them, as of a robot."""
+    """The `MEASURES` of a run. The greatest torque is taken at samples if it is unknown in between, as for a robot."""
     found = measures_of(run, tuple(MEASURES))
     if np.isnan(found["greatest_torque"]) and run.torque is not None:
         found["greatest_torque"] = float(np.linalg.norm(run.torque, axis=2).max())

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The terms of the model that a scene may do without, and how each is switched off. A further one is a line of `TERMS`.
+"""The optional terms of the model, and how each is switched off. A new one is a line of `TERMS`.
 
-A term that is off in a scene, or whose switch changes nothing in it, is not among those of that scene.
+A scene's terms exclude those that are already off in it, or whose switch changes nothing.
 """
 
 from collections.abc import Callable
@@ -31,13 +31,13 @@ def _body(**fields: Any) -> Off:
 
 
 def _as_plates(swim: Swim) -> Swim:
-    """The `swim` of a body whose cross flow by shape is that of plates."""
+    """The `swim` of a body whose cross-flow drag by shape becomes that of plates."""
     plates = {"lateral_drag": PLATE, "vertical_drag": EDGE_ON}
     return _body(**{name: value for name, value in plates.items() if getattr(swim.body, name) is BY_SHAPE})(swim)
 
 
 def _joints(**fields: Any) -> Off:
-    """Without what these fields of a robot's joints, or of their servos, give."""
+    """Switches off the effect of these fields of a robot's joints, or of their servos."""
 
     def off(swim: Swim) -> Swim:
         robot = swim.robot
@@ -51,7 +51,7 @@ def _joints(**fields: Any) -> Off:
 
 
 def _one_mode(swim: Swim) -> Swim:
-    """The `swim` of a robot whose tails and muscles bend by one mode alone."""
+    """The `swim` of a robot whose tails and muscles bend in one mode only."""
     if swim.robot is None:
         return swim
     parts = [part if isinstance(part, Joint) else replace(part, modes=1) for part in swim.robot.parts]
@@ -105,7 +105,7 @@ TERMS: dict[str, Off] = {
     "hard stops": _joints(limits=None),
     "higher modes": _one_mode,
 }
-WITHIN = {  # what goes with a term
+WITHIN = {  # terms that vanish with a term
     "cross-flow drag": ("cross flow by shape",),
     "friction": ("turbulence of the friction",),
     "inertia of the water": ("wake", "momentum of the added mass", "gradient of the flow", "added mass of the fins"),
@@ -116,7 +116,7 @@ WITHIN = {  # what goes with a term
 
 
 def terms_of(swim: Swim) -> dict[str, Swim]:
-    """The terms of the `swim` by name, each with the swim without it."""
+    """The terms of the `swim`: for each name, the swim without that term."""
     found = {name: off(swim) for name, off in TERMS.items()}
     return {name: without for name, without in found.items() if _physics(without) != _physics(swim)}
 
@@ -130,7 +130,7 @@ def without(swim: Swim, names: list[str]) -> Swim:
 
 
 def _physics(swim: Swim) -> tuple[Any, ...]:
-    """What a switch may change, as values that can be compared: a switch that has no effect leaves it equal."""
+    """All that a switch may change, as comparable values: equal values mean that a switch has no effect."""
     scene = swim.scene
     if not scene.reactive:
         scene = replace(scene, wake=False, added_inertia=False)

@@ -36,7 +36,7 @@ def _add_options(parser: Parser) -> None:
 
 @command(
     NAME,
-    "Map what becomes of a scene over two of its numbers: each cell is swum, and checked against a run "
+    "Map a scene over two of its numbers: each cell is swum, and checked against a run "
     "of a tenth of its target. Without a scene, drive the simulator to its extremes: such maps, the condition of "
     "the inertia, drift over 100,000 periods, growth out of a plane.",
     add_options=_add_options,
@@ -63,7 +63,7 @@ def _map(options: argparse.Namespace) -> None:
         raise ValueError(f"--study goes without a scene, got {shown(options.study[0])}")
     swim = chosen(options.swim, options)
     for axis in axes:
-        varied(swim, {axis.name: axis.low})  # what there is not is refused before the map
+        varied(swim, {axis.name: axis.low})  # an unknown name is refused before the map
     scene = Path(options.swim or "falling").stem
     item = Map(scene, f"{scene}: {axes[0].name} and {axes[1].name}", axes[0], axes[1], options.points, swim)
     outputs = Outputs(NAME, options, [scene] if options.page else [])
@@ -77,7 +77,7 @@ def _map(options: argparse.Namespace) -> None:
 
 
 def axes_from(texts: list[str]) -> list[Axis]:
-    """The axes that --over gives, of numbers above 0: the map is logarithmic."""
+    """The axes from --over, with numbers above 0: the map is logarithmic."""
     found = ranges_of("--over", texts, ", 0 < LOW < HIGH")
     for name, (low, high) in found.items():
         if not 0.0 < low < high < float("inf"):

@@ -29,14 +29,14 @@ def amplitudes(low: float, high: float) -> Axis:
 
 
 def spindle(length: float, slenderness: float) -> Swim:
-    """A spindle of `length` [m] that swims by the paper's wave at its size."""
+    """A spindle of `length` [m] that swims with the paper's wave scaled to it."""
     wave = {"wavelength": length, "amplitude_0": 1.0 / length, "amplitude_1": 0.5 / length**2}
     swim = varied(swim_with({}), {**wave, "amplitude_2": 2.0 / length**3})
     return swim._replace(body=Body.spindle(length, slenderness))
 
 
 def swim_with(words: dict[str, Any]) -> Swim:
-    """Four periods of the paper's robot, or what these `words` of a scene say."""
+    """Four periods of the paper's robot, or the swim that these `words` of a scene describe."""
     return swim_of({"gait": "straight", "duration": 4.0, **words})._replace(accuracy=Accuracy.of(TARGET))
 
 
@@ -70,6 +70,6 @@ ROWS: dict[str, tuple[str, Axis, Axis, dict[str, Any]]] = {  # name: title, axes
 
 
 def maps_of(points: int) -> tuple[Map, ...]:
-    """The maps, of `points` by `points` runs each. Maps over presets or methods have one row for each of them."""
+    """The maps, of `points` by `points` runs each. Maps over presets or methods have one row for each."""
     how = {name: {"at": spindle} if name == "body" else {"swim": swim_with(row[3])} for name, row in ROWS.items()}
     return tuple(Map(name, *row[:3], points, **how[name]) for name, row in ROWS.items())

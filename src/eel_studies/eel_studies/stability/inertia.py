@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The 6 x 6 matrix of inertia: its condition, by which a solution magnifies round-off, and what an added mass outside
-of it would do.
+"""The condition of the 6 x 6 inertia matrix, which magnifies round-off, and the effect of added mass treated
+explicitly.
 
-Rotations are scaled by the body's length. With the added mass on the right side, as with a separate solver for the
-water, I_b a[n+1] = w - I_f a[n] multiplies an error in each step by the greatest eigenvalue of I_b^-1 I_f, however
-short the step is.
+Rotations are scaled by the body's length. With the added mass on the right-hand side, as with a separate flow solver,
+I_b a[n+1] = w - I_f a[n] multiplies an error in each step by the greatest eigenvalue of I_b^-1 I_f, however short the
+step.
 """
 
 import numpy as np
@@ -19,11 +19,11 @@ from eel_studies.stability.extremes import DENSITY, SLENDERNESS, amplitudes
 from eel_studies.stability.maps import Map
 
 INSTANTS = 8  # per period, after the ramps of the gait
-RATIOS = (1e-3, 1e-2, 1e-1, 0.5, 1.0, 10.0, 1e3)  # densities of a body, by water's
+RATIOS = (1e-3, 1e-2, 1e-1, 0.5, 1.0, 10.0, 1e3)  # density of the body / density of the water
 
 
 def maps_of(points: int) -> tuple[Map, Map]:
-    """Maps of `points` by `points` condition numbers each: of straight bodies, and of the swimming robot."""
+    """Maps of `points` by `points` condition numbers: of straight bodies, and of the swimming robot."""
     title, needles = "condition of the 6 x 6 matrix:", SLENDERNESS._replace(high=5e6)
     straight_bodies = Map("condition", f"{title} straight bodies", DENSITY, needles, points, at=of_straight)
     return straight_bodies, Map(
@@ -32,8 +32,8 @@ def maps_of(points: int) -> tuple[Map, Map]:
 
 
 def of_straight(ratio: float, slenderness: float) -> float:
-    """Condition number for a straight spindle of 1 m, of `ratio` times the density of the water; NaN if it is refused
-    as singular."""
+    """Condition number for a straight spindle of 1 m, of `ratio` times the water's density; NaN if it is refused as
+    singular."""
     try:
         return condition_of(np.add(*inertias(Body.spindle(1.0, slenderness), ratio)))
     except ValueError:
@@ -41,7 +41,7 @@ def of_straight(ratio: float, slenderness: float) -> float:
 
 
 def of_bent(ratio: float, size: float) -> float:
-    """Greatest condition number for the robot over a period of its wave, of `size` times the paper's amplitude."""
+    """Greatest condition number for the robot over a period, with a wave of `size` times the paper's amplitude."""
     swimmer = Simulation(Body.boyer2010(), _water(ratio), "draft", [0.0], law=straight() * size)
     return max(condition_of(inertia_at(swimmer, time)) for time in 2.0 + np.arange(INSTANTS) / INSTANTS)
 
@@ -52,8 +52,8 @@ def inertia_at(swimmer: Simulation, time: float) -> np.ndarray:
 
 
 def inertias(body: Body, ratio: float, accuracy: str | float = "draft") -> tuple[np.ndarray, np.ndarray]:
-    """Inertia matrices (6, 6) [kg] about the head, rotation first, of the straight body of `ratio` times the density of
-    the water, and of its added mass."""
+    """Inertia matrices (6, 6) [kg] about the head, rotation first, of the straight body of `ratio` times the water's
+    density, and of its added mass."""
     here, scene = Simulation(body, _water(ratio), accuracy, [0.0]).discretisation, _water(ratio)
     none = np.zeros_like(here.sections.mass)
     dry = here.sections._replace(added2=none, added3=none, inertia1=here.sections.inertia1 - here.sections.added_roll)
@@ -68,7 +68,7 @@ def growth_of_explicit(ratio: float) -> float:
 
 
 def explicit() -> str:
-    """That growth over densities, as Markdown."""
+    """Growth with explicit added mass over densities, as Markdown."""
     head = "density of the body, by water's", "error by that of the step before, with an explicit added mass"
     rows = [(f"{ratio:g}", f"{growth_of_explicit(ratio):.3g}") for ratio in RATIOS]
     return f"Bodies of a condition above {MOST:g} are refused as singular.\n\n{table(head, rows)}"

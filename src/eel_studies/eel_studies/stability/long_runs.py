@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Long runs: what drifts over decades of periods, and what grows out of the plane of a planar swim.
+"""Long runs: drift over decades of periods, and growth out of the plane of a planar swim.
 
-The works of the ledger are integrated along with the motion, and only the samples are kept: memory does not grow with
-time. Out of the plane a disturbance grows by a multiplier of the settled swim (`periodic_linearisation`), which is that
+The ledger's works are integrated along with the motion, and only samples are kept, so memory does not grow with time.
+Out of the plane a disturbance grows by a multiplier of the settled swim (`periodic_linearisation`). That is a property
 of the model: it depends on no accuracy.
 """
 
@@ -15,8 +15,8 @@ from eel_dynamics import Accuracy, Body, Scene, Simulation
 from eel_gaits import helix, straight
 from eel_studies.steering.linearisation import periodic_linearisation
 
-PERIOD = 0.7  # s, whose multiples are not exact in binary
-DECADES, COMPARED = 5, 3  # of periods: of a run, and of the finer one that it is compared with
+PERIOD = 0.7  # s, its multiples are not exact in binary
+DECADES, COMPARED = 5, 3  # decades of periods: of a run, and of the finer run for comparison
 ACCURACY = "draft"
 FIGURES = {  # of `drift_of`, all relative: in words
     "ledger": "ledger's residual, by the work",
@@ -43,9 +43,9 @@ VARIANTS: dict[str, dict[str, Any]] = {  # arguments of `periodic_linearisation`
 
 
 def drift_of(swimmer: dict[str, Any], decades: int = DECADES, compared: int = COMPARED) -> dict[str, np.ndarray]:
-    """The `FIGURES` of a `swimmer` after 1, 10, ... 10^`decades` periods, the last one of 10^`compared` at most.
+    """The `FIGURES` of a `swimmer` after 1, 10, ... 10^`decades` periods; "path" for at most 10^`compared`.
 
-    NaN where there is nothing to compare with. `SimulationStopped` where a run cannot go on.
+    NaN without a run for comparison. `SimulationStopped` if a run cannot go on.
     """
     times = PERIOD * np.concatenate(([0.0], 10.0 ** np.arange(decades + 1)))
     accuracy = Accuracy.of(ACCURACY).in_scene(swimmer["scene"])
@@ -89,7 +89,7 @@ def _recorded(times: np.ndarray, **swimmer: Any) -> tuple[Simulation, Any, np.nd
 
 
 def planes() -> str:
-    """What grows out of the plane in a period, as Markdown."""
+    """Growth out of the plane per period, as Markdown."""
     rows = []
     for name, swimmer in VARIANTS.items():
         found = periodic_linearisation(straight(), estimate=False, **swimmer)

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Maps of what becomes of a swim over two numbers at a time. No cell may be wrong in silence.
+"""Maps of the outcome of a swim over two numbers at a time. No cell may be wrong in silence.
 
-Each cell is swum, and once more at a tenth of its target. Its error is their distance as `accuracy` has it, of position
-and torque. A cell has one of the `OUTCOMES`:
+Each cell is swum, and again at a tenth of its target. Its error is the distance of the two in position and torque, in
+the sense of `accuracy`. A cell has one of the `OUTCOMES`:
 
-accurate: the error is within the target. sensitive: it is not, the run says so, and errors grow a hundredfold or more.
-inaccurate: it is not, and the run says so, by its estimate or a warning. stopped, refused: with which message.
-unchecked: the finer run does not come to its end, or misses its own target as the run itself may. silent: the error is
-above the target by more than the finer run leaves uncertain, and the run does not say so.
+accurate: the error is within the target. sensitive: it is not, the run says so, and errors grow at least a hundredfold.
+inaccurate: it is not, and the run says so, by its estimate or a warning. stopped, refused: with a message.
+unchecked: the finer run stops, or may miss its own target. silent: the error exceeds the target by more than the finer
+run's uncertainty, and the run does not say so.
 """
 
 import warnings
@@ -25,10 +25,10 @@ from eel_dynamics import Run, Swim
 from eel_studies.reference import attempt
 from eel_studies.varied import varied
 
-TARGET = 1e-3  # of settings that have none of their own
+TARGET = 1e-3  # of settings without a target
 FINER = 0.1  # of the target
-SAMPLES, STATIONS = 96, 33  # a torque that jumps from limit to limit shows between fewer of them
-# Per simulated second and decade of the target, and of a cell in all as in this duration [s]: a map takes minutes.
+SAMPLES, STATIONS = 96, 33  # enough for a torque that jumps from limit to limit
+# Evaluations: per simulated second and decade of the target; a cell's total is that of this duration [s].
 MOST_EVALUATIONS, LONGEST = 1e4, 4.0
 OUTCOMES = ACCURATE, SENSITIVE, INACCURATE, STOPPED, REFUSED, UNCHECKED, SILENT = (
     *("accurate", "sensitive", "inaccurate", "stopped", "refused", "unchecked", "silent"),
@@ -36,17 +36,17 @@ OUTCOMES = ACCURATE, SENSITIVE, INACCURATE, STOPPED, REFUSED, UNCHECKED, SILENT 
 CELL = np.dtype(
     [
         ("outcome", object),
-        ("size", float),  # error relative to the target; NaN where there is none
-        ("text", object),  # message of a stop or a refusal, or what there is to say
+        ("size", float),  # error relative to the target; NaN without one
+        ("text", object),  # message of a stop or a refusal, or a remark
         ("rate", float),  # 1/s, at which errors grow
-        ("steps", int),  # in time
+        ("steps", int),  # number of time steps
         ("limits", bool),  # the run warns of a limit of the model
     ]
 )
 
 
 class Axis(NamedTuple):
-    """An axis of a map: label, name of the number (`varied`), least and greatest value, or the values of its rows."""
+    """An axis of a map: label, name of the number (`varied`), least and greatest value, or the rows' values."""
 
     label: str
     name: str
@@ -55,17 +55,17 @@ class Axis(NamedTuple):
     choices: tuple[Any, ...] = ()
 
     def values(self, points: int) -> np.ndarray:
-        """Places along the axis: so many `points` in geometric sequence, or powers of 2 for choices."""
+        """Places along the axis: `points` in geometric sequence, or powers of 2 for choices."""
         return 2.0 ** np.arange(len(self.choices)) if self.choices else np.geomspace(self.low, self.high, points)
 
     def settings(self, points: int) -> list[Any]:
-        """What the number is at these places."""
+        """The values of the number at these places."""
         return list(self.choices) or self.values(points).tolist()
 
 
 @dataclass(frozen=True)
 class Map:
-    """A grid of `points` by `points` over two axes, of a `swim` or of a number: at(x, y) instead."""
+    """A grid of `points` by `points` over two axes, of a `swim`, or of a number at(x, y)."""
 
     name: str
     title: str
@@ -86,14 +86,14 @@ class Map:
         return self.up.values(self.points)
 
     def found(self, x: Any, y: Any) -> Any:
-        """What is at x and y: a swim, or a number. `ValueError` where that is refused."""
+        """The swim or the number at x and y. `ValueError` if it is refused."""
         if self.at is not None:
             return self.at(x, y)
         assert self.swim is not None
         return varied(self.swim, {self.across.name: x, self.up.name: y})
 
     def values(self, of: Callable[[Callable[[], Any]], Any] = lambda found: found()) -> np.ndarray:
-        """`of` what finds each cell, over threads: (len(y), len(x), ...)."""
+        """`of` applied to the finder of each cell, over threads: (len(y), len(x), ...)."""
         cells = product(self.up.settings(self.points), self.across.settings(self.points))
         found = in_threads(lambda cell: of(lambda: self.found(cell[1], cell[0])), cells)
         return np.array(found).reshape(len(self.y), len(self.x), *np.shape(found[0]))
@@ -112,12 +112,12 @@ class Measured:
 
     @property
     def worst(self) -> float:
-        """Greatest error relative to the target among finished runs; NaN where none finished."""
+        """Greatest error relative to the target among finished runs; NaN if none finished."""
         size = self.cells["size"]
         return float(np.nanmax(size)) if np.isfinite(size).any() else np.nan
 
     def texts(self, outcome: str) -> list[str]:
-        """The different messages of this outcome, without time and value."""
+        """The distinct messages of this outcome, without times and values."""
         cells = self.cells[self.cells["outcome"] == outcome]
         if outcome == SENSITIVE:  # the fastest of them
             return [f"errors grow by a factor of e in {1.0 / cells['rate'].max():.2g} s"] if len(cells) else []
@@ -131,7 +131,7 @@ def measure(item: Map) -> Measured:
 
 
 def cell_of(swim_of: Callable[[], Swim]) -> np.ndarray:
-    """The cell (`CELL`) of the swim that `swim_of()` gives, unless it is refused."""
+    """The cell (`CELL`) of the swim made by `swim_of()`, which may be refused."""
     try:
         swim = swim_of()
     except ValueError as error:

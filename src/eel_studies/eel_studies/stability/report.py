@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The studies by name. Each returns its part of the page, and draws its pictures.
 
-Colour is the error relative to the target; marks tell the other outcomes, and warnings.
+Colour shows the error relative to the target. Marks show the other outcomes, and warnings.
 """
 
 from collections.abc import Callable
@@ -31,7 +31,7 @@ from eel_studies.stability.maps import (
 
 SIZE = 5.6, 4.2  # inches
 DECADES = 3.0  # range of the colours, above and below the target
-MARKS = {  # outcome: mark, size, what it is called
+MARKS = {  # outcome: mark, size, label
     STOPPED: ("x", 5, "stopped with a message"),
     REFUSED: ("_", 5, "refused"),
     SENSITIVE: ("^", 4, "sensitive, said"),
@@ -51,7 +51,7 @@ def report(found: list[Measured], outputs: Outputs) -> str:
 
 
 def counts(found: list[Measured]) -> Table:
-    """A row for each map: how many cells have which outcome."""
+    """A row for each map: the number of cells with each outcome."""
     rows = []
     for each in found:
         texts = [str(each.count(outcome)) for outcome in OUTCOMES]
@@ -72,7 +72,7 @@ def conditions(points: int, outputs: Outputs) -> str:
     return "\n".join([table(("map", "least", "greatest", "refused"), rows), "", inertia.explicit(), "", *pictures])
 
 
-STUDIES: dict[str, Callable[[int, Outputs], str]] = {  # of so many points along each side of a map
+STUDIES: dict[str, Callable[[int, Outputs], str]] = {  # arguments: points along each side of a map, outputs
     "maps": lambda points, outputs: report([measure(item) for item in maps_of(points)], outputs),
     "condition": conditions,
     "drift": lambda points, outputs: long_runs.drifts(),
@@ -104,7 +104,7 @@ def draw(figure: Any, measured: Measured) -> None:
 
 
 def draw_map(figure: Any, item: Map, values: np.ndarray, label: str, extend: str = "neither", **colours: Any) -> Any:
-    """Draw the decadic logarithms of `values` (len(y), len(x)), and a bar of their colours; returns the axes."""
+    """Draw the decadic logarithms of `values` (len(y), len(x)), with a colour bar. Returns the axes."""
     axes = figure.subplots()
     axes.grid(False)
     size = np.log10(np.maximum(values, 1e-300))

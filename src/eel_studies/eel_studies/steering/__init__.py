@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Can a swimmer be steered? The linearised motion over one period of its gait."""
+"""Can a swimmer be steered? The motion linearised over one period of its gait."""

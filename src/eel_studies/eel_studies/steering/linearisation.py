@@ -2,11 +2,11 @@
 """Linearisation of a swim over one period of its gait: `periodic_linearisation`.
 
     found = periodic_linearisation(straight(), scene=Scene(metacentric_height=0.01))
-    found.multipliers            # (n,) eigenvalues: a disturbance of a mode is so many times as large a period later
-    found.growth                 # the greatest, but for those that are 1 as no heading is special
-    found.controllability()      # (n,) of each mode, by bends in yaw and pitch; 0: no bend moves it
+    found.multipliers            # (n,) eigenvalues: growth factors of the modes per period
+    found.growth                 # the greatest magnitude, without neutral modes (no heading is preferred)
+    found.controllability()      # (n,) per mode, by bends in yaw and pitch; 0: no bend moves it
 
-The matrices are central differences of swims over one period, from the settled motion.
+The matrices are central differences of swims over one period, about the settled motion.
 """
 
 from dataclasses import dataclass, replace
@@ -26,23 +26,23 @@ from eel_studies.steering.period_map import Motion, PeriodMap, rotation, turned_
 
 STATES = ("roll", "pitch", "heading", "roll_rate", "pitch_rate", "yaw_rate", "surge", "sway", "heave")
 OUT_OF_PLANE = ("roll", "pitch", "roll_rate", "pitch_rate", "heave")
-PHASES = {"": (0.0, np.pi / 2), "_cos": (1.0, np.pi / 2), "_sin": (1.0, np.pi)}  # whether it beats, and its phase
+PHASES = {"": (0.0, np.pi / 2), "_cos": (1.0, np.pi / 2), "_sin": (1.0, np.pi)}  # whether it beats (1), and its phase
 BENT = {bend + beat: (axis, *wave) for bend, axis in BENDS.items() for beat, wave in PHASES.items()}
 INPUTS = tuple(BENT)
-STEP = 1e-5  # rad; of a twist times its scale, of a bend by the body's length
-STEPS, RESOLUTION = 160, 40.0  # of the march in a period, points along the body
-COARSER = 0.7  # times the steps and points of the companion, that tells the error
+STEP = 1e-5  # rad; a twist's is scaled, a bend's is divided by the body's length
+STEPS, RESOLUTION = 160, 40.0  # steps per period, points along the body
+COARSER = 0.7  # factor for the steps and points of the companion, which gives the error
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PeriodicLinearisation:
-    """How small changes of the head's motion at the start of a period, and small bends during it, act at its end.
+    """The effect of small changes of the head's motion at the start of a period, and of small bends, at its end.
 
-    States: roll, pitch, heading [rad], a turn of the head about the axes of the course: x along the way of the
-    period, z up. roll_rate ... heave: the twist (Omega, V) [rad/s, m/s] in the head's axes. Position is left out:
-    nothing depends on it. Inputs [rad/m]: bends, uniform along the body, that are added to the gait. They come and go
-    within the period, by the ramp f_r of eq. (64). "left_bend" is constant between, positive to the left;
-    "left_bend_cos" and "left_bend_sin" beat with the gait. "up_bend" and its like bend upwards. Fins'
+    States: roll, pitch, heading [rad], a turn of the head about the axes of the course: x along the path of the period,
+    z up. roll_rate ... heave: the twist (Omega, V) [rad/s, m/s] in the head's axes. Position is left out, as nothing
+    depends on it. Inputs [rad/m]: bends, uniform along the body, added to the gait. They rise and fall within the
+    period with the ramp f_r of eq. (64). "left_bend" is constant in between, positive to the left; "left_bend_cos" and
+    "left_bend_sin" beat with the gait. "up_bend", "up_bend_cos" and "up_bend_sin" bend upwards. The angles of fins'
     servos are further states, n in all: `states` names them.
     """
 
@@ -50,16 +50,16 @@ class PeriodicLinearisation:
     body: Body
     scene: Scene
     period: float  #: s
-    start: Motion  #: of the settled motion, at the start of a period; it swims towards +x
+    start: Motion  #: the settled motion at the start of a period; it swims towards +x
     end: Motion
-    defect: float  #: rad, and relative to the twist: by how much it does not repeat
-    rise: float  #: part of the period, in which a bend comes, and goes again
-    monodromy: np.ndarray  #: (n, n) states at the end by states at the start
-    input_matrix: np.ndarray  #: (n, 6) states at the end by inputs
+    defect: float  #: rad, and relative to the twist: distance from an exact repetition
+    rise: float  #: part of the period in which a bend rises, and in which it falls
+    monodromy: np.ndarray  #: (n, n) d(states at the end) / d(states at the start)
+    input_matrix: np.ndarray  #: (n, 6) d(states at the end) / d(inputs)
     error: float  #: greatest change of a multiplier with coarser settings; NaN without an estimate
     fins: tuple[Fin, ...] = ()
-    upright: bool = False  #: whether weight, or fins that hold the roll, tell one attitude from another
-    servos: tuple[int, ...] = ()  #: of each servo with a state the number of its first fin
+    upright: bool = False  #: whether the attitude matters: there is weight, or fins hold the roll
+    servos: tuple[int, ...] = ()  #: for each servo with a state, the index of its first fin
 
     def __repr__(self) -> str:
         return f"PeriodicLinearisation({shown(self.law.name)}, {self.scene!r}, growth {self.growth:.4g} a period)"
@@ -92,31 +92,31 @@ class PeriodicLinearisation:
 
     @cached_property
     def participation(self) -> np.ndarray:
-        """(n, n) share of each state (row) in each mode (column), of magnitudes that add up to 1.
+        """(n, n) share of each state (row) in each mode (column); magnitudes add up to 1.
 
-        Left times right eigenvector, entry by entry: it does not depend on units.
+        It is the left times the right eigenvector, entry by entry, so it does not depend on units.
         """
         share = np.abs(np.linalg.inv(self.modes).T * self.modes)
         return np.asarray(share / share.sum(axis=0))
 
     def motion_of(self, mode: int) -> str:
-        """The states that take part in a `mode` by a tenth or more, the greatest share first."""
+        """The states with a share of a tenth or more in a `mode`, the greatest first."""
         share = self.participation[:, mode]
         return ", ".join(self.states[k] for k in np.argsort(-share) if share[k] >= 0.1)
 
     @cached_property
     def neutral(self) -> np.ndarray:
-        """(n,) bool: modes of magnitude 1, as no heading is special, and where nothing is `upright` no attitude."""
+        """(n,) bool: modes of magnitude 1, as no heading is preferred, and unless `upright` no attitude."""
         free = [STATES.index("heading")] if self.upright else [0, 1, 2]
         return np.asarray(self.participation[free].sum(axis=0) > 0.5)
 
     @property
     def growth(self) -> float:
-        """The greatest factor by which a disturbance grows in a period, the neutral modes apart."""
+        """The greatest growth factor of a disturbance per period, without the neutral modes."""
         return float(np.abs(self.multipliers[~self.neutral]).max())
 
     def controllability(self, inputs: tuple[str, ...] = INPUTS) -> np.ndarray:
-        """(n,) how firmly the `inputs` hold each mode; 0: no bend of these moves it, whatever the controller.
+        """(n,) how strongly the `inputs` control each mode; 0: none of these bends moves it, with any controller.
 
         The least singular value of [A - multiplier, B] (Popov, Belevitch and Hautus), with time in periods and length
         in body lengths, so that a bend is the angle [rad] between head and tail. `ValueError` for an unknown input.
@@ -133,16 +133,16 @@ class PeriodicLinearisation:
         )
 
     def kick(self, mode: int, state: str = "roll") -> np.ndarray:
-        """(6,) complex: the amplitude to which an input of 1 rad/m in one period brings a `mode`, of its `state`."""
+        """(6,) complex: the amplitude of a `mode` in its `state` after one period with an input of 1 rad/m."""
         left, row = np.linalg.inv(self.modes)[mode], STATES.index(state)
         pair = 1.0 if abs(self.multipliers[mode].imag) < 1e-9 else 2.0  # a mode and its conjugate
         return np.asarray(pair * (left @ self.input_matrix) * self.modes[row, mode])
 
     def feedback(self, bend: float = 1.0) -> np.ndarray:
-        """(6, n) gain of the linear-quadratic regulator: inputs [rad/m] = - gain @ states, once a period.
+        """(6, n) gain of the linear-quadratic regulator: inputs [rad/m] = - gain @ states, once per period.
 
-        States count with time in periods and length in body lengths; an input of `bend` [rad/m] counts as much as a
-        state of 1. `ValueError` where the inputs do not hold a mode that grows.
+        States are weighted with time in periods and length in body lengths. An input of `bend` [rad/m] has the weight
+        of a state of 1. `ValueError` if the inputs cannot control a growing mode.
         """
         from scipy.linalg import solve_discrete_are
 
@@ -180,14 +180,13 @@ def periodic_linearisation(
 ) -> PeriodicLinearisation:
     """Linearise the settled swim of `law` over one period of the gait, after all of its ramps.
 
-    A law may have several settled motions. This is the one to which a swim from rest has come near after some periods;
-    a law of yaw alone swims in the plane.
+    A law may have several settled motions. The result is the one that a swim from rest approaches after some periods. A
+    law with yaw only swims in the plane.
 
-    body, scene, fins: as in `simulate`; a current is left out, it carries all alike, and no fin may follow a table.
-    rise: part of the period in which a bend comes, and goes again, up to a half. steps: of the march in a period;
-    resolution: points along the body. estimate: do it again with coarser settings, for the error. The matrices are
-    central differences. `ValueError` names what does not fit, a law that does not repeat, or one whose motion does not
-    settle.
+    body, scene, fins: as in `simulate`; a current is left out, as it carries everything alike, and no fin may follow a
+    table. rise: part of the period in which a bend rises, and in which it falls, up to a half. steps: per period.
+    resolution: points along the body. estimate: repeat with coarser settings, for the error. The matrices are central
+    differences. `ValueError` names a bad argument, a law that does not repeat, or one whose motion does not settle.
     """
     checked_instance("law", law, Law)
     body = checked_body(body)
@@ -202,7 +201,7 @@ def periodic_linearisation(
         return found
     coarser = PeriodMap(law, body, scene, round(COARSER * steps), COARSER * resolution, fins)
     other = _linearised(coarser, scene, rise)
-    apart = np.abs(found.multipliers[:, None] - other.multipliers).min(axis=1)  # from the nearest
+    apart = np.abs(found.multipliers[:, None] - other.multipliers).min(axis=1)  # distance from the nearest
     return replace(found, error=float(apart.max()))
 
 
@@ -229,9 +228,10 @@ def _linearised(one: PeriodMap, scene: Scene, rise: float) -> PeriodicLinearisat
 
 
 def states_after(start: Motion, end: Motion, moved: Motion) -> np.ndarray:
-    """(B, n) states of the motions `moved` at the end of a period, relative to the settled one from `start` to `end`.
+    """(B, n) states of the motions `moved` at the end of a period, relative to the settled motion from `start` to
+    `end`.
 
-    The course turns on with the settled motion.
+    The course turns with the settled motion.
     """
     settled = rotation(end.orientation)
     course = settled * rotation(start.orientation).inv()
@@ -240,7 +240,7 @@ def states_after(start: Motion, end: Motion, moved: Motion) -> np.ndarray:
 
 
 def _bend(name: str, size: float, period: float, rise: float) -> Term:
-    """The input `name` of `size` [rad/m], in the first period."""
+    """The input `name` of `size` [rad/m] during the first period."""
     axis, beats, phase = BENT[name]
     ramps = Ramp(0.0, rise * period, 1.0), Ramp((1.0 - rise) * period, period, -1.0)
     return Term(axis=axis, amplitude=(-size,), period=beats * period, phase=phase, envelope=ramps)

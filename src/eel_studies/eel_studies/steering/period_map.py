@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The map over one period of a gait: the head's attitude and twist and the angles of fins' servos at its start, and at
-its end.
+"""The map over one period of a gait, from the head's attitude, twist and fin servo angles at its start to those at its
+end.
 
-A motion that has settled repeats after a period, but for its position and its heading. Without a righting moment no
-attitude is special, and its twist alone has to repeat. With one, or with fins that hold the roll, the attitude to the
-vertical has to repeat too.
+A settled motion repeats after a period, except its position and its heading. Without a righting moment no attitude is
+preferred, and only the twist has to repeat. With a righting moment, or with fins that hold the roll, the attitude to
+the vertical has to repeat too.
 """
 
 import math
@@ -19,22 +19,22 @@ from eel_dynamics.model.fins.fins import Fin, RollHold, checked_fins, servos_of
 from eel_dynamics import Accuracy, Body, Scene, simulate, simulate_batch
 from eel_gaits import Law
 
-SETTLING = 12  # periods from rest, after which the settled motion is searched from
-CLOSE = 1e-9  # rad, and relative to the twist: a motion that repeats so closely has settled
+SETTLING = 12  # periods from rest before the search for the settled motion
+CLOSE = 1e-9  # rad, and relative to the twist: a settled motion repeats within this
 MOST_SEARCHES = 40
-SLOW = 0.2  # a step of Newton's method that leaves more of the defect needs a new derivative
-DIFFERENCE = 1e-5  # rad, and relative to the twist
-FARTHEST = 0.3  # likewise
+SLOW = 0.2  # if a Newton step leaves more of the defect, the derivative is renewed
+DIFFERENCE = 1e-5  # rad, and relative to the twist: for the derivative
+FARTHEST = 0.3  # likewise, the largest Newton step
 UP = np.array([0.0, 0.0, 1.0])
 
 
 class Motion(NamedTuple):
-    """The head at the start or the end of a period; (B, ...) for several swims."""
+    """The head at the start or the end of a period. For several swims, arrays are (B, ...)."""
 
     position: np.ndarray  # (3,) m, world; 0 at the start
     orientation: np.ndarray  # (4,) x y z w, world from head
     twist: np.ndarray  # (6,) rad/s, m/s, head's axes
-    servo: np.ndarray  # (S,) rad, of fins: in the order of their states
+    servo: np.ndarray  # (S,) rad, angles of the fins' servos, in the order of their states
 
     @property
     def up(self) -> np.ndarray:
@@ -59,11 +59,11 @@ def turned_by(orientation: np.ndarray, by: np.ndarray) -> np.ndarray:
 class PeriodMap:
     """One period of `law`, after all of its ramps, of a `body` in still water of the `scene`.
 
-    law, period [s]. fins: at angles that stay, commanded (0), or holding the roll. steps: of the march in a period;
-    resolution: points along the body. `ValueError` for a law that does not repeat, and for a planar scene.
+    law, period [s]. fins: fixed, commanded (0), or holding the roll. steps: per period. resolution: points along the
+    body. `ValueError` for a law that does not repeat, and for a planar scene.
 
     Attributes:
-        servos: (S,) for each servo with a state the number of its first fin.
+        servos: (S,), for each servo with a state, the index of its first fin.
         upright: whether the attitude to the vertical matters.
     """
 
@@ -93,8 +93,8 @@ class PeriodMap:
         servos: np.ndarray | None = None,
         laws: list[Law] | None = None,
     ) -> Motion:
-        """The ends (B, ...) of a period that begins with `orientations` (B, 4), `twists` (B, 6) and `servos` (B, S);
-        `laws`: (B,), if they are not the gait's. `SimulationStopped` where a swim cannot go on."""
+        """The ends (B, ...) of a period that begins with `orientations` (B, 4), `twists` (B, 6) and `servos` (B, S).
+        laws: (B,), instead of the gait's. `SimulationStopped` if a swim cannot go on."""
         angles = np.zeros((len(np.atleast_2d(twists)), len(self.servos))) if servos is None else np.atleast_2d(servos)
         batch = simulate_batch(
             self.law if laws is None else laws,
@@ -115,18 +115,18 @@ class PeriodMap:
         return Motion(*ends, angles if batch.fin_angle is None else self._servos_at(batch.fin_angle[:, -1]))
 
     def _fins_at(self, angles: np.ndarray) -> list[Fin]:
-        """The fins, their servos at these `angles` (S,)."""
+        """The fins with servos at these `angles` (S,)."""
         at = {self.fins[first].servo: float(angle) for first, angle in zip(self.servos, angles, strict=True)}
         return [replace(fin, initial_angle=at[fin.servo]) if fin.servo in at else fin for fin in self.fins]
 
     def _servos_at(self, angles: np.ndarray) -> np.ndarray:
-        """Angles (..., S) of the servos at those (..., F) of the fins."""
+        """Angles (..., S) of the servos from the angles (..., F) of the fins."""
         return angles[..., self.servos] * [self.fins[first].sign for first in self.servos]
 
     def settled(self) -> tuple[Motion, Motion, float]:
-        """Start and end of a period of the settled motion, and how far it is from repeating (as `CLOSE`).
+        """Start and end of a period of the settled motion, and its distance from repeating (as `CLOSE`).
 
-        It swims towards +x in the world, as the straight body does. `ValueError` where none is found.
+        It swims towards +x in the world, like the straight body. `ValueError` if none is found.
         """
         start, slope, before = self._guess(), None, np.inf
         for _ in range(MOST_SEARCHES):
@@ -146,7 +146,7 @@ class PeriodMap:
         )
 
     def _guess(self) -> Motion:
-        """The head after some periods from rest; in the plane if the law bends there alone."""
+        """The head after some periods from rest; in the plane if the law bends only there."""
         scene = replace(self.scene, planar=self._whole.in_plane and not (self.fins or self.scene.weight))
         periods = self._start + SETTLING
         how: dict[str, Any] = {"accuracy": 1e-3, "stations": 2, "estimate": False}
@@ -155,18 +155,18 @@ class PeriodMap:
         return Motion(np.zeros(3), run.orientation[-1], run.twist[-1], servo)
 
     def _scale(self, start: Motion) -> np.ndarray:
-        """(6,) of the twist: its size, turning by the body's length."""
+        """(6,) scale of the twist: its size, with rotations divided by the body's length."""
         length = self.body.length
         size = np.linalg.norm(start.twist * np.repeat((length, 1.0), 3)) + 1e-6 * length / self.period
         return np.repeat((size / length, size), 3)
 
     def _defect(self, start: Motion, end: Motion) -> np.ndarray:
-        """What does not repeat: the twist (6,) by its size, the servos (S,), and where `upright` the vertical (3,)."""
+        """The defect of repetition: twist (6,) by its size, servos (S,), and if `upright` the vertical (3,)."""
         twist = (end.twist - start.twist) / self._scale(start)
         return np.concatenate([twist, end.servo - start.servo, *([end.up - start.up] if self.upright else [])])
 
     def _moved(self, start: Motion, change: np.ndarray) -> Motion:
-        """The start with a changed twist, relative to its size, other servos, and where `upright` another lean."""
+        """The start with changes of the twist, relative to its size, of the servos, and if `upright` of the lean."""
         servos = 6 + len(self.servos)
         lean = np.append(change[servos:], np.zeros(3 + servos - len(change)))
         twist = start.twist + self._scale(start) * change[:6]
@@ -174,7 +174,7 @@ class PeriodMap:
         return Motion(start.position, turned, twist, start.servo + change[6:servos])
 
     def _slope(self, start: Motion) -> np.ndarray:
-        """The derivative of the defect by those changes, by differences to either side."""
+        """The derivative of the defect with respect to those changes, by central differences."""
         changes = DIFFERENCE * np.eye(6 + len(self.servos) + 2 * self.upright)
         both = [self._moved(start, sign * change) for sign in (1.0, -1.0) for change in changes]
         _, orientations, twists, servos = map(np.array, zip(*both, strict=True))
@@ -184,9 +184,9 @@ class PeriodMap:
         return np.asarray(((above - below) / (2.0 * DIFFERENCE)).T)
 
     def _on_course(self, start: Motion, end: Motion) -> tuple[Motion, Motion]:
-        """Both turned about the vertical such that the way of the period leads to +x."""
+        """Both motions, turned about the vertical so that the path of the period points to +x."""
         way = end.position[:2]
-        if np.linalg.norm(way) < 1e-3 * self.body.length:  # where there is none, the head points there
+        if np.linalg.norm(way) < 1e-3 * self.body.length:  # without a path, the head points there
             way = rotation(start.orientation).apply([1.0, 0.0, 0.0])[:2]
         about = np.array([[0.0, 0.0, -math.atan2(way[1], way[0])]])
         turn = rotation(turned_by(np.array([0.0, 0.0, 0.0, 1.0]), about)[0])

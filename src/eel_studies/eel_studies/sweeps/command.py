@@ -58,7 +58,7 @@ def _add_options(parser: Parser) -> None:
     interrupted="; the same command goes on from here",
 )
 def main(options: argparse.Namespace) -> None:
-    """Exit status as of `command`; 4 where points could not be computed, 130 when interrupted."""
+    """Exit status as in `command`; 4 if points could not be computed, 130 after an interrupt."""
     start = time.perf_counter()
     numbers = set_numbers(options.set)
     vary = named_texts("--vary", options.vary)

@@ -5,9 +5,9 @@
                  duration=10.0, accuracy=1e-3, out="periods.nc")
     data.mean_speed.sel({"scene.friction": "laminar"})       # an xarray of 16 speeds, with their periods
 
-It runs in threads, one per core, or on a Dask scheduler. Finished points are stored beside the output: an interrupted
-sweep resumes when it is called again. It needs `pip install './src/eel_dynamics[data]'`, with a scheduler
-`'./src/eel_studies[cluster]'`.
+It runs in threads, one per core, or on a Dask scheduler. Finished points are stored beside the output, so an
+interrupted sweep resumes when it is called again. It needs `pip install './src/eel_dynamics[data]'`; with a scheduler
+also `'./src/eel_studies[cluster]'`.
 """
 
 import itertools
@@ -55,7 +55,7 @@ from eel_studies.sweeps.sweep_recordings import SweepRecordings
 from eel_studies.workers import workers_of
 
 LONGEST_CHUNK = 64  # points
-MOST_POINTS = 1_000_000  # of a grid, which is built as a whole before the first run
+MOST_POINTS = 1_000_000  # of a grid, which is built before the first run
 
 
 class PointsMissing(WorkStopped):
@@ -89,39 +89,38 @@ def sweep(
 ) -> Any:
     """Simulate every combination of the values in `grid`.
 
-    Returns an `xarray.Dataset` over the parameters of the grid. A point that stops has NaN for its measures, `stopped`
-    is true, and `error` is its message. An `Unsettled` warning tells how many points had not settled.
+    Returns an `xarray.Dataset` over the parameters of the grid. For a point that stops, the measures are NaN, `stopped`
+    is true, and `error` is its message. An `Unsettled` warning counts the points that have not settled.
 
     Args:
         grid: values by name, with the names of `studies.points`: numbers of the gait ("period"), of scene, body or
             initial state ("scene.friction", "body.lateral_drag", "initial.v_x"), of flow and fins ("fins.area",
             "fins.k_p"), of a robot ("robot.kp", "robot.tails.bending_stiffness", "robot.joint_3.stiffness"), "robot",
             "body" and "accuracy".
-        gait: its name, a function of `numbers` and the grid's that returns a law, or a `Swim`, as of `load_scene`,
-            which gives all that is not given here.
-        numbers: by the same names, for all points, such as those of the gait, or "fins".
-        duration: [s], or "settled" (None without a `Swim`): until its gait has settled, as in `simulate`.
-        body, scene, robot, accuracy: as in `simulate`, for all points; a robot may be given by name or file.
+        gait: its name, a function of `numbers` and the grid's that returns a law, or a whole `Swim`, as from
+            `load_scene`, whose settings are the defaults.
+        numbers: for all points, by the same names, such as those of the gait, or "fins".
+        duration: [s], or "settled" (the default without a `Swim`): until the gait has settled, as in `simulate`.
+        body, scene, robot, accuracy: as in `simulate`, for all points; a robot may be a name or a file.
         sample_period: [s], as in `simulate`.
         stations: as in `simulate`.
-        estimate: measure each run's error, as in `simulate`.
+        estimate: estimate each run's error, as in `simulate`.
         measure: names of `analysis.measures.MEASURES` (None: all), to which "settled" is added, or a function
             run -> {name: number}.
         out: .nc file for the result; its parts are stored in `out`.parts until it is complete.
-        scheduler: None for `workers` threads; "processes" for as many processes of this machine; the address of a Dask
-            scheduler, a client or a cluster. A script that uses "processes" calls `sweep` below
+        scheduler: None for `workers` threads; "processes" for as many processes on this machine; the address of a Dask
+            scheduler, a client or a cluster. With "processes", a script must call `sweep` below
             `if __name__ == "__main__":`.
         workers: threads, or processes; None: one per core.
         chunk: points per task.
         progress: progress(done, points) is called after each chunk; True: a bar; None: a bar on a terminal.
         overwrite: replace another sweep in `out` and its parts.
-        recordings: folder, made where there is none, for a Rerun recording of each point that is swum: 000000.rrd ...,
-            with the values of the grid as the properties `numbers`, its figures as others, and without the water's
-            forces.
-        most_evaluations: of each point, as in `simulate`.
+        recordings: folder, created if missing, for a Rerun recording of each point: 000000.rrd ..., with the values of
+            the grid as the properties `numbers`, its figures as others, and without the water's forces.
+        most_evaluations: per point, as in `simulate`.
 
-    `ValueError` names the point or the measure that is invalid. `ImportError`: a package is missing. `OSError`: the
-    output cannot be written to its end. `PointsMissing`: points could not be computed; the others are kept.
+    `ValueError` names an invalid point or measure. `ImportError`: a package is missing. `OSError`: the output cannot be
+    completed. `PointsMissing`: points could not be computed; the others are kept.
     """
     xarray = needed("xarray", "a sweep")
     names, axes = _checked_grid(grid)
@@ -187,16 +186,16 @@ def sweep(
 
 
 def _warned(data: Any) -> Any:
-    """The result `data`; an `Unsettled` warning tells how many of its points have not settled."""
+    """Return `data`, with an `Unsettled` warning that counts the points that have not settled."""
     if "settled" in data:
         tell_unsettled(data.settled, "points", stacklevel=4)
     return data
 
 
 def swim_points(points: list[tuple[int, Swim]], how: SwimSettings, record: SweepRecordings | None = None) -> Results:
-    """The task of a worker: simulate the points, given with their indices, measure and `record` each.
+    """A worker's task: simulate the points, given with their indices, measure and `record` each.
 
-    Returns the measures of each point by its index, with "error": the message of a point that stopped, else empty.
+    Returns the measures of each point by its index, with "error": the message of a stopped point, else empty.
     """
     result = {}
     for index, point in points:
@@ -239,7 +238,7 @@ def _check_count(name: str, value: Any) -> None:
 
 
 def check_points(name: str, count: int) -> None:
-    """`ValueError` for more points than a grid can have."""
+    """`ValueError` for more points than a grid may have."""
     if count > MOST_POINTS:
         raise ValueError(f"{name} must have at most {MOST_POINTS} points, got {count}")
 

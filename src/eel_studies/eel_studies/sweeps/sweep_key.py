@@ -48,9 +48,9 @@ def key_of(points: list[Swim], how: SwimSettings) -> str:
 
 
 def _content_of_function(argument: str, function: Any) -> bytes:
-    """The code and closure of `function`, with the whole file of its module where that can be imported.
+    """The code and closure of `function`, with its module's whole file if that can be imported.
 
-    `ValueError` names the argument whose function cannot be hashed.
+    `ValueError` names an argument whose function cannot be hashed.
     """
     if isinstance(function, NamedHalfAxis):
         return repr(function).encode()
@@ -70,7 +70,7 @@ def _content_of_function(argument: str, function: Any) -> bytes:
 
 
 def _content_of_robot(robot: Robot | None, body: Body) -> bytes:
-    """The robot's numbers, with the code of torques that are functions."""
+    """The robot's numbers, with the code of torques given as functions."""
     content = b""
     for joint in robot.joints if robot is not None else ():
         if isinstance(joint.actuator, Torque) and joint.actuator.time is None:
@@ -90,7 +90,7 @@ def _content_of_flow(flow: Flow | None) -> bytes:
 
 
 def _content_of_body(body: Body) -> bytes:
-    """The body's numbers, its half-axes as given, and their values at 201 points: a function may read other data."""
+    """The body's numbers, half-axes, and their values at 201 points, as a function may depend on other data."""
     x = np.linspace(0.0, body.length, 201)
     numbers = body.length, body.density, *body.nose, body.nose_added_mass, body.nose_drag
     drags = [getattr(body, name) for name in DRAGS]

@@ -41,7 +41,7 @@ def checked_point(found: dict[str, Any]) -> dict[str, Any]:
 class Parts:
     """Results by index of the sweep `key` of `count` points, in the folder `out`.parts; not stored if `out` is None.
 
-    `ValueError` where `out` is invalid, or where the file or the folder is of another sweep, unless `overwrite`.
+    `ValueError` if `out` is invalid, or if the file or folder belongs to another sweep, unless `overwrite`.
     """
 
     def __init__(self, out: str | Path | None, key: str, count: int, overwrite: bool):
@@ -73,14 +73,14 @@ class Parts:
             _check_digest_of(self.out)
             data = xarray.load_dataset(file, engine="scipy")
         if data is not None and data.attrs.get("sweep") == self._key:
-            data.attrs.pop(ATTRIBUTE, None)  # the file's
+            data.attrs.pop(ATTRIBUTE, None)  # belongs to the file
             return data
         if self._overwrite:
             return None
         raise ValueError(f"{self.out} exists and is not of this sweep, or is damaged: choose another out, or overwrite")
 
     def load(self) -> Results:
-        """Load the stored results, by index, and create the folder. A damaged part is removed, with a warning."""
+        """Load the stored results by index, and create the folder. A damaged part is removed with a warning."""
         done: dict[int, Any] = {}
         if self.folder is not None:
             self.folder.mkdir(exist_ok=True)
@@ -116,7 +116,7 @@ class Parts:
         self._remove()
 
     def _part(self, path: Path) -> Results:
-        """The points of one part. `ValueError` if `keep` cannot have written it: text, NaN, a truncated file."""
+        """The points of one part. `ValueError` if `keep` did not write it: text, NaN, a truncated file."""
         with reading(""), InputFile(path) as file:
             found = from_json(file.read(), parse_constant=_infinity)
         held = found.get("points") if isinstance(found, dict) else None
@@ -155,14 +155,14 @@ def _undefined(value: object) -> bool:
 
 
 def _infinity(text: str) -> float:
-    """Parse an infinity, which JSON does not have. `ValueError` for NaN, which `keep` does not write."""
+    """Parse an infinity, which JSON lacks. `ValueError` for NaN, which `keep` never writes."""
     if text == "NaN":
         raise ValueError("it holds NaN in place of a number")
     return float(text)
 
 
 def _add_digest_to(path: str | os.PathLike[str]) -> None:
-    """Give the complete netCDF file at `path` its digest."""
+    """Add its digest to the complete netCDF file at `path`."""
     from scipy.io import netcdf_file
 
     with netcdf_file(os.fspath(path), "a", mmap=False) as file:
@@ -170,7 +170,7 @@ def _add_digest_to(path: str | os.PathLike[str]) -> None:
 
 
 def _check_digest_of(path: str | os.PathLike[str]) -> None:
-    """As `check_digest`, of the netCDF file at `path`; SciPy raises nearly anything for one that is damaged."""
+    """`check_digest` for the netCDF file at `path`. SciPy raises many kinds of errors for a damaged file."""
     from scipy.io import netcdf_file
 
     with InputFile(path) as content, netcdf_file(content, "r", mmap=False) as file:

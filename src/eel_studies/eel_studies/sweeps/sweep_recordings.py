@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rerun recordings of the points of a sweep, one file each, that can be asked like a table."""
+"""Rerun recordings of the points of a sweep, one file each, which can be queried like a table."""
 
 import itertools
 import os
@@ -13,13 +13,13 @@ from eel_dynamics.runs.run import Run
 
 from eel_studies.points import label_of
 
-RATE = 12.5  # Hz: of skin and curves, half as often as in a recording of one run
+RATE = 12.5  # Hz: rate of skin and curves, half that in a recording of one run
 
 
 class SweepRecordings:
-    """Records points of a `grid`, values by name, into `folder`, which is made in one that exists.
+    """Records points of a `grid`, values by name, into `folder`, which is created if its parent exists.
 
-    `ValueError` where it cannot be written; `ImportError` without the package eel_viz.
+    `ValueError` if it cannot be written; `ImportError` without the package eel_viz.
     """
 
     def __init__(self, folder: str | Path, grid: dict[str, list[Any]]) -> None:
@@ -31,7 +31,7 @@ class SweepRecordings:
             raise ValueError(f"recordings {shown(str(folder))} cannot be written: {error.strerror}") from None
 
     def record(self, index: int, run: Run) -> None:
-        """Record the `run` of the point number `index`, without the water's forces."""
+        """Record the `run` of the point with this `index`, without the water's forces."""
         values = next(itertools.islice(itertools.product(*self._grid.values()), index, None))
         numbers = {name: label_of(value) for name, value in zip(self._grid, values, strict=True)}
         if "accuracy" in numbers:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel tradeoff`: measure what accuracy costs in a scene, and what each term of the model is worth.
+"""`eel tradeoff`: measure the cost of accuracy in a scene, and the effect of each term of the model.
 
 eel tradeoff scene.yaml
 eel tradeoff straight --set period=0.7 --within "5 ms"

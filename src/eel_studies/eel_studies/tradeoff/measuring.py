@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Error and cost of each setting for a swim, against a converged run; and what each term of the model is worth.
+"""Error and cost of each setting for a swim, against a converged run, and the effect of each term of the model.
 
 Errors are those of `accuracy`: of the head's position in the later half relative to the length of its path (or of the
-body, if longer), and of the torque field relative to its greatest magnitude. Times are those of the same steps on the
-same nodes, without the samples: CPU times of one core, which equal wall times on an idle machine and stay meaningful on
-a busy one.
+body, if longer), and of the torque field relative to its greatest magnitude. Times are for the same steps on the same
+nodes, without the samples. They are CPU times on one core, which equal wall times on an idle machine and stay
+meaningful on a busy one.
 """
 
 from collections.abc import Callable
@@ -24,10 +24,10 @@ RESOLUTIONS = (6.0, 8.0, 11.0, 16.0, 24.0, 36.0, 60.0, 110.0)  # points per body
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10)  # relative error per adaptive step
 STEPS = (0.1, 0.05, 0.02, 0.01, 0.005)  # s, of the classical method
 ADAMS_ORDERS = (3, 4, 5, 6)
-COARSE_POINTS, COARSE_TOLERANCE = 24.0, 1e-5  # at most and at least, for settings without kinks
+COARSE_POINTS, COARSE_TOLERANCE = 24.0, 1e-5  # most points and least tolerance of settings without kinks
 ASKED_FOR = {name: name for name in PRESETS} | {f"target {text}": text for text in ("1e-3", "1e-5", "1e-7")}
 REFERENCE = Accuracy(name="reference run", resolution=240.0, tolerance=1e-12)
-METHODS = {  # name in `Accuracy`: in words; of a robot the last two
+METHODS = {  # name in `Accuracy`: in words; the last two for robots
     "adams": "Adams-Bashforth, adaptive steps",
     "dormand_prince": "Dormand-Prince, adaptive steps",
     "classical": "Runge-Kutta, fixed steps",
@@ -35,16 +35,16 @@ METHODS = {  # name in `Accuracy`: in words; of a robot the last two
     "classical of robots": "Rosenbrock, fixed steps",
 }
 SAMPLE_PERIOD = 0.05  # s
-REACHED = 1e-9  # relative error of a reference that is wanted
-MOST_SECONDS = 20.0  # of CPU time, of a reference and of all settings: dear scenes get fewer of them
-FINE = "fine"  # preset of the models that are compared: their differences are far greater than its errors
-DEARER = 3.0  # times a standard swim, that a setting takes in the mean
+REACHED = 1e-9  # wanted relative error of a reference
+MOST_SECONDS = 20.0  # of CPU time, for a reference and for all settings: costly scenes get fewer settings
+FINE = "fine"  # preset for the compared models, whose differences are far greater than its errors
+DEARER = 3.0  # mean time of a setting, in times of a standard swim
 ERROR, SECONDS = attrgetter("error"), attrgetter("seconds")  # of a row
 
 
 @dataclass(frozen=True)
 class Measured:
-    """Relative errors of a setting, no less than that of the reference, and its cost without ledger and samples."""
+    """Relative errors of a setting, at least the reference's, and its cost without ledger and samples."""
 
     accuracy: Accuracy
     position: float
@@ -65,10 +65,10 @@ class Measured:
 
 @dataclass(frozen=True)
 class Trade:
-    """All that was measured for a swim.
+    """All measurements for a swim.
 
     reference_error: distance of the reference from another method on another grid. unstable: settings that diverged.
-    terms: errors of the model without a term, both at the accuracy `FINE`, by its name; without those that stop.
+    terms: by name, errors of the model without a term, both at the accuracy `FINE`; without those that stop.
     """
 
     name: str  # of the scene
@@ -94,9 +94,10 @@ class Trade:
         return front(self.rows, error, SECONDS)
 
     def within(self, pace: float) -> tuple[Measured, Measured | None]:
-        """The setting with the least error within `pace` [s] a simulated second, and the like among those `asked` for.
+        """The setting with the least error within `pace` [s] per simulated second, and the same among those `asked`
+        for.
 
-        None: of these none is as fast. `ValueError` where nothing is.
+        The second is None if none of these is as fast. `ValueError` if no setting is.
         """
         most = pace * self.duration
         rows, asked = ([row for row in rows if row.seconds <= most] for rows in (self.rows, self.asked))
@@ -107,7 +108,7 @@ class Trade:
 
 
 def bare(swim: Swim) -> Swim:
-    """The `swim` with torque and without the ledger, of so many seconds, and sampled."""
+    """The `swim` for so many seconds with torque and samples, without the ledger."""
     scene = replace(swim.scene, ledger=False, internal_wrench=True)
     swim = swim._replace(scene=scene, sample_period=swim.sample_period or SAMPLE_PERIOD)
     if isinstance(swim.duration, str):
@@ -116,7 +117,7 @@ def bare(swim: Swim) -> Swim:
 
 
 def settings(swim: Swim, quick: bool = False) -> list[Accuracy]:
-    """Every combination of points and steps, and what is `ASKED_FOR`, as it applies to `swim`.
+    """Every combination of points and steps, and the settings `ASKED_FOR`, as they apply to `swim`.
 
     quick: every third value of points and of steps only.
     """
@@ -135,13 +136,13 @@ def settings(swim: Swim, quick: bool = False) -> list[Accuracy]:
                     rows.append(replace(rows[-1], name=f"{name}, no kinks", kinks="none"))
         for step in STEPS[::every]:
             rows.append(Accuracy(name=f"{nodes}, step {step:g} s", resolution=resolution, step=step))
-    # They lose their target: every run then takes these settings as they are.
+    # Without a target, every run takes these settings as they are.
     asked = [replace(Accuracy.of(text).in_scene(scene), name=name) for name, text in ASKED_FOR.items()]
     return rows + [each.as_it_is() for each in asked]
 
 
 def affordable(swim: Swim, quick: bool, repeats: int) -> tuple[list[Accuracy], int]:
-    """The settings for a `bare` swim, and rounds of timing: fewer where it is dear, down to what is `ASKED_FOR`, once.
+    """The settings for a `bare` swim, and rounds of timing: fewer for a costly one, at least `ASKED_FOR` once.
 
     quick: as in `settings`.
     """
@@ -161,10 +162,10 @@ def measure(
     say: Callable[[str], object] = lambda text: None,
     name: str = "scene",
 ) -> Trade:
-    """Errors and times of a `bare` swim with every one of the `rows` of settings, and errors without each term.
+    """Errors and times of a `bare` swim with each of the `rows` of settings, and errors without each term.
 
-    repeats: rounds of timing. say(text): called with a line of progress. `SimulationStopped` where no reference comes
-    to its end.
+    repeats: rounds of timing. say(text): called with a line of progress. `SimulationStopped` if no reference reaches
+    its end.
     """
     say("the reference: two methods on two grids")
     reference, apart = reference_of(swim, REACHED, least=0, seconds=MOST_SECONDS)

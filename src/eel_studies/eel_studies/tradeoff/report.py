@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The trade-off as tables, lines and a picture, and what docs/appendix/tradeoff.md tells.
+"""The trade-off as tables, lines and a picture, and the text of docs/appendix/tradeoff.md.
 
-In the picture methods differ in colour (Okabe and Ito) and in mark, so that they can be told apart in print without
-colour.
+In the picture methods differ in colour (Okabe and Ito) and in mark, so that a print without colour distinguishes them.
 """
 
 import math
@@ -35,12 +34,12 @@ WANTED = 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7  # relative errors of the rows of th
 PARTS = "digits", "picture", "scenes"  # of the page
 LOOKS = {"adams": (BLUE, "o"), "dormand_prince": (GREEN, "s"), "classical": (ORANGE, "^")}
 SIZE = 11.0, 5.4  # inches
-FLOOR = 3.0  # times the reference's own error: differences below it are not significant
-CLOSE = 0.04  # of a panel's height: names of terms that are so close share a line
+FLOOR = 3.0  # times the reference's own error: smaller differences are not significant
+CLOSE = 0.04  # of a panel's height: closer names of terms share a line
 
 
 def trade_table(trade: Trade, everything: bool = False) -> Table:
-    """The settings on the front, marked, and presets and targets, the cheapest first; `everything`: all settings."""
+    """The settings on the front, marked, and presets and targets, cheapest first. everything: all settings."""
     front = {id(row) for row in trade.front()}
     shown = trade.rows if everything else [row for row in trade.rows if id(row) in front or row in trade.asked]
     cells = [["*" if id(row) in front else "", *_cells(row)] for row in sorted(shown, key=SECONDS)]
@@ -48,7 +47,7 @@ def trade_table(trade: Trade, everything: bool = False) -> Table:
 
 
 def cheapest(trade: Trade) -> list[Measured | None]:
-    """For each of the errors `WANTED` the cheapest setting whose position and torque are both as exact, or None."""
+    """For each of the errors `WANTED`, the cheapest setting with that error in both position and torque, or None."""
     rows = sorted(trade.rows, key=SECONDS)
     return [next((row for row in rows if row.error <= wanted), None) for wanted in WANTED]
 
@@ -63,7 +62,7 @@ def digits_table(trade: Trade) -> Table:
 
 
 def scenes_table(found: list[Trade]) -> Table:
-    """A row for each scene: how well its reference is known, what presets deliver, and times real time."""
+    """A row for each scene: error of its reference, errors of the presets, and times real time."""
     rows = []
     for trade in found:
         asked = {row.accuracy.name: row for row in trade.asked}
@@ -74,7 +73,7 @@ def scenes_table(found: list[Trade]) -> Table:
 
 
 def reference_line(trade: Trade) -> str:
-    """How well the reference is known, in words."""
+    """The accuracy of the reference, in words."""
     unstable = f" {len(trade.unstable)} settings diverged." if trade.unstable else ""
     poor = "" if trade.reference_error <= REACHED else f", where {REACHED:g} is wanted"
     return (
@@ -84,21 +83,21 @@ def reference_line(trade: Trade) -> str:
 
 
 def pace_line(trade: Trade, pace: float) -> str:
-    """What is most exact within `pace` [s] a simulated second, in words. `ValueError` where nothing is as fast."""
+    """The most exact setting within `pace` [s] per simulated second, in words. `ValueError` if none is as fast."""
     best, asked = trade.within(pace)
     also = "no preset or target is as fast" if asked is None else f"{asked.accuracy.name} delivers {asked.error:.1e}"
     return f"within {1e3 * pace:g} ms per second: {best.accuracy.name} delivers {best.error:.1e}; {also}."
 
 
 def parts_of_page(found: list[Trade], pictures: list[str]) -> tuple[dict[str, str], dict[str, str]]:
-    """Parts and values of the page of the trades `found` and their `pictures`, as the page links them."""
+    """Parts and values of the page from the trades `found` and the links of their `pictures`."""
     first, scenes = found[0], "\n\n".join((scenes_table(found).markdown(), *pictures[1:]))
     values = {"machine": machine(), "gait": first.name, "duration": f"{first.duration:g}", "digit": digit_line(first)}
     return dict(zip(PARTS, (digits_table(first).markdown(), pictures[0], scenes), strict=True)), values
 
 
 def digit_line(trade: Trade) -> str:
-    """What one more digit costs in the mean of the short table, in words; empty where it has fewer than two rows."""
+    """The mean cost of one more digit in the short table, in words; empty for fewer than two rows."""
     rows = [row for row in cheapest(trade) if row is not None]
     if len(rows) < 2:
         return ""
@@ -174,7 +173,7 @@ def _draw_panel(axes: Axes, trade: Trade, quantity: str, floor: float) -> None:
 
 
 def _grouped(terms: dict[str, float], gap: float) -> list[tuple[float, list[str]]]:
-    """Names of terms whose errors lie within `gap` decades of the first one's, at that error, the least first."""
+    """Names of terms whose errors lie within `gap` decades of the first one's, with that error, the least first."""
     groups: list[tuple[float, list[str]]] = []
     for name, value in sorted(terms.items(), key=lambda item: item[1]):
         if groups and np.log10(value / groups[-1][0]) < gap:
