@@ -22,6 +22,7 @@ UNPLAYED = (
     "/swim_state",
     "/joint_states",
     "/flow_at_head",
+    "/robot_description",
 )  # the visualiser does not subscribe to them
 UNIQUE = ("/body", "/curvature_law")
 

@@ -26,7 +26,7 @@ def test_the_list_has_a_line_for_each_command(capsys):
     lines = [line.split(maxsplit=1) for line in capsys.readouterr().out.splitlines() if line.startswith("  ")]
     told = {name: about for name, about in lines if name in suite.commands()}
     own = {name.removeprefix("eel_") for names in EXECUTABLES.values() for name in names - NOT_COMMANDS}
-    assert set(told) == own | {"ballast", "compare", "completion", "roll-hold"}
+    assert set(told) == own | {"ballast", "compare", "completion", "roll-hold", "urdf"}
     assert all(10 < len(about) < 66 and not about.endswith(".") for about in told.values()), told
 
 

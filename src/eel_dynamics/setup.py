@@ -27,6 +27,7 @@ setup(
         "eel.commands.swim": [
             "simulate = eel_dynamics.commands.simulate",
             "ballast = eel_dynamics.commands.ballast",
+            "urdf = eel_dynamics.commands.urdf",
         ],
     },
 )

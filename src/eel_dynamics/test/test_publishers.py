@@ -37,7 +37,7 @@ def publishers_of(monkeypatch, node, factor, log=None):
     )
     monkeypatch.setattr("eel_dynamics.ros.publishers.SampleMessages", lambda simulation, values: sample)
     monkeypatch.setattr("eel_dynamics.ros.publishers.Publishers.publish_body", lambda self, simulation: None)
-    parameters = SimpleNamespace(values=DynamicsParameters(real_time_factor=factor))
+    parameters = SimpleNamespace(values=DynamicsParameters(real_time_factor=factor, publish_robot_description=False))
     return Publishers(node, None, parameters, Report(log or Log()))
 
 

@@ -12,6 +12,7 @@ from eel_dynamics.model.robot.actuators import Servo, Torque
 from eel_dynamics.model.robot.continuous import Muscle, PassiveTail
 from eel_dynamics.model.robot.joint import Joint
 from eel_dynamics.model.robot.robot import Robot
+from eel_dynamics.model.robot.urdf_writer import Urdf, urdf_of
 from eel_dynamics.model.scene import Scene
 
 __all__ = [
@@ -33,7 +34,9 @@ __all__ = [
     "Shear",
     "Torque",
     "Uniform",
+    "Urdf",
     "Vortex",
     "VortexStreet",
     "Wave",
+    "urdf_of",
 ]

@@ -138,6 +138,11 @@ class DynamicsParameters(Quantities):
         "",
         "publish a frame of section axes for each station too, as section_0, section_1, ... (see section_frame)",
     )
+    publish_robot_description: bool = quantity(
+        True,
+        "",
+        "publish the swimmer as a URDF on robot_description; off where another node publishes it there",
+    )
     yaw_joints: int = quantity(
         0, "", "joints in yaw of a robot whose motors are on joint_states; 0: none", 0, MOST_JOINTS
     )

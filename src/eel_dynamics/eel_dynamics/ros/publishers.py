@@ -23,6 +23,7 @@ from rosgraph_msgs.msg import Clock
 
 from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.messages import SampleMessages, body_message
+from eel_dynamics.ros.robot_description import RobotDescription
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
 from eel_msgs.msg import BodyGeometry
@@ -53,6 +54,7 @@ class Publishers:
         self._channels: dict[str, Channel] = {}
         self._clock: Channel | None = None
         self._body: Any = node.create_publisher(BodyGeometry, "body", latched(1))
+        self._description = RobotDescription(node)
         self._present: tuple[dict[str, int], bool] = {}, True  # subscribers by topic, and whether /tf is published
         self._subscribed: tuple[str, ...] = ()  # topics with subscribers that are published
         self._parts: dict[str, bool] = {}  # the answer of `wanted_parts`
@@ -72,6 +74,7 @@ class Publishers:
             if name not in self._channels:
                 self._channels[name] = Channel(self._node, kind, name, self.lossless)
         self.publish_body(simulation)
+        self._description.publish(simulation, values)
 
     def publish_body(self, simulation: Simulation) -> None:
         """Publish the geometry of the body of a `simulation`; later subscribers get it too."""

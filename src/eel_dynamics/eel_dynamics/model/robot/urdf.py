@@ -28,13 +28,14 @@ from eel_dynamics.model.body.links import BASE, OF_LINKS, joint_drag_of
 from eel_dynamics.model.robot.actuators import Servo
 from eel_dynamics.model.robot.joint import LONGEST_NAME, Joint
 from eel_dynamics.model.robot.urdf_chain import ChainJoint, Link, UrdfChain
-from eel_dynamics.model.robot.urdf_elements import fail, float_of, name_of, number_of
+from eel_dynamics.model.robot.urdf_elements import UNLIMITED, fail, float_of, name_of, number_of
 
 STRAIGHT = 0.02  # of the length: how far a joint may lie off the line
 UPRIGHT = 0.8  # part of the chain's direction along the base link's z from which that is not up
 BENT = 0.4  # tangent of the angle by which a link at an end may lead away from the line
 RULE = "at angles of 0 the robot must be straight"
 ALIGNED = 0.02  # rad: how far an axis may point off E2 or E3
+SAME = 1e-9  # of the length: places that are nearer are the same
 MASS_OFF = 0.05  # of a link's mass: a greater difference is noted
 UNUSED = ("gazebo", "ros2_control", "safety_controller", "calibration")
 
@@ -113,14 +114,19 @@ class UrdfReader:
     def _body(self) -> Body:
         places = self._places
         end = float(self._links[-1].extent(self._axes)[1, 0] - self._nose)
+        for i, place in enumerate(places[1:]):
+            if abs(place - places[i]) < SAME * end:  # a link between two joints at one place, as of a universal joint
+                places[i + 1] = places[i]
         bounds = np.array([0.0, *places, end])
-        falls = np.flatnonzero(np.diff(bounds) <= 0.0)
+        spans = np.diff(bounds)
+        falls = np.flatnonzero((spans < 0.0) | ((spans == 0.0) & np.isin(bounds[1:], (0.0, end))))
         if len(falls):
             index = min(int(falls[0]), len(self._joints) - 1)
             fail(self._joints[index].element, "joint", f"must lie behind the one ahead, got X = {places[index]:.4g} m")
-        middles = 0.5 * (bounds[1:] + bounds[:-1])
-        half = np.array([link.half_axes(self._axes, *bounds[i : i + 2]) for i, link in enumerate(self._links)])
-        for link, (width, height) in zip(self._links, half, strict=True):
+        longer = np.flatnonzero(spans)
+        middles = (0.5 * (bounds[1:] + bounds[:-1]))[longer]
+        half = np.array([self._links[i].half_axes(self._axes, *bounds[i : i + 2]) for i in longer])
+        for link, (width, height) in zip((self._links[i] for i in longer), half, strict=True):
             if not link.corners:
                 self._notes.append(f"link {shown(link.name)}: half-axes {width:.3g}, {height:.3g} m from its inertia")
         x = np.concatenate(([0.0], middles, [end]))
@@ -141,7 +147,7 @@ class UrdfReader:
         for link, start, stop in zip(self._links, bounds, bounds[1:], strict=False):
             at = start + (stop - start) * fine
             kept = body.density * float(np.trapezoid(np.pi * body.half_width(at) * body.half_height(at), at))
-            if abs(kept - link.mass) > MASS_OFF * max(kept, link.mass):
+            if stop > start and abs(kept - link.mass) > MASS_OFF * max(kept, link.mass):
                 self._notes.append(
                     f"link {shown(link.name)}: mass {link.mass:.4g} kg becomes {kept:.4g} kg (one density)"
                 )
@@ -194,7 +200,7 @@ class UrdfReader:
         changes: dict[str, Any] = {}
         for key, attribute in (("torque_limit", "effort"), ("speed_limit", "velocity")):
             value = number_of(element, "limit", attribute, 0.0)
-            if value > 0.0:
+            if 0.0 < value < UNLIMITED:
                 changes[key] = value
             elif value < 0.0:
                 fail(limit, "limit", f"{attribute} must be >= 0, got {value:g}")

@@ -9,7 +9,7 @@ from eel_common.files.input_file import Misplaced, is_number
 from eel_common.files.xml_tree import Element
 from eel_common.wording import shown
 
-LARGEST = 1e6  # of a number of the file, in its SI unit
+LARGEST = UNLIMITED = 1e6  # of a number of the file, in its SI unit; of an effort or a velocity: none
 
 
 def name_of(element: Element) -> str:
