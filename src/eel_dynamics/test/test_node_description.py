@@ -92,7 +92,6 @@ def test_an_imposed_shape_is_a_chain_with_the_joints_of_joint_states_below_its_n
     # up to there are all of a joint's parts, in yaw and pitch; the order of turns in yaw and pitch is another
     stations = {f"yaw_{k}": (10 * k, 0.05) for k in range(2, 11, 2)}
     far, angle, bent = np.max([*errors(swim, text, stations)], axis=0)
-    print("NUM", bent, far, angle)
     assert bent > 0.05 and far < 0.01 and angle < 0.02
     joints = swim.received["joint_states"][-1]
     assert max(abs(joints.position[joints.name.index(f"pitch_{k + 1}")]) for k in range(5)) > 0.1
