@@ -3,7 +3,6 @@
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 import rerun as rr
 import yaml
@@ -32,7 +31,7 @@ def test_reruns_loader_reads_and_draws_each_swimmer(tmp_path, name):
     else:
         assert [joint.name for joint in joints] == [joint.name for joint in robot.joints]
         for joint, own in zip(joints, robot.joints, strict=True):
-            assert np.abs(joint.axis) == pytest.approx([0, 1, 0] if own.component == 1 else [0, 0, 1])
+            assert joint.axis == pytest.approx([0, 1, 0] if own.component == 1 else [0, 0, 1])
             assert sorted((joint.limit_lower, joint.limit_upper)) == pytest.approx(own.limits)  # alike to both sides
             servo = own.actuator
             assert (joint.limit_effort, joint.limit_velocity) == pytest.approx((servo.torque_limit, servo.speed_limit))

@@ -6,9 +6,9 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
+from eel_dynamics.model.robot.joint_signs import message_sign, sense_of
 from eel_dynamics.ros.messages import SampleMessages
 from eel_dynamics.ros.parameters import DynamicsParameters
-from eel_dynamics.runs.exchange.joint_signs import message_sign, sense_of
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 from swim_client import LIMIT, LOSSLESS, nanoseconds

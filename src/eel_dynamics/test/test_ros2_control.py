@@ -15,9 +15,9 @@ import pytest
 import yaml
 from eel_common.ros.loop.diagnostics import Report
 from eel_common.ros.testing.log import Log
+from eel_dynamics.model.robot.joint_signs import sense_of
 from eel_dynamics.model.robot.ready import READY
 from eel_dynamics.ros.command_messages import interfaces_of, joint_command_from_message
-from eel_dynamics.runs.exchange.joint_signs import sense_of
 from fake_publishers import fake_publishers, run_loop
 from sensor_msgs.msg import JointState
 

@@ -11,6 +11,7 @@ from eel_dynamics.commands.urdf import main
 from eel_dynamics.model.body.grid import Grid
 from eel_dynamics.model.body.panels import panels_of
 from eel_dynamics.model.inertia import straight_inertia
+from eel_dynamics.model.robot.joint_signs import message_limits, message_signs, sense_of
 from eel_dynamics.model.robot.ready import READY
 from eel_dynamics.model.section_data import sections_of
 from random_bodies import drawn_body
@@ -100,7 +101,8 @@ def test_links_lie_where_the_sections_of_the_swimmer_lie(name, law, near, turn):
     for k in range(len(run.time)):
         base = np.eye(4)
         base[:3, :3], base[:3, 3] = Rotation.from_quat(run.orientation[k]).as_matrix(), run.position[k]
-        poses = frames(text, dict(zip((joint.name for joint in robot.joints), run.joint_angle[k], strict=True)), base)
+        angles = zip((joint.name for joint in robot.joints), message_signs(robot) * run.joint_angle[k], strict=True)
+        poses = frames(text, dict(angles), base)
         for station, link in enumerate([*links, links[-1]], start=1):
             pose = poses[f"link_{link}"]
             behind = x[station] - places[link - 1]
@@ -129,7 +131,7 @@ def test_a_robot_that_is_read_again_is_the_same_but_for_what_is_told(tmp_path, n
     )
     assert read.body.mass == pytest.approx(Body.boyer2010().mass, rel=1e-12) and read.body.length == 1.0
     for one, other in zip(robot.joints, read.joints, strict=True):
-        assert (one.name, one.component) == (other.name, other.component)
+        assert (one.name, one.component, sense_of(one.axis)) == (other.name, other.component, sense_of(other.axis))
         assert other.position == pytest.approx(one.position, rel=1e-14)
         limits = one.actuator.torque_limit, one.actuator.speed_limit
         assert (other.actuator.torque_limit, other.actuator.speed_limit) == pytest.approx(limits, rel=1e-14)
@@ -153,7 +155,7 @@ def test_random_robots_keep_joints_stops_and_limits(tmp_path, seed):
         assert other.position == pytest.approx(one.position, rel=1e-13)
         assert (one.limits is None) == (other.limits is None)
         if one.limits is not None:
-            assert sorted(map(abs, other.limits)) == pytest.approx(sorted(map(abs, one.limits)))
+            assert other.limits == pytest.approx(message_limits(one))
         if one.actuator is not None:
             limits = (one.actuator.torque_limit, one.actuator.speed_limit)
             assert (other.actuator.torque_limit, other.actuator.speed_limit) == pytest.approx(limits)
@@ -205,7 +207,7 @@ def test_joints_without_motors_stops_and_limits_have_none():
         ("2", "1000000"),
     ]
     assert joints[1].find("dynamics").get("damping") == "0.1"
-    assert {abs(float(limits[1][key])) for key in ("lower", "upper")} == {0.3, 0.5}
+    assert (limits[1]["lower"], limits[1]["upper"]) == ("-0.3", "0.5")  # about +z, to the right
 
 
 def test_boxes_are_as_wide_and_high_as_the_body():

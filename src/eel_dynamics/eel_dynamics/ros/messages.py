@@ -32,8 +32,8 @@ from eel_dynamics.curvature.curvature_samples import LateSample, check_points
 from eel_dynamics.model.axes import with_section_axes
 from eel_dynamics.model.flow.flow import lattice_around, velocities_at
 from eel_dynamics.model.robot.actuators import most_torque
+from eel_dynamics.model.robot.joint_signs import OF_SECTIONS, message_signs
 from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
-from eel_dynamics.runs.exchange.joint_signs import OF_SECTIONS, message_signs
 from eel_dynamics.runs.exchange.message_fields import FIELDS, LINEAR, OF_JOINTS, SIGNED
 from eel_dynamics.runs.exchange.messages_of_run import fields_of_fins, fields_of_joints, numbers_of_appendages, outline
 from eel_dynamics.simulation.observations import Snapshot

@@ -28,7 +28,7 @@ from eel_dynamics.model.rigid_parts import SAME, RigidPart, rigid_parts
 from eel_dynamics.model.robot.actuators import Servo, Torque
 from eel_dynamics.model.robot.compiled import mode_table
 from eel_dynamics.model.robot.joint import Joint
-from eel_dynamics.model.robot.part import AXES
+from eel_dynamics.model.robot.joint_signs import message_limits, sense_of
 from eel_dynamics.model.robot.robot import Robot, checked_robot
 from eel_dynamics.model.robot.urdf_elements import UNLIMITED
 
@@ -38,7 +38,6 @@ SLICE_OF_CROSS = 0.125  # of the distance to the nearest joint or end: the slice
 DIGITS = 15  # of numbers
 SKIN = "0.30 0.48 0.50 1"  # colour, rgba
 VECTORS = {"yaw": (0, 0, 1), "pitch": (0, 1, 0)}
-IMPOSED = {"yaw": (0, 0, 1), "pitch": (0, -1, 0)}  # joints of an imposed shape have the signs of the curvature
 WRITTEN = {"position", "axis", "limits", "damping", "actuator", "name"}  # of a Joint
 WRITTEN_OF_SERVO = {"torque_limit", "speed_limit"}
 NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -114,7 +113,7 @@ def urdf_of(
 def _imposed(body: Body, counts: dict[str, int]) -> list[Hinge]:
     """The hinges of a chain whose links follow the imposed shape, from the nose to the tail."""
     hinges = [
-        Hinge(f"{axis}_{k + 1}", body.length * (k + 0.5) / count, IMPOSED[axis])
+        Hinge(f"{axis}_{k + 1}", body.length * (k + 0.5) / count, VECTORS[axis])
         for axis, count in counts.items()
         for k in range(count)
     ]
@@ -122,14 +121,12 @@ def _imposed(body: Body, counts: dict[str, int]) -> list[Hinge]:
 
 
 def _hinge(joint: Joint) -> Hinge:
-    actuator, (component, sign) = joint.actuator, AXES[joint.axis]
-    # the joint's angle is `sign` that of the part behind about E2 = -y or E3 = z
-    x, y, z = VECTORS["yaw"] if component == 2 else VECTORS["pitch"]
-    turn = sign if component == 2 else -sign
+    actuator, sense = joint.actuator, sense_of(joint.axis)
+    x, y, z = VECTORS["yaw"] if joint.component == 2 else VECTORS["pitch"]
     effort = 0.0 if actuator is None else getattr(actuator, "torque_limit", None) or UNLIMITED
     speed = getattr(actuator, "speed_limit", None) or UNLIMITED
-    axis = turn * x, turn * y, turn * z
-    return Hinge(joint.name, joint.position, axis, joint.limits, effort, speed, joint.damping)
+    axis = sense * x, sense * y, sense * z
+    return Hinge(joint.name, joint.position, axis, message_limits(joint), effort, speed, joint.damping)
 
 
 def _left_out(robot: Robot | None, hinges: int) -> list[str]:

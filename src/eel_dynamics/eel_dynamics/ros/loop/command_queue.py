@@ -19,10 +19,10 @@ from eel_common.wording import shown
 from eel_gaits.laws.law import Law
 
 from eel_dynamics.model.fins.fins import checked_commands, commanded_names
+from eel_dynamics.model.robot.joint_signs import message_limits, message_sign
 from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.ros.command_messages import Values, fin_command_from_message, joint_command_from_message
 from eel_dynamics.ros.loop.awaited import FINS, JOINTS, MESSAGES, Awaited
-from eel_dynamics.runs.exchange.joint_signs import message_sign
 from eel_dynamics.simulation.simulation import Simulation
 
 IN_A_ROW = 4  # commands, from which on they are a stream
@@ -250,8 +250,7 @@ def limits_of(robot: Robot) -> dict[tuple[str, str], tuple[float, float]]:
     for joint, servo in zip(robot.joints, robot.servos, strict=True):
         if servo is not None:
             speed, torque = servo.speed_limit or math.inf, servo.torque_limit or math.inf
-            low, high = joint.limits or (-math.inf, math.inf)
-            limits[joint.name, "position"] = (low, high) if message_sign(joint.axis) > 0 else (-high, -low)
+            limits[joint.name, "position"] = message_limits(joint) or (-math.inf, math.inf)
             limits[joint.name, "velocity"], limits[joint.name, "effort"] = (-speed, speed), (-torque, torque)
     return limits
 

@@ -12,9 +12,9 @@ from eel_dynamics.model.body.body import Body
 from eel_dynamics.model.fins.fins import SIDES, Fin
 from eel_dynamics.model.flow.flow import lattice_around, velocities_at
 from eel_dynamics.model.robot.actuators import most_torque
+from eel_dynamics.model.robot.joint_signs import message_signs, sense_of
 from eel_dynamics.model.robot.part import AXES
 from eel_dynamics.model.robot.robot import Robot
-from eel_dynamics.runs.exchange.joint_signs import message_signs, sense_of
 from eel_dynamics.runs.exchange.message_fields import FIELDS, OF_JOINTS, PROFILES, SIGNED
 from eel_dynamics.runs.run_data import RunData
 

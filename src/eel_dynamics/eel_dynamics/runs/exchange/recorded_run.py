@@ -25,10 +25,10 @@ from eel_dynamics.model.body.body import Body, checked_body
 from eel_dynamics.model.body.grid import Grid
 from eel_dynamics.model.body.moments import with_moments
 from eel_dynamics.model.body.panels import panels_of
+from eel_dynamics.model.robot.joint_signs import message_sign, message_signs
 from eel_dynamics.model.robot.robot import Robot, checked_robot, robot_of
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.exchange.eel_viz_functions import function_of_eel_viz
-from eel_dynamics.runs.exchange.joint_signs import message_sign, message_signs
 from eel_dynamics.runs.exchange.message_fields import FIELDS, OF_JOINTS, SIGNED, quantities_of
 from eel_dynamics.simulation.energy import WORKS, EnergyLedger
 

@@ -9,6 +9,7 @@ behind turns about -z. Rates and torques have the sign of their angle.
 import numpy as np
 
 from eel_dynamics.model.axes import VECTOR
+from eel_dynamics.model.robot.joint import Joint
 from eel_dynamics.model.robot.part import AXES
 from eel_dynamics.model.robot.robot import Robot
 
@@ -24,6 +25,14 @@ def message_sign(axis: str) -> int:
 def message_signs(robot: Robot | None) -> np.ndarray:
     """(J,) `message_sign` of each joint of a `robot`."""
     return np.array([message_sign(joint.axis) for joint in (() if robot is None else robot.joints)], dtype=float)
+
+
+def message_limits(joint: Joint) -> tuple[float, float] | None:
+    """The stops [rad] of a `joint` in the sign of messages; None without."""
+    if joint.limits is None or message_sign(joint.axis) > 0:
+        return joint.limits
+    low, high = joint.limits
+    return -high, -low
 
 
 def sense_of(axis: str) -> int:
