@@ -114,4 +114,4 @@ def test_a_swimmer_that_no_urdf_holds_is_told_of_once(start, client):
     swim.laws.publish(law_to_message(straight()))
     swim.until_time(0.1)
     assert swim.node.count_publishers("robot_description") == 0
-    assert node.output().count("robot_description is not published: base_link must be another name") == 1
+    assert node.output().count("robot_description is not published: each link in a URDF must have a name") == 1

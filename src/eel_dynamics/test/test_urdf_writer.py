@@ -228,6 +228,18 @@ def test_links_are_named_below_the_namespace_of_the_head():
     assert [joint.get("name") for joint in root.findall("joint")] == ["head_joint", "yaw_1", "yaw_2"]
 
 
+def test_frames_of_sensors_lie_at_their_stations_on_the_link_that_is_there(tmp_path):
+    robot, given = Robot.named("sixteen_servos"), {"imu": 0.05, "camera": 0.0, "dvl": 0.25, "tip": 1.0}
+    urdf = urdf_of(robot=robot, frames=given)
+    places = frames(urdf.text, dict.fromkeys((joint.name for joint in robot.joints), 0.0))
+    for name, x in given.items():
+        assert places[name] == pytest.approx(np.array([[1, 0, 0, -x], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]))
+    joints = ElementTree.fromstring(urdf.text).findall("joint")
+    parents = {each.find("child").get("link"): each.find("parent").get("link") for each in joints}
+    assert [parents[name] for name in given] == ["link_0", "link_0", "link_4", "link_16"]
+    assert len(read_again(tmp_path, urdf).joints) == 16
+
+
 @pytest.mark.parametrize(
     ("given", "told"),
     [
@@ -238,7 +250,10 @@ def test_links_are_named_below_the_namespace_of_the_head():
         ({"robot": "eight_servos"}, "robot must be a Robot, got 'eight_servos'"),
         ({"body": "boyer2010"}, "body must be a Body, got 'boyer2010'"),
         ({"density": -1.0}, "density must be > 0"),
-        ({"base_link": "link_0"}, "base_link must be another name than that of the links, got 'link_0'"),
+        ({"base_link": "link_0"}, "each link in a URDF must have a name of its own, got 'link_0' twice"),
+        ({"frames": {"base_link": 0.1}}, "each link in a URDF must have a name of its own, got 'base_link' twice"),
+        ({"frames": {"imu": 1.5}}, "frame 'imu' must be <= 1 m, got 1.5"),
+        ({"frames": [("imu", 0.5)]}, "frames must be a Mapping"),
         ({"base_link": ""}, "names in a URDF must be texts that XML can hold, got ''"),
         ({"robot": Robot([Joint(0.5, name="a\0")])}, r"names in a URDF must be texts that XML can hold, got 'a\x00'"),
     ],
@@ -254,9 +269,9 @@ def test_the_command_prints_the_urdf_and_tells_what_it_left_out(capsys):
     out, err = capsys.readouterr()
     assert out == urdf_of(robot=Robot.named("eight_servos"), density=900.0).text
     assert err == "eel urdf: left out: kp, kd, gear, rotor_inertia of servos\n"
-    assert main(["--body", "kern2006", "--yaw-joints", "4"]) == 0
+    assert main(["--body", "kern2006", "--yaw-joints", "4", "--frame", "eye=0.02"]) == 0
     out, err = capsys.readouterr()
-    assert out == urdf_of(Body.kern2006(), yaw_joints=4).text and err == ""
+    assert out == urdf_of(Body.kern2006(), yaw_joints=4, frames={"eye": 0.02}).text and err == ""
     assert main(["--robot", "eight_servos", "--yaw-joints", "4"]) == 2
     assert (
         capsys.readouterr().err == "eel urdf: yaw_joints must be 0 with a robot, which has joints of its own, got 4\n"

@@ -2,7 +2,7 @@
 """`eel urdf`: a robot as a URDF, for robot_state_publisher, RViz, ros2_control and other simulators.
 
 eel urdf --robot eight_servos > eel.urdf
-eel urdf --body fish.csv --yaw-joints 10 > fish.urdf
+eel urdf --body fish.csv --yaw-joints 10 --frame camera=0.02 > fish.urdf
 """
 
 import argparse
@@ -10,7 +10,7 @@ import argparse
 from eel_common.command.command import command
 from eel_common.command.command_line import Parser, print_to_stderr
 
-from eel_dynamics.commands.options import add_options, scene_of
+from eel_dynamics.commands.options import add_options, add_repeated, scene_of, set_numbers
 from eel_dynamics.model.body.text import body_of
 from eel_dynamics.model.robot.robot import robot_of
 from eel_dynamics.model.robot.urdf_writer import urdf_of
@@ -29,6 +29,9 @@ def _add_options(parser: Parser) -> None:
             help=f"without --robot: joints in {axis} of the chain, as {axis}_joints of the node dynamics (0)",
         )
 
+    about = "a further link without mass at X [m], as of a sensor, on the link that is there"
+    add_repeated(parser, "--frame", "NAME=X", about)
+
 
 @command(
     NAME,
@@ -46,6 +49,7 @@ def main(options: argparse.Namespace) -> None:
         yaw_joints=options.yaw_joints,
         pitch_joints=options.pitch_joints,
         density=scene_of(options.scene).density,
+        frames=set_numbers(options.frame, "--frame"),
     )
     if left_out:
         print_to_stderr(NAME, f"left out: {'; '.join(left_out)}")

@@ -12,14 +12,16 @@ the link's middle. What a URDF has no word for is listed in a comment, and in `l
 """
 
 import re
-from collections.abc import Iterable
+from bisect import bisect_left
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from itertools import pairwise
+from types import MappingProxyType
 from typing import Any, NamedTuple
 from xml.etree import ElementTree
 
 import numpy as np
-from eel_common.quantity import is_finite
+from eel_common.quantity import checked_instance, is_finite, number
 from eel_common.wording import shown
 
 from eel_dynamics.model.body.body import Body, checked_body
@@ -72,6 +74,7 @@ def urdf_of(
     density: float | None = None,
     fins: Iterable[Fin] = (),
     base_link: str = "base_link",
+    frames: Mapping[str, float] = MappingProxyType({}),
 ) -> Urdf:
     """The URDF of a `robot`, or of a `body` whose shape is imposed.
 
@@ -83,6 +86,7 @@ def urdf_of(
         density: [kg/m^3] of a scene, in place of a homogeneous body's own.
         fins: a URDF has no word for them.
         base_link: name of the base link, the head's frame. Up to its last "/" it begins the names of all links.
+        frames: further links without mass, as of sensors, by name: X [m] of each, on the link that is there.
 
     `ValueError` names what does not fit.
     """
@@ -99,15 +103,28 @@ def urdf_of(
         mode_table(robot, body)  # refuses what does not fit the body
         hinges = [_hinge(joint) for joint in robot.joints]
     called = (body if robot is None else robot).name or "eel"
-    for name in (called, base_link, *(hinge.name for hinge in hinges)):
+    checked_instance("frames", frames, Mapping)
+    for name in (called, base_link, *(hinge.name for hinge in hinges), *frames):
         if not isinstance(name, str) or not name or NOT_IN_XML.search(name):
             raise ValueError(f"names in a URDF must be texts that XML can hold, got {shown(name)}")
+    for name, place in frames.items():
+        number(f"frame {shown(name)}", place, "m", minimum=0.0, maximum=body.length)
     left_out = (*_left_out(robot, len(hinges)), *(f"fin {shown(fin.name or fin.side)}" for fin in fins))
-    root = _Writer(body, hinges, base_link, density).robot(called)
+    root = _Writer(body, hinges, base_link, density).robot(called, frames)
+    _check_names(root)
     said = "; ".join((ABOUT, *(f"left out: {each}" for each in left_out)))
     root.insert(0, ElementTree.Comment(re.sub("-(?=-)", "- ", f" {said} ")))  # -- ends a comment
     ElementTree.indent(root)
     return Urdf(f'<?xml version="1.0"?>\n{ElementTree.tostring(root, encoding="unicode")}\n', left_out)
+
+
+def _check_names(root: ElementTree.Element) -> None:
+    """`ValueError` where two links, or two joints, have one name."""
+    for tag in ("link", "joint"):
+        names = [each.get("name") for each in root.findall(tag)]
+        for name in names:
+            if names.count(name) > 1:
+                raise ValueError(f"each {tag} in a URDF must have a name of its own, got {shown(name)} twice")
 
 
 def _imposed(body: Body, counts: dict[str, int]) -> list[Hinge]:
@@ -160,10 +177,8 @@ class _Writer:
 
     def __init__(self, body: Body, hinges: list[Hinge], base_link: str, density: float | None) -> None:
         self._body, self._hinges, self._base = body, hinges, base_link
-        prefix = base_link.rpartition("/")[0]
-        self._links = [f"{prefix}/link_{k}".lstrip("/") for k in range(len(hinges) + 1)]
-        if base_link in self._links:
-            raise ValueError(f"base_link must be another name than that of the links, got {shown(base_link)}")
+        self._prefix = "".join(base_link.rpartition("/")[:2])
+        self._links = [f"{self._prefix}link_{k}" for k in range(len(hinges) + 1)]
         cuts = self._cuts([hinge.place for hinge in hinges])
         self._bounds = [0.0, *cuts, body.length]
         self._parts = rigid_parts(body, cuts, density)
@@ -185,8 +200,8 @@ class _Writer:
             cuts += group
         return cuts
 
-    def robot(self, name: str) -> ElementTree.Element:
-        """The root element."""
+    def robot(self, name: str, frames: Mapping[str, float]) -> ElementTree.Element:
+        """The root element. frames: X [m] of further links, by name."""
         root = ElementTree.Element("robot", name=name)
         ElementTree.SubElement(ElementTree.SubElement(root, "material", name="skin"), "color", rgba=SKIN)
         ElementTree.SubElement(root, "link", name=self._base)
@@ -201,6 +216,12 @@ class _Writer:
                 self._add_hinge(root, hinge, self._links[k - 1], link, hinge.place - origin)
                 origin = hinge.place
             self._add_link(root, link, part, origin, self._bounds[k], self._bounds[k + 1])
+        places = [hinge.place for hinge in self._hinges]
+        for frame, x in frames.items():
+            k = bisect_left(places, x)  # joints ahead of it
+            ElementTree.SubElement(root, "link", name=f"{self._prefix}{frame}")
+            along = x - (places[k - 1] if k else 0.0)
+            self._join(root, f"{frame}_joint", "fixed", self._links[k], f"{self._prefix}{frame}", along)
         return root
 
     def _add_link(
