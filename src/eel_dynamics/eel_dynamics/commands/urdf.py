@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel urdf`: a robot as a URDF, for robot_state_publisher, RViz, ros2_control and other simulators.
+"""`eel urdf`: print a robot as a URDF, for RViz and other tools.
 
 eel urdf --robot eight_servos > eel.urdf
 eel urdf --body fish.csv --yaw-joints 10 --frame camera=0.02 > fish.urdf

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel roll-hold`: map where fins hold the roll of a gait, over two of their numbers.
+"""`eel roll-hold`: map where fins hold the roll of a gait, over two numbers.
 
 eel roll-hold straight                                                        # area and gain of the pair at X = 0.5 m
 eel roll-hold turning --fins "pair station=0.3 ..." --over fins.k_p=0.5:10 --over fins.time_constant=0.01:0.5
