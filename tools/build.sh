@@ -76,7 +76,7 @@ build_packages() {
     # With MAKEFLAGS, or colcon lets make start nothing beside while the machine has other work.
     PATH="$root/.venv/bin:$PATH" AMENT_PREFIX_PATH="$root/.venv" CMAKE_PREFIX_PATH="$root/.venv" MAKEFLAGS="-j$(nproc)" \
         .venv/bin/python .venv/bin/colcon build --base-paths src tools/tf2_msgs --symlink-install --cmake-args -Wno-unused-cli \
-        "-DPython3_EXECUTABLE=$root/.venv/bin/python" -DEEL_MSGS_WITHOUT_CPP=ON -DBUILD_TESTING=OFF 9>&- ||
+        "-DPython3_EXECUTABLE=$root/.venv/bin/python" -DEEL_MSGS_FOR_RCLPY=ON -DBUILD_TESTING=OFF 9>&- ||
         { say "colcon failed; its output is in log/latest_build"; exit 1; }
     link_executables
     printf '%s' "$key" > install/stamp
