@@ -8,6 +8,8 @@ endif()
 enable_language(CXX)
 
 include(CheckCXXSourceCompiles)
+set(CMAKE_CXX_SCAN_FOR_MODULES OFF)   # there are none, and the scanner may be missing
+list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES CMAKE_CXX_SCAN_FOR_MODULES)
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)

@@ -38,12 +38,14 @@ def import_core() -> ModuleType:
             raise ImportError(f"eel_core was built for x86-64, this processor is {os.uname().machine}: build it here")
         return import_built("_core")
     features = processor.features()
+    if lacking := processor.lacking(features):
+        raise ImportError(processor.TOO_OLD.format(", ".join(lacking)))
     suitable = suitable_levels(LEVELS, features, NATIVE_FEATURES)
     if not suitable:
-        here = next(iter(processor.levels(features)), "below v2")
         raise ImportError(
             f"eel_core was built for {', '.join(LEVELS) or 'another processor than x86-64'}, this processor is "
-            f'x86-64 {here}: build it here, or for several levels with -DEEL_CORE_LEVELS="v2;v3;v4"'
+            f"x86-64 {processor.levels(features)[0]}: build it here, or for several levels with "
+            '-DEEL_CORE_LEVELS="v2;v3;v4"'
         )
     wanted = os.environ.get(CHOICE)
     if wanted and wanted not in suitable:

@@ -17,6 +17,12 @@ FEATURES = {
 }
 
 
+TOO_OLD = (
+    "eel_core needs a processor of level x86-64-v2 or above, and this one lacks {}: take a machine from 2009 or later, "
+    "or a virtual machine whose processor is not reduced (qemu: -cpu host)"
+)
+
+
 def is_x86_64() -> bool:
     return platform.machine() in ("x86_64", "AMD64")
 
@@ -34,6 +40,11 @@ def features() -> frozenset[str]:
     return frozenset()
 
 
+def lacking(found: frozenset[str]) -> list[str]:
+    """What a processor with the features `found` lacks of the lowest level, which everything here needs."""
+    return sorted(FEATURES["v2"] - found) if found else []
+
+
 def levels(found: frozenset[str]) -> list[str]:
     """The x86-64 levels of a processor with the features `found`, highest first. v2 where nothing is known."""
     if not found:
@@ -47,7 +58,7 @@ def levels(found: frozenset[str]) -> list[str]:
 
 
 if __name__ == "__main__":
-    reached = levels(features())
-    if not reached:
-        raise SystemExit("eel_core needs a processor of level x86-64-v2 or above (SSE4.2); this one is below it")
-    print(reached[0])
+    here = features()
+    if lacking(here):
+        raise SystemExit(TOO_OLD.format(", ".join(lacking(here))))
+    print(levels(here)[0])

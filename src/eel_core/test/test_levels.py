@@ -84,14 +84,31 @@ def last_line(done: subprocess.CompletedProcess) -> str:
     return done.stderr.splitlines()[-1]
 
 
+def with_processor(folder: Path, features: frozenset[str]) -> None:
+    """Let a copy of the package, or a script, find a /proc/cpuinfo of a processor with these `features`."""
+    (folder / "cpuinfo").write_text(f"processor\t: 0\nflags\t\t: {' '.join(sorted(features))}\n")
+    source = folder / "processor.py"
+    source.write_text(source.read_text().replace('"/proc/cpuinfo"', repr(str(folder / "cpuinfo"))))
+
+
 @x86_64_only
 def test_module_for_another_processor_names_the_option(copy):
-    copy.folder.joinpath("processor.py").write_text(
-        copy.folder.joinpath("processor.py").read_text().replace('"popcnt"', '"a_feature_to_come"')
-    )
+    with_processor(copy.folder, V2)
+    copy.folder.joinpath("built.py").write_text('LEVELS = ("v4",)\nNATIVE_FEATURES = frozenset()\n')
     line = last_line(copy())
-    assert line.startswith("ImportError: eel_core was built for v") and "this processor is x86-64 below v2" in line
+    assert line.startswith("ImportError: eel_core was built for v4, this processor is x86-64 v2")
     assert '-DEEL_CORE_LEVELS="v2;v3;v4"' in line
+
+
+@x86_64_only
+def test_processor_below_all_levels_is_told_what_it_lacks(copy):
+    """By the module, and by the build, in one line."""
+    with_processor(copy.folder, V2 - {"popcnt", "sse4_2"} | {"sse2"})
+    line = last_line(copy())
+    assert line.startswith("ImportError: eel_core needs a processor of level x86-64-v2 or above")
+    assert "lacks popcnt, sse4_2: take a machine" in line
+    script = [sys.executable, "-I", copy.folder / "processor.py"]
+    assert last_line(subprocess.run(script, capture_output=True, text=True, timeout=60)) in line
 
 
 @x86_64_only
