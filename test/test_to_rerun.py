@@ -11,6 +11,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from eel_common.version import software
 from eel_dynamics.commands.simulate import main
 from eel_dynamics.ros.messages import SampleMessages, body_message, diagnostic_array
 from eel_dynamics.ros.parameters import DynamicsParameters
@@ -101,7 +102,7 @@ def test_a_recording_says_what_it_is_of(tmp_path):
     of = partial(properties, tmp_path / "swim.rrd")
     assert of("numbers") == {"colour": "red", "trial": 3.0}
     assert of("swim")["gait"] == "straight" and of("swim")["duration"] == 3.0
-    assert of("swim")["version"].startswith("eel_dynamics")
+    assert of("swim")["version"] == software()
     assert law_of(json.loads(of("law")["json"])) == swim.law and of("law")["period"] == 0.5
     assert (of("body")["length"], of("body")["mass"]) == (1.0, pytest.approx(swim.body_mass))
     assert of("scene")["friction"] == "laminar" and of("scene")["wake"] is True

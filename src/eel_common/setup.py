@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
+from xml.etree import ElementTree
+
 from setuptools import find_packages, setup
 
 setup(
     name="eel_common",
-    version="0.1.0",
+    version=ElementTree.parse("package.xml").findtext("version"),
+    python_requires=">=3.11",
     packages=find_packages(),
     py_modules=["eel_command"],
     package_data={"eel_common": ["py.typed", "ros/fastdds.xml", "ros/testing/loopback_udp.xml"]},

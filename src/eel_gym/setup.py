@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
+from xml.etree import ElementTree
+
 from setuptools import find_packages, setup
 
 setup(
     name="eel_gym",
-    version="0.1.0",
+    version=ElementTree.parse("package.xml").findtext("version"),
+    python_requires=">=3.11",
     packages=find_packages(),
     package_data={"eel_gym": ["py.typed"]},
     data_files=[

@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
+from xml.etree import ElementTree
+
 from setuptools import find_packages, setup
 
 COMMANDS = {  # commands of `eel` in the order of its list, with their folders
@@ -15,7 +17,8 @@ OF_EEL_ALONE = ("roll-hold",)  # no executables of their own
 
 setup(
     name="eel_studies",
-    version="0.1.0",
+    version=ElementTree.parse("package.xml").findtext("version"),
+    python_requires=">=3.11",
     packages=find_packages(),
     package_data={"eel_studies": ["py.typed"]},
     data_files=[

@@ -11,6 +11,7 @@ import lz4.frame
 import pytest
 import yaml
 import zstandard
+from eel_common.version import software
 from eel_viz.bags.bag import Bag
 from eel_viz.bags.bounds import MOST_CHUNK_BYTES, check_mcap, inflated
 from eel_viz.bags.definitions import definition, message_class, type_hash
@@ -52,7 +53,7 @@ def test_it_is_whole_after_every_save(tmp_path):
     bag.close()
     assert stamps(tmp_path / "bag") == expected
     about = yaml.safe_load((tmp_path / "bag" / "metadata.yaml").read_text())["rosbag2_bagfile_information"]
-    assert about["version"] == 9
+    assert about["version"] == 9 and about["custom_data"] == {"software": software()}
     assert about["relative_file_paths"] == ["bag.mcap"]
     assert about["message_count"] == 300
 

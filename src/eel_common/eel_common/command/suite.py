@@ -8,16 +8,21 @@ line of its docstring says what the command does, after a colon. The list reads 
 
 import importlib
 import os
+import platform
 import sys
+from collections.abc import Iterator
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
 from pathlib import Path
 
 import eel_command
 
-from eel_common.command.command_line import COMPLETING, Parser
-from eel_common.wording import did_you_mean, shown
+from eel_common.command.command_line import COMPLETING, Parser, print_to_stderr
+from eel_common.version import software
+from eel_common.wording import BRING_THEM, did_you_mean, one_line, shown
 
+OF_VIZ = "eel_viz."  # begins the modules that need the extra viz
+VERSION = "eel.version"  # group of entry points: what is compiled, and a function that tells how
 GROUPS = {  # of entry points: heading in the list
     "eel.commands.swim": "swim",
     "eel.commands.study": "study",
@@ -33,7 +38,7 @@ def commands() -> dict[str, EntryPoint]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Return the exit status of the command; 0 after the list; 2 for an unknown command."""
+    """Return the exit status of the command; 0 after the list; 2 for a command that is unknown or cannot be imported."""
     words = sys.argv[1:] if arguments is None else arguments
     if COMPLETING in os.environ:
         words = _typed_before_the_cursor()
@@ -41,14 +46,36 @@ def main(arguments: list[str] | None = None) -> int:
     if words and words[0] in known:
         module = known[words[0]].value
         eel_command.begin(module, f"eel {words[0]}")
-        status: int = importlib.import_module(module).main(words[1:])
+        try:
+            command = importlib.import_module(module)
+        except ImportError as error:  # a package of an extra, or a processor for which nothing is compiled
+            hint = f"; {BRING_THEM}" if module.startswith(OF_VIZ) and isinstance(error, ModuleNotFoundError) else ""
+            print_to_stderr(f"eel {words[0]}", f"{error}{hint}")
+            return 2
+        status: int = command.main(words[1:])
         return status
     parser = _parser(known)
     if words and not words[0].startswith("-"):
         parser.error(f"no command {shown(words[0])}{did_you_mean(words[0], known)}")
-    parser.parse_args(words)
-    parser.print_help()
+    if parser.parse_args(words).version:
+        print("\n".join(_versions()))
+    else:
+        parser.print_help()
     return 0
+
+
+def _versions() -> Iterator[str]:
+    """Version and commit, what is compiled, Python, and ROS: a line each."""
+    yield software()
+    for entry in entry_points(group=VERSION):
+        try:
+            compiled = entry.load()()
+        except ImportError as error:
+            yield f"{entry.name}: {one_line(error)}"
+        else:
+            yield f"{entry.name}: {compiled['level']}, {compiled['compiler']}"
+    yield f"Python {platform.python_version()}, {sys.executable}"
+    yield f"ROS 2 {os.environ.get('ROS_DISTRO', 'of an unknown name')}" if find_spec("rclpy") else "no ROS 2 (no rclpy)"
 
 
 def summary_of(module: str) -> str:
@@ -72,6 +99,7 @@ def _parser(known: dict[str, EntryPoint]) -> Parser:
         description="The simulator of elongated swimmers.",
         epilog="\n".join([*rows, "eel COMMAND --help: its options. Nodes start by their names, or by ros2 run."]),
     )
+    parser.add_argument("--version", action="store_true", help="version, commit, level of the processor, Python, ROS")
     parser.add_argument("command", nargs="?", choices=known, metavar="COMMAND", help="one of the list")
     return parser
 

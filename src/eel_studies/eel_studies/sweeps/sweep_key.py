@@ -7,6 +7,7 @@ import sys
 from typing import Any
 
 import numpy as np
+from eel_common.version import VERSION
 from eel_common.wording import shown
 from eel_dynamics.model.body.body import DRAGS, MASSES, PROFILES, Body
 from eel_dynamics.model.body.shapes import NamedHalfAxis
@@ -15,7 +16,6 @@ from eel_dynamics.model.flow.functions import FlowField
 from eel_dynamics.model.flow.plain import plain_of_flow
 from eel_dynamics.model.robot.actuators import Torque
 from eel_dynamics.model.robot.robot import Robot
-from eel_dynamics.runs.storage.netcdf import software
 from eel_dynamics.runs.storage.plain import plain_of, plain_robot
 from eel_dynamics.runs.storage.tables import needed
 from eel_dynamics.runs.swim import Swim
@@ -30,7 +30,7 @@ def key_of(points: list[Swim], how: SwimSettings) -> str:
     `ValueError` for a function that cannot be hashed.
     """
     content = hashlib.sha256(repr((how.estimate, how.most_evaluations)).encode())
-    content.update(software().encode())
+    content.update(VERSION.encode())
     measure = how.measure
     content.update(_content_of_function("measure", measure) if callable(measure) else repr(measure).encode())
     bodies = {}
@@ -54,7 +54,7 @@ def _content_of_function(argument: str, function: Any) -> bytes:
     """
     if isinstance(function, NamedHalfAxis):
         return repr(function).encode()
-    needed("dask", f"the key of a sweep with a {argument} of your own", "eel_studies[cluster]")
+    needed("dask", f"the key of a sweep with a {argument} of your own")
     from dask.tokenize import TokenizationError, tokenize
 
     try:

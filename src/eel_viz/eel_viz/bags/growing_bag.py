@@ -15,6 +15,7 @@ from typing import IO, Any, Literal, cast
 
 import mcap.writer
 from eel_common.files.output_file import beside
+from eel_common.version import software
 from eel_common.wording import shown
 from rosbags.interfaces import Connection
 from rosbags.rosbag2 import StoragePlugin, Writer, WriterError
@@ -106,6 +107,7 @@ class GrowingBag(Writer):
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         try:
             super().__init__(pathlib.Path(folder), version=VERSION, storage_plugin=StoragePlugin.MCAP)
+            self.set_custom_data("software", software())
             self.open()
             self.save()
         except (WriterError, OSError) as error:

@@ -17,6 +17,7 @@ import numpy as np
 import pyarrow as pa
 import rerun as rr
 import rerun.blueprint as rrb
+from eel_common.version import software
 
 from eel_viz.batched_stream import Rates
 from eel_viz.messages import Body
@@ -75,8 +76,9 @@ class Destination(ABC):
         return stream
 
     def describe(self, stream: rr.RecordingStream, name: str) -> None:
-        """Send the recording's name and properties."""
+        """Send the recording's name and properties, and what wrote it."""
         stream.send_recording_name(name)
+        send_properties(stream, "swim", {"version": software()})
         for group, values in self.properties.items():
             send_properties(stream, group, values)
 

@@ -11,7 +11,6 @@ from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.analysis.measures import MEASURES, OF_ESTIMATE, measures_of
 from eel_dynamics.runs.run_data import RunData
-from eel_dynamics.runs.storage.netcdf import software
 from eel_dynamics.runs.storage.plain import plain_of
 from eel_dynamics.simulation.energy import WORKS
 
@@ -32,7 +31,6 @@ def properties_of_run(run: RunData) -> Properties:
             "samples": len(run.time),
             "stations": len(run.x),
             "axes": "rep103",
-            "version": software(),
         },
         "law": _law(run.law),
         "body": {

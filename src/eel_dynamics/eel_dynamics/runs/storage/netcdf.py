@@ -9,13 +9,13 @@ import json
 import os
 import warnings
 from collections.abc import Callable
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from eel_common.files.input_file import InputFile, from_json, reading
 from eel_common.files.output_file import check_output, replacing
+from eel_common.version import software
 from eel_common.wording import shown
 
 from eel_dynamics.model.axes import CONVENTIONS, PAPER, REP103
@@ -26,14 +26,6 @@ from eel_dynamics.runs.storage.variables import LABELS, OF_SWIMMERS, VARIABLES, 
 FORMAT = 2  # of the files; format 1 does not name its axes, the paper's; a later one cannot be read
 MOST_BYTES = 2**31 - 4  # of an array in a file
 SUFFIX = ".nc"
-
-
-def software() -> str:
-    """Name and version of this package."""
-    try:
-        return f"eel_dynamics {version('eel_dynamics')}"
-    except PackageNotFoundError:
-        return "eel_dynamics"
 
 
 def attributes_of(contents: Contents) -> dict[str, Any]:
