@@ -9,6 +9,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 REQUIREMENTS = ("requirements.txt", "requirements-ros.txt", "requirements-dev.txt", "requirements-uv.txt")
+OTHERS = ("docs/requirements.txt", "test/numpy1.txt")
 PEERS = tuple(f"evidence/peers/{name}.txt" for name in ("mujoco", "numba", "pyelastica"))
 
 
@@ -69,7 +70,7 @@ def test_every_extra_that_is_named_is_in_its_package(tracked):
         if path.suffix in (".md", ".py") and path.name != "CHANGELOG.md" and path != Path(__file__)
         for words in pattern.findall(path.read_text())
     }
-    assert {extra for *_, extra in found} >= {"data", "cluster", "cma", "pictures"}
+    assert {extra for *_, extra in found} >= {"data", "cluster", "cma"}
     assert [each for each in sorted(found) if each[3] not in has[each[2]]] == []
     assert [each for each in sorted(found) if "pip" in each[1] and "./src/" not in each[1]] == []
 
@@ -80,7 +81,7 @@ def test_no_large_file(tracked):
     assert [str(path) for path in tracked if path.stat().st_size > (2_000_000 if path == film else 1_000_000)] == []
 
 
-@pytest.mark.parametrize("name", (*REQUIREMENTS, "docs/requirements.txt", "test/numpy1.txt", *PEERS))
+@pytest.mark.parametrize("name", (*REQUIREMENTS, *OTHERS, *PEERS))
 def test_every_requirement_is_pinned_with_hashes(name):
     entries = (ROOT / name).read_text().replace("\\\n", " ").splitlines()
     packages = [line for line in entries if line.strip() and not line.lstrip().startswith("#")]
@@ -116,7 +117,7 @@ def test_every_list_of_pins_is_written_by_the_same_script(tracked):
     """And so has hashes."""
     lists = {path for path in tracked if path.suffix == ".txt" and "==" in path.read_text()}
     script = (ROOT / "tools/lock.sh").read_text()
-    assert {ROOT / name for name in (*REQUIREMENTS, "docs/requirements.txt", "test/numpy1.txt", *PEERS)} == lists
+    assert {ROOT / name for name in (*REQUIREMENTS, *OTHERS, *PEERS)} == lists
     assert all(path.stem in script for path in lists)
 
 

@@ -71,7 +71,7 @@ class Outputs:
     """
 
     def __init__(self, command: str, options: argparse.Namespace, parts: Iterable[str] = ()):
-        needed("matplotlib", command, "eel_studies[pictures]")
+        needed("matplotlib", command)
         self._command, self._parts, self.folder = command, tuple(parts), Path(options.out)
         self.page = Path(options.page) if options.page else None
         if self.page:

@@ -56,7 +56,7 @@ def workers_of(scheduler: Any, count: int) -> Iterator[Workers]:
         with ThreadPoolExecutor(count, thread_name_prefix="sweep") as pool:
             yield Workers(pool, count)
         return
-    needed("distributed", "a sweep with a scheduler", "eel_studies[cluster]")
+    needed("distributed", "a sweep with a scheduler")
     with _client_of(scheduler, count) as client:
         yield Workers(client.get_executor(pure=False), sum(client.nthreads().values()))
 

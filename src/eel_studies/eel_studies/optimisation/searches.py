@@ -90,7 +90,7 @@ def by_cma(problem: GaitProblem, starts: np.ndarray, speed: float, seed: int) ->
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # its import warns of missing matplotlib
-        cma = needed("cma", "method 'cma' of optimise", "eel_studies[cma]")
+        cma = needed("cma", "method 'cma' of optimise")
     options = {"bounds": [0.0, 1.0], "maxiter": GENERATIONS, "tolfun": 5e-4, "tolx": 2e-3, "verbose": -9}
     options["seed"] = seed + 1  # 0 is the clock
     strategy = cma.CMAEvolutionStrategy(starts[0], SPREAD, options)

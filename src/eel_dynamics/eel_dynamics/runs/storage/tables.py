@@ -19,12 +19,12 @@ from eel_dynamics.runs.storage.variables import LABELS, LEDGER, Contents, variab
 COLUMNS = {"position": "xyz", "orientation": "xyzw", "center_of_mass": "xyz"}
 
 
-def needed(name: str, by: str, extra: str = "eel_dynamics[data]") -> Any:
-    """The module `name`, which `by` needs. `ImportError` names the package and its `extra` that bring it."""
+def needed(name: str, by: str) -> Any:
+    """The module `name`, which `by` needs. `ImportError` tells how to install it."""
     try:
         return import_module(name)
     except ImportError as error:
-        raise ImportError(f"{by} needs {name} ({error}); install it with: pip install './src/{extra}'") from None
+        raise ImportError(f"{by} needs {name} ({error}); install it with: pip install {name}") from None
 
 
 def dataset_of(contents: Contents) -> Any:
