@@ -18,12 +18,13 @@ from measuring import REPEATS, Lines
 from nodes import nodes, visualiser
 from overhead import overhead
 from robots import robots
+from sensors import sensors
 from swims import batch, falling_gait, gym, start, ticks
 
 OF_SWIMS = evaluation, flows, falling_gait, wrench, start, ticks, integrators, batch
 FIGURES = {
     each.__name__.removesuffix("_gait"): each
-    for each in (*OF_SWIMS, visualiser, nodes, lockstep, gym, overhead, robots)
+    for each in (*OF_SWIMS, visualiser, nodes, lockstep, gym, overhead, robots, sensors)
 }
 
 

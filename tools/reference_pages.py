@@ -17,6 +17,7 @@ from eel_common.command.suite import commands as known_commands
 from eel_common.files.markdown import table
 from eel_common.quantity import limits
 from eel_dynamics.ros.parameters import DynamicsParameters
+from eel_dynamics.sensors.suite import KINDS
 from eel_gaits.gaits.registry import GAITS, Transition
 from eel_gaits.gaits.settings import FILE_GAITS, numbers_of
 from eel_gaits.pilot.settings import GROUPS
@@ -48,7 +49,11 @@ NODES: dict[str, list[tuple[str, str, type[Any]]]] = {  # node: heading, prefix 
         ("", "", Transition),
         *((f"gait {name}", "", numbers_of(name)) for name in sorted((*GAITS, *FILE_GAITS))),
     ],
-    "dynamics": [("", "", DynamicsParameters), ("scene", "scene.", Scene)],
+    "dynamics": [
+        ("", "", DynamicsParameters),
+        ("scene", "scene.", Scene),
+        *((name, f"{name}.", kind) for name, kind in KINDS.items()),
+    ],
     "heading_controller": [("", "", HeadingParameters)],
     "pilot": [("", "", kind) for kind in GROUPS],
     "visualiser": [("", "", Settings)],

@@ -12,6 +12,7 @@ ROS node declares its parameters from the same fields. Metadata of a field:
     plain           not a number: the class checks it
     choices         the texts that are allowed
     number          a text or a number
+    any_length      a row of numbers may have any length but 0
     changeable      a ROS parameter may change: while the node runs (True), or at the next reset (`AT_RESET`)
 """
 
@@ -221,7 +222,7 @@ def checked(item: Field[Any], value: Any, name: str) -> Any:
         _of_kind(isinstance(value, str), value, f"{name} must be a text{' or a number' if about.get('number') else ''}")
         return checked_choice(name, value, about.get("choices", (value,)))
     if isinstance(default, tuple):
-        return _checked_row(default, value, name)
+        return _checked_row(default, value, name, None if about.get("any_length") else len(default))
     if default is None and number(name, value) == 0.0:
         return None
     return _in_bounds(item, value, name)
@@ -245,13 +246,13 @@ def _of_kind(good: bool, value: Any, rule: str) -> Any:
     return value
 
 
-def _checked_row(default: tuple[Any, ...], value: Any, name: str) -> tuple[Any, ...]:
+def _checked_row(default: tuple[Any, ...], value: Any, name: str, size: int | None) -> tuple[Any, ...]:
     array = hasattr(value, "typecode")  # rclpy gives an array.array
     row = array or (isinstance(value, (list, tuple, np.ndarray)) and getattr(value, "ndim", 1) == 1)
     if isinstance(default[0], str):
         words: Any = value.split(",") if isinstance(value, str) else value if row else (None,)
         _of_kind(all(isinstance(word, str) for word in words), value, f"{name} must be a list of texts")
         return tuple(word.strip() for word in words)
-    good = row and len(value) == len(default) and all(map(is_finite, value))
-    _of_kind(good, value, f"{name} must be {len(default)} finite numbers")
-    return tuple(checked_row(name, value, len(default)).tolist())
+    good = row and len(value) == (size or max(1, len(value))) and all(map(is_finite, value))
+    _of_kind(good, value, f"{name} must be {size or 'a row of'} finite numbers")
+    return tuple(checked_row(name, value, size).tolist())

@@ -26,15 +26,16 @@ def build_info() -> dict[str, str]:
     """How this module was compiled: level, compiler, flags, sanitizers, pybind11."""
 
 MOST_SERVOS: int  # of fins, whose angles are states
+FILLED: int  # stations of a stretch: those of sensors begin one
 
 def layout(
-    samples: int, stations: int, wrench: bool, load: bool, fins: int = 0
+    samples: int, stations: int, wrench: bool, load: bool, fins: int = 0, sensors: int = 0
 ) -> dict[str, tuple[int, int, int, int]]:
     """Where each quantity of so many samples lies in one array of numbers.
 
-    By its name: (begin, instants, numbers, of). A quantity takes instants * numbers of the array from begin on, or
-    instants * stations * numbers where it is given along the body (of 1), or instants * fins * numbers of fins (of 2),
-    the last index running fastest. One that is not asked for has no instants.
+    By its name: (begin, instants, numbers, of). A quantity takes instants * numbers of the array from begin on, times
+    the stations where it is given along the body (of 1), times the fins (of 2) or the sensors (of 3), the last index
+    running fastest. One that is not asked for has no instants.
     wrench: the internal wrench; load: what the water does along the body.
     """
 
@@ -53,6 +54,7 @@ class Swimmer(_Shared):
         sections: Any,
         stations: Any,
         *,
+        shown: int,
         friction: str,
         resistive: bool,
         segmented: bool,
@@ -73,7 +75,8 @@ class Swimmer(_Shared):
         appendages: list[tuple[int | None, list[float], list[float], bool, bool, int]] = ...,
     ) -> None:
         """grid: with the attributes of `Grid` (eel_dynamics/model/body/grid.py). sections, at its nodes, and stations:
-        of `SectionData` and `StationData` (eel_dynamics/model/section_data.py). friction: of `FRICTION_LAWS`.
+        of `SectionData` and `StationData` (eel_dynamics/model/section_data.py). shown: stations of the profiles;
+        those of sensors follow, from a multiple of `FILLED` on. friction: of `FRICTION_LAWS`.
         resistive: drag along the body. segmented: its links have one of their own. first_watched: first of the speeds
         (0 V1, 1 V2, 2 V3, 3 Omega1, 4 Re/8e4 - 1) whose changes of sign within a panel are integrated exactly; 5 for
         none. inertia_of_water: the nodes' sections have that of the water. tail_water: (3,) added masses [kg/m], [kg m]

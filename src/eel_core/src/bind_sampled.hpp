@@ -63,7 +63,8 @@ class PySampledMarches {
     {
         const InUse in_use(in_use_, these);
         March& march = begun(index);
-        const Profiles profiles(1, march.swimmer().stations, wrench, load);
+        const Swimmer& swimmer = march.swimmer();
+        const Profiles profiles(1, swimmer.shown, wrench, load, 0, swimmer.sensors());
         const Numbers into = Numbers::sized(whole, "whole", profiles.begin[Profiles::quantities], true);
         return march.observe(profiles, into.data(), 0, nullptr);
     }

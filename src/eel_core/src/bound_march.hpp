@@ -230,7 +230,8 @@ class PyMarch {
     }
     Profiles profiles_of(std::size_t samples, bool wrench, bool load) const
     {
-        return {samples, march_.swimmer().stations, wrench, load, march_.swimmer().fins.size()};
+        const Swimmer& swimmer = march_.swimmer();
+        return {samples, swimmer.shown, wrench, load, swimmer.fins.size(), swimmer.sensors()};
     }
     static Numbers room_for(const Profiles& profiles, const py::object& whole)
     {

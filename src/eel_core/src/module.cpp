@@ -31,17 +31,19 @@ py::dict build_info_as_dict()
 }
 
 // Where the quantities of samples lie in one array: name -> (begin, instants, numbers of an instant).
-py::dict layout(std::size_t samples, std::size_t stations, bool wrench, bool load, std::size_t fins)
+py::dict layout(std::size_t samples, std::size_t stations, bool wrench, bool load, std::size_t fins,
+                std::size_t sensors)
 {
     std::istringstream names(
         "position orientation twist head_acceleration center_of_mass energies powers closure backbone "
         "section_orientation curvature curvature_rate torque force fluid_force resistive_force tail_force nose_force "
-        "wake_momentum_rate fin_angle fin_force");
-    const Profiles profiles(samples, stations, wrench, load, fins);
+        "wake_momentum_rate fin_angle fin_force sensor_position sensor_orientation sensor_twist sensor_acceleration "
+        "sensor_water");
+    const Profiles profiles(samples, stations, wrench, load, fins, sensors);
     py::dict result;
     std::string name;
     for (std::size_t q = 0; names >> name; ++q) {
-        const int of = profiles.along_body(q) ? 1 : profiles.of_fins(q) ? 2 : 0;
+        const int of = profiles.along_body(q) ? 1 : profiles.of_fins(q) ? 2 : profiles.of_sensors(q) ? 3 : 0;
         result[name.c_str()] = py::make_tuple(profiles.begin[q], profiles.instants(q), Profiles::width_of[q], of);
     }
     return result;
@@ -180,8 +182,9 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
     module.def("build_info", &build_info_as_dict,
                "How this module was compiled: level, compiler, flags, sanitizers, pybind11.");
     module.def("layout", &layout, py::arg("samples"), py::arg("stations"), py::arg("wrench"), py::arg("load"),
-               py::arg("fins") = 0);
+               py::arg("fins") = 0, py::arg("sensors") = 0);
     module.attr("MOST_SERVOS") = most_servos;
+    module.attr("FILLED") = filled;
     module.attr("FRICTION_LAWS") = names_of(friction_laws);
 
     auto swimmer = py::class_<Swimmer, std::shared_ptr<Swimmer>>(module, "Swimmer");

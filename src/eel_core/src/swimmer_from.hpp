@@ -29,9 +29,9 @@ inline Sections sections_from(const py::handle& s, std::size_t n)
                 s, {"drag2", "drag3", "drag_roll", "laminar", "turbulent", "by_critical_speed", "segment"}, n)};
 }
 
-// `matrix`: rows for the m `points`, as those of `PanelRows`.
+// `matrix`: rows for the m `points`, as those of `PanelRows`, whose panels rise, and again from the point `anew` on.
 inline FromNose from_nose(const py::handle& points, std::size_t m, const py::handle& matrix, const Row& weight,
-                          std::size_t nodes)
+                          std::size_t nodes, std::size_t anew = 0)
 {
     const auto fraction = Numbers::sized(points.attr("fraction"), "fraction", m);
     const std::size_t widest = array_of<double>(points, "matrix").length(1);
@@ -41,7 +41,7 @@ inline FromNose from_nose(const py::handle& points, std::size_t m, const py::han
     for (std::size_t i = 0; i < m; ++i) {
         const std::uint64_t begin = first.data()[i], size = count.data()[i];
         if (begin >= nodes || size > std::min<std::uint64_t>(widest, nodes - begin) ||
-            (i > 0 && begin < first.data()[i - 1]))
+            (i > 0 && i != anew && begin < first.data()[i - 1]))
             throw py::value_error("first and count must be of panels one behind the other, within the nodes");
     }
     return FromNose({rows.span(), first.span(), count.span(), fraction.span()}, {weight.row(0), nodes});
@@ -163,6 +163,9 @@ inline std::shared_ptr<Swimmer> swimmer_from(const py::object& grid, const py::o
 
     const auto before = array_of<std::uint64_t>(stations, "nodes_before");
     const std::size_t m = swimmer->stations = before.size();
+    swimmer->shown = physics["shown"].cast<std::size_t>();
+    if (swimmer->shown != m && swimmer->first_sensor() >= m)
+        throw py::value_error("shown must be the stations, or sensors follow from a whole stretch on");
     swimmer->nodes_before = before.vector<std::size_t>();
     for (const std::size_t nodes : swimmer->nodes_before)
         if (nodes > n) throw py::value_error("nodes_before must be at most the nodes, got " + std::to_string(nodes));
@@ -171,10 +174,11 @@ inline std::shared_ptr<Swimmer> swimmer_from(const py::object& grid, const py::o
     swimmer->added3_slope = field_from(stations, {"added3_slope"}, m);
     swimmer->added_roll_slope = field_from(stations, {"added_roll_slope"}, m);
     const py::object places = stations.attr("points");
-    swimmer->to_station = from_nose(places, m, places.attr("matrix"), swimmer->grid.weight, n);
+    const std::size_t anew = swimmer->first_sensor();
+    swimmer->to_station = from_nose(places, m, places.attr("matrix"), swimmer->grid.weight, n, anew);
     const Row none(swimmer->grid.blocks);
     for (const py::handle rows : stations.attr("missed"))
-        swimmer->missed.push_back(from_nose(places, m, rows, none, n));
+        swimmer->missed.push_back(from_nose(places, m, rows, none, n, anew));
     if (!swimmer->missed.empty() && swimmer->missed.size() != SectionPart::count)
         throw py::value_error("stations must have missed rows for each part of a section, or none");
     add_fins(*swimmer, physics["fins"], physics["servos"]);

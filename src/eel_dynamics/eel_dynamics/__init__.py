@@ -13,10 +13,16 @@ from eel_dynamics.analysis.trim import Ballast, Trim, ballast_for, trim_of
 from eel_dynamics.batches.batch import Batch
 from eel_dynamics.batches.simulate_batch import simulate_batch
 from eel_dynamics.model import *  # noqa: F403  the swimmer and its water
+from eel_dynamics.runs.exchange.recorded_sensors import readings_from_bag
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.scene_file import load_scene, save_scene
 from eel_dynamics.runs.simulate import simulate
 from eel_dynamics.runs.swim import Swim
+from eel_dynamics.sensors.encoders import Encoders
+from eel_dynamics.sensors.imu import Imu
+from eel_dynamics.sensors.pressure import Pressure
+from eel_dynamics.sensors.suite import SensorSuite
+from eel_dynamics.sensors.velocity import Velocity
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.prescribed import HydrodynamicWrench, hydrodynamic_wrench
@@ -27,18 +33,24 @@ __all__ = [
     "Accuracy",
     "Ballast",
     "Batch",
+    "Encoders",
     "EnergyLedger",
     "HydrodynamicWrench",
+    "Imu",
+    "Pressure",
     "Run",
+    "SensorSuite",
     "Simulation",
     "SimulationStopped",
     "Snapshot",
     "Swim",
     "Trim",
     "Unsettled",
+    "Velocity",
     "ballast_for",
     "hydrodynamic_wrench",
     "load_scene",
+    "readings_from_bag",
     "save_scene",
     "simulate",
     "simulate_batch",

@@ -10,6 +10,8 @@ from eel_common.ros.testing.log import Log
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.publishers import END_TIMEOUT, Publishers
 
+from eel_dynamics import Scene
+
 
 class FakeNode:
     """A node whose topics have the `audience`; subscribers of those in `late` have not received everything."""
@@ -35,10 +37,12 @@ def publishers_of(monkeypatch, node, factor, log=None):
         set_time=lambda nanoseconds: None,
         fill=lambda name, snapshot: (name, snapshot.torque, snapshot.fluid_force),
     )
-    monkeypatch.setattr("eel_dynamics.ros.publishers.SampleMessages", lambda simulation, values: sample)
+    monkeypatch.setattr("eel_dynamics.ros.publishers.SampleMessages", lambda simulation, values, without: sample)
     monkeypatch.setattr("eel_dynamics.ros.publishers.Publishers.publish_body", lambda self, simulation: None)
-    parameters = SimpleNamespace(values=DynamicsParameters(real_time_factor=factor, publish_robot_description=False))
-    return Publishers(node, None, parameters, Report(log or Log()))
+    values = DynamicsParameters(real_time_factor=factor, publish_robot_description=False)
+    parameters = SimpleNamespace(values=values, sensors=())
+    swimmer = SimpleNamespace(scene=Scene(), flow=None, robot=None, setup=SimpleNamespace(sensors=(), robot=None))
+    return Publishers(node, swimmer, parameters, Report(log or Log()))
 
 
 def test_patience_is_one_account_for_all_topics():

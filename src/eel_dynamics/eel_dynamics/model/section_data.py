@@ -107,18 +107,27 @@ def nose_of(body: Body, scene: Scene) -> tuple[float, float]:
 
 
 def core_swimmer(
-    body: Body, scene: Scene, grid: Grid, sections: SectionData, x: np.ndarray, kinks: str, fins: tuple[Fin, ...] = ()
+    body: Body,
+    scene: Scene,
+    grid: Grid,
+    sections: SectionData,
+    x: np.ndarray,
+    kinks: str,
+    fins: tuple[Fin, ...] = (),
+    sensors: np.ndarray | tuple[()] = (),
 ) -> eel_core.Swimmer:
-    """`body` in `scene` for the compiled mechanics: the `sections` at the nodes of `grid`, and stations at `x` (M,)
-    [m]; `kinks`: which of the drag's are integrated exactly (`Accuracy`)."""
+    """`body` in `scene` for the compiled mechanics: the `sections` at the nodes of `grid`, stations at `x` (M,) [m],
+    and `sensors` at X (S,) [m] that rise; `kinks`: which of the drag's are integrated exactly (`Accuracy`)."""
     nose_mass, nose_drag = nose_of(body, scene)
     of_fins, servos = core_fins(body, scene, grid, x, fins)
+    stations = stations_of(body, scene, grid, sections, with_sensors(x, sensors))
     own = sections.added2, sections.added3, sections.added_roll
     swept = own if scene.added_inertia else swept_water(body, scene, grid.x)
     return eel_core.Swimmer(
         grid,
         sections,
-        stations_of(body, scene, grid, sections, x),
+        stations,
+        shown=len(x),
         friction="laminar" if scene.friction == "none" or scene.viscosity == 0.0 else scene.friction,
         resistive=bool(scene.resistive),
         segmented=bool(sections.segment.any()),
@@ -138,6 +147,11 @@ def core_swimmer(
         servos=servos,
         appendages=core_appendages(body, scene, grid, x),
     )
+
+
+def with_sensors(x: np.ndarray, sensors: np.ndarray | tuple[()]) -> np.ndarray:
+    """The stations of a core's swimmer: `x` (M,) [m], then the `sensors` (S,) [m], which begin a stretch."""
+    return np.concatenate((x, np.full(-len(x) % eel_core.FILLED, x[-1]), sensors)) if len(sensors) else x
 
 
 def missed_drag_of(body: Body, scene: Scene, grid: Grid, sections: SectionData) -> np.ndarray | tuple[()]:

@@ -18,7 +18,8 @@ from eel_dynamics.model.flow.plain import flow_of
 from eel_dynamics.model.flow.text import flow_from_text, text_of_flow
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.parameters import FRAMES, ROOT, DynamicsParameters
-from eel_dynamics.ros.simulation_from_parameters import robot_from_parameters
+from eel_dynamics.ros.simulation_from_parameters import Sensors, check_sensors, robot_from_parameters
+from eel_dynamics.sensors.suite import KINDS
 
 SCENE, FLOW, USE_SIM_TIME = "scene.", "flow.", "use_sim_time"
 
@@ -32,7 +33,8 @@ class Declaration:
     Attributes:
         values: the present DynamicsParameters.
         scene: the present Scene.
-        next_values, next_scene: those of the next reset.
+        sensors: the present settings of sensors, one of each of `KINDS`.
+        next_values, next_scene, next_sensors: those of the next reset.
     """
 
     def __init__(self, node: ParameterNode) -> None:
@@ -45,7 +47,13 @@ class Declaration:
         self.scene = replace(Scene(), **_checked({SCENE + item.name: item for item in fields(Scene)}, overrides))
         declare(node, self.values)
         declare(node, self.scene, SCENE, AT_RESET)
-        self.next_values, self.next_scene = self._planned = self.values, self.scene
+        self.sensors: Sensors = tuple(
+            kind(**_checked({f"{name}.{item.name}": item for item in fields(kind)}, overrides))
+            for name, kind in KINDS.items()
+        )
+        for settings in self.sensors:
+            declare(node, settings, f"{settings.what}.", AT_RESET)
+        self.next_values, self.next_scene, self.next_sensors = self._planned = self.present
         self._fields = node.parameter_fields
         warn_of_unknown(node, overrides, self._fields)
         self._node, self._paced = node, self.values.real_time_factor > 0.0
@@ -54,19 +62,29 @@ class Declaration:
         node.add_post_set_parameters_callback(self._apply)
 
     @property
+    def present(self) -> tuple[DynamicsParameters, Scene, Sensors]:
+        """Values, scene and sensors in force."""
+        return self.values, self.scene, self.sensors
+
+    @property
+    def next(self) -> tuple[DynamicsParameters, Scene, Sensors]:
+        """Those of the next reset."""
+        return self.next_values, self.next_scene, self.next_sensors
+
+    @property
     def pending(self) -> bool:
         """Whether a change waits for the next reset."""
-        return (self.next_values, self.next_scene) != (self.values, self.scene)
+        return self.next != self.present
 
     def answer_to(self, names: list[str]) -> str:
         """When the changes of the parameters `names` act; empty: at once."""
         later = [name for name in names if name in self._fields and not self._acts_at_once(name)]
         return f"acts {AT_RESET}" if later else ""
 
-    def begin(self, values: DynamicsParameters, scene: Scene) -> None:
-        """Make `values` and `scene` the present ones, but for what has been changed since and acts at once."""
+    def begin(self, values: DynamicsParameters, scene: Scene, sensors: Sensors) -> None:
+        """Make them the present ones, but for what has been changed since and acts at once."""
         at_once = {name: getattr(self.values, name) for name in self._fields if self._acts_at_once(name)}
-        self.values, self.scene = replace(values, **at_once), scene
+        self.values, self.scene, self.sensors = replace(values, **at_once), scene, sensors
 
     def _acts_at_once(self, name: str) -> bool:
         return self._fields[name].metadata.get("changeable") is True
@@ -77,7 +95,12 @@ class Declaration:
         try:
             of_scene = {name: item for name, item in self._fields.items() if name.startswith(SCENE)}
             scene = replace(self.next_scene, **_checked(of_scene, given))
-            found = {name: given[name] for name in self._fields.keys() & given.keys() - of_scene.keys()}
+            sensors = tuple(
+                replace(each, **_checked({f"{each.what}.{item.name}": item for item in fields(each)}, given))
+                for each in self.next_sensors
+            )
+            own = {item.name for item in fields(DynamicsParameters)}
+            found = {name: given[name] for name in own & given.keys()}
             values = replace(self.next_values, **found)
             if (values.real_time_factor > 0.0) != self._paced:
                 now = "> 0" if self._paced else "0 (as fast as possible)"
@@ -92,7 +115,9 @@ class Declaration:
                 flow_from_text(values.flow)
             if "accuracy" in found:
                 Accuracy.of(values.accuracy)
-            self._planned = values, scene
+            if sensors != self.next_sensors or (found and any(each.rate for each in sensors)):
+                check_sensors(values, sensors)
+            self._planned = values, scene, sensors
         except (ValueError, OSError) as error:
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
@@ -106,7 +131,7 @@ class Declaration:
             )
 
     def _apply(self, parameters: list[Parameter]) -> None:
-        self.next_values, self.next_scene = self._planned
+        self.next_values, self.next_scene, self.next_sensors = self._planned
         names = [each.name for each in parameters if each.name in self._fields and self._acts_at_once(each.name)]
         self.values = replace(self.values, **{name: getattr(self.next_values, name) for name in names})
 

@@ -7,7 +7,7 @@ Poses, twists and the backbone are in REP-103 axes; section quantities have the 
 
 import array
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Any
 
 import numpy as np
@@ -31,7 +31,7 @@ from eel_dynamics.analysis.joint_demand import Joints
 from eel_dynamics.curvature.curvature_samples import LateSample, check_points
 from eel_dynamics.model.axes import with_section_axes
 from eel_dynamics.model.flow.flow import lattice_around, velocities_at
-from eel_dynamics.model.robot.actuators import most_torque
+from eel_dynamics.model.robot.actuators import current_by_torque, most_torque
 from eel_dynamics.model.robot.joint_signs import OF_SECTIONS, message_signs
 from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
 from eel_dynamics.runs.exchange.message_fields import FIELDS, LINEAR, OF_JOINTS, SIGNED
@@ -51,11 +51,13 @@ LARGEST_LAW = 2**19  # bytes, without the name: 1,000 terms of 30 knots, which a
 class SampleMessages:
     """The serialised messages of one sample of a `simulation`: `fill` returns that of a topic, `tick` that of /clock.
 
+    without: topics that sensors fill.
+
     Attributes:
         kinds: message type by topic.
     """
 
-    def __init__(self, simulation: Simulation, parameters: DynamicsParameters) -> None:
+    def __init__(self, simulation: Simulation, parameters: DynamicsParameters, without: Collection[str] = ()) -> None:
         self._nanoseconds, self._simulation = (0, 0), simulation
         x, scene = simulation.x, simulation.scene
         self._errors: HeadErrors | None = None  # those in the covariances of odom
@@ -104,7 +106,7 @@ class SampleMessages:
             joint_state = JointState(name=names, position=zeros, velocity=zeros, effort=effort)
             topics["joint_states"] = joint_state, ""
             if robot is not None and robot.joints:
-                motors = msg.MotorStates(name=names, torque=zeros, limit=zeros, power=zeros)
+                motors = msg.MotorStates(name=names, torque=zeros, limit=zeros, power=zeros, current=zeros)
                 topics["motor_states"] = motors, ""
         if simulation.fins:
             from sensor_msgs.msg import JointState
@@ -112,6 +114,7 @@ class SampleMessages:
             count = [0.0] * len(simulation.fins)
             names = [fin.name for fin in simulation.fins]
             topics["fin_states"] = JointState(name=names, position=count, effort=[]), ""
+        topics = {name: each for name, each in topics.items() if name not in without}
         self.kinds = {name: type(message) for name, (message, _) in topics.items()}
         self._further: dict[str, Callable[[Numbers, Snapshot], None]] = {  # what `FIELDS` has not
             "odom": self._fill_covariances,
@@ -225,7 +228,9 @@ class SampleMessages:
 
     def _fill_limits(self, numbers: Numbers, snapshot: Snapshot) -> None:
         assert self._simulation.robot is not None
-        numbers["limit"][:] = most_torque(self._simulation.robot.servos, numbers["torque"], numbers["power"])
+        servos, torque = self._simulation.robot.servos, numbers["torque"]
+        numbers["limit"][:] = most_torque(servos, torque, numbers["power"])
+        numbers["current"][:] = torque * current_by_torque(servos)
 
 
 def _lengthen(message: Any, x: np.ndarray, fins: int) -> None:
@@ -240,11 +245,11 @@ NO_ERRORS = HeadErrors(*[math.inf] * 5)
 UNKNOWN = np.array([-1.0, *[0.0] * 35])  # a covariance
 
 
-def root_message(parameters: DynamicsParameters) -> TFMessage:
+def root_transform(parameters: DynamicsParameters) -> TransformStamped:
     """The transform from `root_frame` to `world_frame`, which are the same place."""
     transform = TransformStamped(child_frame_id=parameters.world_frame)
     transform.header.frame_id = parameters.root_frame
-    return TFMessage(transforms=[transform])
+    return transform
 
 
 def body_message(simulation: Simulation, section_frame: str) -> msg.BodyGeometry:

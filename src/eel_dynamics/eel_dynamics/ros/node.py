@@ -41,11 +41,12 @@ from eel_dynamics.ros.law_subscription import LawSubscription
 from eel_dynamics.ros.loop.awaited import INPUTS
 from eel_dynamics.ros.loop.inputs import check_inputs
 from eel_dynamics.ros.loop.run_loop import RunLoop
-from eel_dynamics.ros.messages import diagnostic_array, root_message, state_from_message, values_of_status
+from eel_dynamics.ros.messages import diagnostic_array, root_transform, state_from_message, values_of_status
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.publishers import Publishers
 from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
 from eel_dynamics.ros.status import Status
+from eel_dynamics.sensors.suite import KINDS
 from eel_msgs.srv import SetState, Step
 
 NAME = "dynamics"
@@ -70,13 +71,14 @@ class DynamicsNode(ParameterNode):
         self.failure, self._report = "", Report(self.get_logger())
         self.parameters = Declaration(self)
         with one_line_warnings(NAME):
-            simulation = simulation_from_parameters(self.parameters.values, self.parameters.scene)
+            simulation = simulation_from_parameters(*self.parameters.present)
         self._sample_publishers = Publishers(self, simulation, self.parameters, self._report)
         self._inbox = CurvatureInbox(self, self._report)
         self.run_loop = RunLoop(simulation, self.parameters, self._sample_publishers, self._inbox, self._report)
         self._status = Status(self.run_loop, self._report, self.parameters)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
-        self._root: Any = None  # publisher of /tf_static
+        self._static: Any = None  # publisher of /tf_static
+        self._still: list[Any] = []  # what is published there
         self._ended: float | None = None  # s, steady clock: when the end of the run was seen
         self._laws = LawSubscription(self, self.run_loop, self._report)
         subscribe_to_commands(self, self.run_loop)
@@ -164,11 +166,16 @@ class DynamicsNode(ParameterNode):
         self._holding, self._offers_clock = holding, offers
 
     def _publish_root(self) -> None:
-        """Publish once where the world lies in the frame that swimmers share; later subscribers get it too."""
-        values = self.parameters.values
-        if self._root is None and values.root_frame and values.publish_tf:
-            self._root = self.create_publisher(TFMessage, "/tf_static", latched(1))
-            self._root.publish(root_message(values))
+        """Publish where the world lies in the frame that swimmers share, and sensors on a rigid part of the body; later
+        subscribers get it too."""
+        values, still = self.parameters.values, list(self._sample_publishers.sensors.static)
+        if values.root_frame and values.publish_tf:
+            still.append(root_transform(values))
+        if still and still != self._still:
+            if self._static is None:
+                self._static = self.create_publisher(TFMessage, "/tf_static", latched(1))
+            self._static.publish(TFMessage(transforms=still))
+            self._still = still
 
     def _publish_diagnostics(self, final: bool = False) -> None:
         """Publish /diagnostics; `final`: at the end of the run."""
@@ -184,17 +191,17 @@ class DynamicsNode(ParameterNode):
     # Services.
 
     async def _reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        values, new = self.parameters.next_values, None
+        values, sensors, new = self.parameters.next_values, self.parameters.next_sensors, None
         if self.parameters.pending:
             try:
-                new = simulation_from_parameters(values, self.parameters.next_scene)
+                new = simulation_from_parameters(*self.parameters.next)
                 check_inputs(new, values)
             except (ValueError, OSError) as error:
                 response.message = f"reset refused: {one_line(error)}"
                 self.get_logger().error(response.message)
                 return response
             self._tell_of(new.robot)
-        answer = self.run_loop.requests.put(self.run_loop.reset, new, values, urgent=True)
+        answer = self.run_loop.requests.put(self.run_loop.reset, new, values, sensors, urgent=True)
         return await answered(response, answer, "reset")
 
     async def _pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
@@ -242,6 +249,8 @@ def parameter_rows() -> Iterator[tuple[Any, ...]]:
     """Name, description and default of each parameter."""
     yield from help_rows(DynamicsParameters)
     yield from help_rows(Scene, "scene.")
+    for name, kind in KINDS.items():
+        yield from help_rows(kind, f"{name}.")
 
 
 def main(args: list[str] | None = None) -> int:

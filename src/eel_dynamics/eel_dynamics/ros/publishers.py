@@ -24,6 +24,7 @@ from rosgraph_msgs.msg import Clock
 from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.messages import SampleMessages, body_message
 from eel_dynamics.ros.robot_description import RobotDescription
+from eel_dynamics.ros.sensors import FRAMES, SensorMessages
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
 from eel_msgs.msg import BodyGeometry
@@ -45,6 +46,7 @@ class Publishers:
 
     Attributes:
         lossless: the run is as fast as possible, and no sample may be lost.
+        sensors: SensorMessages.
         stopped: the run is over, and nobody is waited for.
     """
 
@@ -67,12 +69,14 @@ class Publishers:
     def begin(self, simulation: Simulation) -> None:
         """Change to the topics of another `simulation`, and publish its body."""
         values = self._parameters.values
-        self._sample = SampleMessages(simulation, values)
-        for name in [name for name in self._channels if name not in self._sample.kinds]:
+        self.sensors = SensorMessages(self._parameters.sensors, simulation, values)
+        self._sample = SampleMessages(simulation, values, without=self.sensors.kinds)
+        kinds = self._sample.kinds | self.sensors.kinds
+        for name in [name for name in self._channels if name not in kinds]:
             self._channels.pop(name).close()
-        for name, kind in self._sample.kinds.items():
+        for name, kind in kinds.items():
             if name not in self._channels:
-                self._channels[name] = Channel(self._node, kind, name, self.lossless)
+                self._channels[name] = Channel(self._node, kind, "/tf" if name == FRAMES else name, self.lossless)
         self.publish_body(simulation)
         self._description.publish(simulation, values)
 
@@ -89,7 +93,8 @@ class Publishers:
         counts, shown = self.audience(), self._parameters.values.publish_tf
         if (counts, shown) != self._present:
             before, self._present = self._present[0], (counts, shown)
-            self._subscribed = tuple(name for name, count in counts.items() if count and (shown or name != "/tf"))
+            heard = [name for name, count in counts.items() if count and name in self._sample.kinds]
+            self._subscribed = tuple(name for name in heard if shown or name != "/tf")
             self._parts = {part: any(name in self._subscribed for name in topics) for part, topics in PARTS.items()}
             late = [name for name in self._subscribed if counts[name] > before.get(name, 0)]
             if late and self.lossless and self._samples > 1:
@@ -111,6 +116,9 @@ class Publishers:
         self._samples = self._samples + 1 if nanoseconds else 1
         for name in self._subscribed:
             self._send(self._channels[name], self._sample.fill(name, snapshot))
+        for name, message in self.sensors.due(snapshot, nanoseconds):
+            if self._channels[name].subscribers():
+                self._send(self._channels[name], message)
 
     def tick(self, nanoseconds: int) -> None:
         """Publish /clock, with simulation time `nanoseconds` [ns]."""
@@ -132,7 +140,7 @@ class Publishers:
         With 0 wanted: whether the subscribers on the network are matched, and none has come for a while; true after
         `MATCH_LIMIT`. now: time [s, steady clock].
         """
-        left_out = NOT_AWAITED if wanted else ()
+        left_out = (*NOT_AWAITED, *self.sensors.kinds) if wanted else ()
         own = [channel for name, channel in self._channels.items() if name not in left_out]
         if not wanted and self._clock is not None:
             own.append(self._clock)  # who follows it needs it from the start

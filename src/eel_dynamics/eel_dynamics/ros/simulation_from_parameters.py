@@ -3,19 +3,24 @@
 
 from eel_common.wording import shown
 
+from eel_dynamics.model.body.body import checked_body
 from eel_dynamics.model.body.text import body_of
 from eel_dynamics.model.fins.text import fins_from_text
 from eel_dynamics.model.flow.text import flow_from_text
 from eel_dynamics.model.robot.robot import Robot, robot_of
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.parameters import DynamicsParameters
+from eel_dynamics.sensors.sensor import SensorSettings
+from eel_dynamics.sensors.suite import check_settings, places_of
 from eel_dynamics.simulation.simulation import Simulation
 
+Sensors = tuple[SensorSettings, ...]
 
-def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene) -> Simulation:
+
+def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene, sensors: Sensors = ()) -> Simulation:
     """The simulation at t = 0, with the robot's own limits; `ValueError` names what does not fit."""
-    robot = robot_from_parameters(parameters)
-    own = robot is not None and robot.body is not None and parameters.body == DynamicsParameters.body
+    robot, places = robot_from_parameters(parameters), check_sensors(parameters, sensors)
+    own = has_own_body(robot, parameters)
     return Simulation(
         body=None if own else body_of(parameters.body),
         robot=robot,
@@ -30,7 +35,24 @@ def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene) -> 
         measure_error=parameters.estimate_error,
         flow=flow_from_text(parameters.flow),
         fins=fins_from_text(parameters.fins),
+        sensors=places,
     )
+
+
+def has_own_body(robot: Robot | None, parameters: DynamicsParameters) -> bool:
+    """Whether the robot's body is taken."""
+    return robot is not None and robot.body is not None and parameters.body == DynamicsParameters.body
+
+
+def check_sensors(parameters: DynamicsParameters, sensors: Sensors) -> tuple[float, ...]:
+    """The places [m] of the `sensors` that are on; `ValueError` names one that does not fit."""
+    if not any(each.rate for each in sensors):
+        return ()
+    robot = robot_from_parameters(parameters)
+    body = robot.body if robot is not None and has_own_body(robot, parameters) else body_of(parameters.body)
+    for each in sensors:
+        check_settings(each, checked_body(body), robot, parameters.rate)
+    return places_of(sensors)
 
 
 def robot_from_parameters(parameters: DynamicsParameters) -> Robot | None:

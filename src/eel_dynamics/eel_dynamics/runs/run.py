@@ -24,8 +24,8 @@ from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
 from eel_dynamics.runs.exchange.properties_of_run import properties_of_run
 from eel_dynamics.runs.exchange.recorded_run import fields_of_bag
 from eel_dynamics.runs.motions import SmoothingEffect, effect_of_smoothing
-from eel_dynamics.runs.run_data import RunData
 from eel_dynamics.runs.run_picture import picture_of_run
+from eel_dynamics.runs.sensed import SensedRun
 from eel_dynamics.runs.storage.netcdf import loaded, write
 from eel_dynamics.runs.storage.run_contents import contents_of_run, fields_of_run
 from eel_dynamics.runs.storage.tables import dataset_of, frame_of
@@ -39,7 +39,7 @@ MOST_UNSMOOTHED = 5_000.0  # evaluations per simulated second of a motion withou
 
 @documented_arrays("run")
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Run(RunData):
+class Run(SensedRun):
     """A run: T samples at M stations, in SI units. At rest the body lies along -x from the head; it swims towards +x.
 
     Two runs are equal where all their fields are, to the last bit. `energy` has one (T,) array per field; it is None

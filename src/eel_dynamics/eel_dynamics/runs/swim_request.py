@@ -155,10 +155,22 @@ def simulated_again(
 
     `ValueError` if it began later.
     """
+    request = request_again(run, law, accuracy, most_evaluations, finer, load)
+    return request.swim_to_end().in_axes(run.axes)
+
+
+def request_again(
+    run: Kind,
+    law: Law | SampledLaw,
+    accuracy: Accuracy,
+    most_evaluations: float = MOST_EVALUATIONS,
+    finer: int = 1,
+    load: bool = False,
+) -> SwimRequest[Kind]:
+    """The request of `simulated_again`."""
     if run.time[0] != 0.0:
         raise ValueError(f"run must begin at t = 0 to be simulated again, got {run.time[0]:g} s")
     setup = run.setup_at(0, run.x, accuracy, most_evaluations)
     sample_period = float(run.time[1] - run.time[0]) / finer if len(run.time) > 1 else 1.0
     load = load or run.fluid_force is not None
-    request = SwimRequest.of(type(run), law, setup, float(run.time[-1]), sample_period, load)
-    return request.swim_to_end().in_axes(run.axes)
+    return SwimRequest.of(type(run), law, setup, float(run.time[-1]), sample_period, load)

@@ -15,7 +15,15 @@ from eel_dynamics.model.body.panels import panels_of
 from eel_dynamics.model.fins.fins import Fin
 from eel_dynamics.model.inertia import check_inertia
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.model.section_data import SectionData, check_weight, core_swimmer, nose_of, sections_on, weight_time
+from eel_dynamics.model.section_data import (
+    SectionData,
+    check_weight,
+    core_swimmer,
+    nose_of,
+    sections_on,
+    weight_time,
+    with_sensors,
+)
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 
 
@@ -39,7 +47,7 @@ def discretise(setup: SimulationSetup, settings: GridSettings) -> Discretisation
     wrench = scene.internal_wrench or scene.ledger
     panels = panels_of(body, settings.resolution, settings.knots, wrench, settings.edges)
     further = b"" if setup.modes is None else setup.modes.points.tobytes()
-    return _on_panels(body, scene, panels, settings.kinks, setup.x.tobytes(), further, setup.fins)
+    return _on_panels(body, scene, panels, settings.kinks, setup.x.tobytes(), further, setup.fins, setup.sensors)
 
 
 @lru_cache(maxsize=256)
@@ -51,18 +59,21 @@ def _on_panels(
     stations: bytes,
     further: bytes,
     fins: tuple[Fin, ...],
+    sensors: tuple[float, ...],
 ) -> Discretisation:
     """Many resolutions give the same `panels`: nodes fill blocks of eight.
 
     stations, further: the bytes of the arrays of their X [m]; the latter are points at which laws are tabulated too.
+    sensors [m]: X that rise.
     """
     x, grid = np.frombuffer(stations), Grid.of(panels)
     sections = sections_on(body, scene, grid)
     check_inertia(grid, sections, nose_of(body, scene)[0], body.length, scene.planar, body.offset)
     check_weight(body, scene, sections, grid.weight)
+    swimmer = core_swimmer(body, scene, grid, sections, x, kinks, fins, np.array(sensors))
+    x = with_sensors(x, np.array(sensors))
     nodes_before = np.searchsorted(grid.x, x, side="right")
     base = np.where(nodes_before > 0, grid.x[nodes_before - 1], 0.0)
-    swimmer = core_swimmer(body, scene, grid, sections, x, kinks, fins)
     tabulation = Tabulation(grid.x, grid.previous, x, base, np.frombuffer(further))
     mass, time = float(grid.weight @ sections.mass), weight_time(scene, sections, grid.weight, body.length)
     return Discretisation(grid, sections, swimmer, mass, time, tabulation)

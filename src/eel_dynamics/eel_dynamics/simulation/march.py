@@ -232,7 +232,7 @@ class March:
 
     def record(self, times: np.ndarray, wrench: bool, load: bool, look=None, enough=None) -> tuple:
         """As `Simulation.record`. enough(out, works): asked after each sample with the works so far, whether to end."""
-        out = Observations(len(times), len(self.setup.x), wrench, load, len(self.setup.fins))
+        out = Observations(len(times), len(self.setup.x), wrench, load, len(self.setup.fins), len(self.setup.sensors))
         works, done, status = np.zeros((len(times), len(WORKS))), 0, MARCHED
         rows = self._empty_rows(len(times))
         self.joints = joints = self._joints(rows)
@@ -286,7 +286,8 @@ class March:
         rows = self._empty_rows(1)
         ledger = (np.array(self.core.works), self.energy_at_start) if scene.ledger else None
         joints = self._joints(rows)
-        snapshot = Snapshot(self.time, self.setup.x, wrench, load, len(self.setup.fins), ledger, joints)
+        fins, sensors = len(self.setup.fins), len(self.setup.sensors)
+        snapshot = Snapshot(self.time, self.setup.x, wrench, load, fins, ledger, joints, sensors)
         if not self.core.observe(snapshot.whole, rows, wrench, load):
             raise self._stopped(SINGULAR)
         if self.setup.flow is not None and self.core.outside is not None:

@@ -46,8 +46,9 @@ Places = dict[str, tuple[slice, tuple[int, ...] | None]]  # of each quantity: wh
 class Observations:
     """Samples of a swimmer: T instants ("time"), M stations ("station"). World and head in REP-103 axes, SI units.
 
-    Section axes are the paper's. All quantities are views of `whole` (n,), where they lie one behind the other at their
-    `places`. A quantity that was not asked for has no instants.
+    Section axes are the paper's; those of a sensor are its section's, turned as the head's (x forward). All quantities
+    are views of `whole` (n,), where they lie one behind the other at their `places`. A quantity that was not asked for
+    has no instants.
     """
 
     __slots__ = ("places", "whole")
@@ -79,11 +80,26 @@ class Observations:
     )
     fin_angle = Observed("time fin", "rad", "angles of the fins")
     fin_force = Observed("time fin section", "N", "force of the water on each fin, axes of its section")
+    sensor_position = Observed("time sensor world", "m", "sensors, world")
+    sensor_orientation = Observed("time sensor quaternion", "1", "world from sensor, x y z w")
+    sensor_twist = Observed("time sensor component", "rad/s, m/s", "(Omega, V) of each sensor over ground, its axes")
+    sensor_acceleration = Observed(
+        "time sensor component", "rad/s^2, m/s^2", "angular and true acceleration of each sensor, its axes"
+    )
+    sensor_water = Observed("time sensor world", "m/s", "velocity of the water there over ground, the sensor's axes")
 
-    def __init__(self, samples: int | None, stations: int, wrench: bool = True, load: bool = True, fins: int = 0):
+    def __init__(
+        self,
+        samples: int | None,
+        stations: int,
+        wrench: bool = True,
+        load: bool = True,
+        fins: int = 0,
+        sensors: int = 0,
+    ):
         """Space for `samples` instants at `stations` stations, and if wanted for the internal wrench and the water's
         load. samples: None for one instant."""
-        self.places, size = places_of(samples, stations, bool(wrench), bool(load), fins)
+        self.places, size = places_of(samples, stations, bool(wrench), bool(load), fins, sensors)
         self.whole = np.zeros(size)
 
     def __eq__(self, other: object) -> bool:
@@ -103,13 +119,14 @@ OBSERVED = {name: each.variable for name, each in vars(Observations).items() if 
 WRENCH = ("torque", "force", "closure_torque", "closure_force")  # of the internal wrench, as a run has it
 LOAD = ("fluid_force", "resistive_force", "tail_force", "nose_force", "wake_momentum_rate")  # of the water's load
 FINS = ("fin_angle", "fin_force")
+SENSORS = tuple(name for name in OBSERVED if name.startswith("sensor_"))
 
 
 class Snapshot(Observations):
     """One instant: the quantities have no dimension "time", and are None where they were not asked for.
 
     The arrays are views: copy what is to be kept. ledger: the works (6,) [J] since the start, and the energy [J] there.
-    joints: the `JointMotion` of the instant.
+    joints: the `JointMotion` of the instant. sensors: how many there are.
 
     Attributes:
         time: [s].
@@ -127,8 +144,9 @@ class Snapshot(Observations):
         fins: int = 0,
         ledger: tuple[np.ndarray, float] | None = None,
         joints: Any = None,
+        sensors: int = 0,
     ):
-        super().__init__(None, len(x), wrench, load, fins)
+        super().__init__(None, len(x), wrench, load, fins, sensors)
         self.time, self.x, self._joints = time, x, joints
         self._ledger = ledger
         self._energy: EnergyLedger | None = None
@@ -163,14 +181,16 @@ class Snapshot(Observations):
 
 
 @lru_cache(maxsize=64)
-def places_of(samples: int | None, stations: int, wrench: bool, load: bool, fins: int = 0) -> tuple[Places, int]:
+def places_of(
+    samples: int | None, stations: int, wrench: bool, load: bool, fins: int = 0, sensors: int = 0
+) -> tuple[Places, int]:
     """The places of all quantities, and how many numbers these hold."""
     places: Places = {}
     end = 0
     for name, (begin, instants, numbers, of) in eel_core.layout(
-        1 if samples is None else samples, stations, wrench, load, fins
+        1 if samples is None else samples, stations, wrench, load, fins, sensors
     ).items():
-        shape = (*((), (stations,), (fins,))[of], *(() if name == "fin_angle" else (numbers,)))
+        shape = (*((), (stations,), (fins,), (sensors,))[of], *(() if name == "fin_angle" else (numbers,)))
         end = begin + instants * math.prod(shape)
         places[name] = slice(begin, end), (instants, *shape) if samples is not None else shape if instants else None
     return places, end

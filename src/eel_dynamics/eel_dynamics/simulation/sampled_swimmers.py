@@ -148,7 +148,7 @@ class SampledSwimmers:
         wrench, load = bool(wrench and self.setup.scene.internal_wrench), bool(load)
         time, works, _ = self._marches.present(index)
         ledger = (np.array(works), float(self._energy_at_start[index])) if self.setup.scene.ledger else None
-        snapshot = Snapshot(time, self.setup.x, wrench, load, ledger=ledger)
+        snapshot = Snapshot(time, self.setup.x, wrench, load, ledger=ledger, sensors=len(self.setup.sensors))
         if not self._marches.observe(index, snapshot.whole, wrench, load):
             raise self._stopped(index, SINGULAR)
         return snapshot

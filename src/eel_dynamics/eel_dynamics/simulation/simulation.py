@@ -56,6 +56,8 @@ class Simulation(Present):
         flow: how the water moves by itself, beside the scene's current; None: not at all.
         robot: what bends by itself. The law then is what its servos are asked to follow; None: the law is imposed.
         fins: a list of `Fin`, and of pairs of them; None: none.
+        sensors: X (S,) [m] of the stations that move sensors (`Snapshot.sensor_twist` and others), rising or not; a
+            snapshot has them in rising order, each once.
     """
 
     def __init__(
@@ -74,6 +76,7 @@ class Simulation(Present):
         flow: Flow | None = None,
         robot: Robot | None = None,
         fins: Iterable[Any] | None = None,
+        sensors: ArrayLike = (),
     ) -> None:
         self._setup = setup = SimulationSetup.of(
             body=body,
@@ -86,6 +89,7 @@ class Simulation(Present):
             flow=flow,
             robot=robot,
             fins=fins,
+            sensors=sensors,
             most_evaluations=most_evaluations,
             default_transition=default_transition,
         )

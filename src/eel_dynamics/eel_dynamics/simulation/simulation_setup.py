@@ -45,6 +45,7 @@ class SimulationSetup(EqualByFields):
     flow: Flow | None
     robot: Robot | None
     fins: tuple[Fin, ...]
+    sensors: tuple[float, ...] = ()  # m, X of those that are observed, rising
     until: float = 0.0  # s, up to which functions of time are looked at beforehand; 0: they are not
 
     @staticmethod
@@ -60,6 +61,7 @@ class SimulationSetup(EqualByFields):
         flow=None,
         robot=None,
         fins=None,
+        sensors=(),
         most_evaluations=MOST_EVALUATIONS,
         default_transition=DEFAULT_TRANSITION,
     ) -> "SimulationSetup":
@@ -73,7 +75,8 @@ class SimulationSetup(EqualByFields):
             mode_table(robot, body, bool(scene.planar))
         most_evaluations = positive("most_evaluations", most_evaluations, "per simulated second")
         transition = positive("default_transition", default_transition, "s")
-        return SimulationSetup(body, scene, accuracy, x, start, transition, most_evaluations, flow, robot, fins)
+        where = checked_sensors(sensors, body.length)
+        return SimulationSetup(body, scene, accuracy, x, start, transition, most_evaluations, flow, robot, fins, where)
 
     def starting(self, position, orientation, twist, flow) -> "SimulationSetup":
         """The same from another start, in other water. `ValueError` as of `of`."""
@@ -89,7 +92,9 @@ class SimulationSetup(EqualByFields):
         return changed
 
     def __hash__(self) -> int:  # type: ignore[override]
-        return hash((self.body, self.scene, self.accuracy, self.x.tobytes(), self.flow, self.robot, self.fins))
+        return hash(
+            (self.body, self.scene, self.accuracy, self.x.tobytes(), self.flow, self.robot, self.fins, self.sensors)
+        )
 
     def __deepcopy__(self, memo: dict) -> "SimulationSetup":
         return self
@@ -212,6 +217,15 @@ def checked_stations(stations, length: float) -> np.ndarray:
     if len(x) < 1 or np.any(np.diff(x) <= 0.0) or x[0] < 0.0 or x[-1] > length * (1 + 1e-12):
         raise ValueError(f"stations must rise within 0 to {length} m, got {shown(stations)}")
     return np.minimum(x, length)
+
+
+def checked_sensors(places: Any, length: float) -> tuple[float, ...]:
+    """X [m] of sensors, rising and each once, from those `places`. `ValueError` for one outside 0 to `length` [m]."""
+    x = checked_row("sensors", places, None)
+    for each in x:
+        if not 0.0 <= each <= length * (1 + 1e-12):
+            raise ValueError(f"sensors must lie within 0 to {length:g} m, got {each:g} m")
+    return tuple(np.unique(np.minimum(x, length)).tolist())
 
 
 def check_planar_law(law: Law | SampledLaw, scene: Scene) -> None:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an instant shows: pose, velocities, energies, and profiles along the body at the stations.
+// What an instant shows: pose, velocities, energies, profiles along the body at the stations, and what moves sensors.
 //
 // The fields go on from the nodes to the stations by the integrals that made them, so a profile is as exact as the run.
 // What is in the axes of the world or of the head is turned into those of the outside (axes.hpp).
@@ -18,6 +18,7 @@ struct StationWork {
     {
         const std::size_t n = blocks_of(swimmer.stations);
         frame = Field<Frame3<double>>(n), curvature = Field<Vector2<double>>(n), base = Field<Quaternion<double>>(n);
+        turn = Field<Quaternion<double>>(swimmer.sensors() > 0 ? n : 0);
         position = omega = velocity = relative = Field<Vector3<double>>(n);
         angular_acceleration = linear_acceleration = Field<Vector3<double>>(n);
         integral = Field<Wrench<Space, double>>(n);
@@ -27,6 +28,7 @@ struct StationWork {
 
     Field<Frame3<double>> frame;
     Field<Quaternion<double>> base;  // of the node before
+    Field<Quaternion<double>> turn;  // of the station, where there are sensors
     Field<Vector2<double>> curvature;
     Field<Vector3<double>> position, omega, velocity, angular_acceleration, linear_acceleration;
     FlowValues<Space> flow;                 // where the water moves by itself
@@ -89,21 +91,24 @@ class Observer {
         show_energies_and_closure(work);
         if (profiles_.fins > 0) show_fins(work);
         place_stations(law, y, work, here);
-        if (profiles_.wrench || profiles_.load) {
-            find_velocities(work, here);
+        const bool all = profiles_.wrench || profiles_.load, sensed = profiles_.sensors > 0;
+        if (all || sensed) {
+            const std::size_t begin = all ? 0 : first_sensor_block() / FromNose::parts;
+            find_velocities(begin, work, here);
             if (work.flowing) find_flow(water, time, y, work, here);
         }
         if (profiles_.wrench) show_internal_wrench(work, here);
-        if (profiles_.load) {
-            find_accelerations_there(law, work, here);
-            work.flowing ? show_loads<true>(work, here) : show_loads<false>(work, here);
-        }
+        if (profiles_.load || sensed)
+            find_accelerations_there(profiles_.load ? 0 : first_sensor_block() / FromNose::parts, law, work, here);
+        if (profiles_.load) work.flowing ? show_loads<true>(work, here) : show_loads<false>(work, here);
+        if (sensed) show_sensors(y, water.current, work, here);
         return true;
     }
 
   private:
     double* at(Profiles::Quantity quantity) const { return profiles_.at(whole_, quantity, sample_); }
     std::size_t blocks() const { return blocks_of(swimmer_.stations); }
+    std::size_t first_sensor_block() const { return swimmer_.first_sensor() / width; }
 
     void show_head(const State& y, const Vector3<double>& current, const Workspace<Space>& work) const
     {
@@ -159,6 +164,7 @@ class Observer {
             const Vector2<Lanes> rate = law.combine_both(law.tables->station, work.factor, 1, k);
             const Quaternion<Lanes> turn = here.base[k] * law.turn(law.tables->station_moments, work.factor, k);
             here.frame.store(k, turn.frame());
+            if (profiles_.sensors > 0) here.turn.store(k, turn);
             here.curvature.store(k, curvature);
             show(Profiles::backbone, k, half_turn(nose + work.head.parent(here.position[k])));
             show(Profiles::section_orientation, k, half_turn(head_turn * turn));
@@ -168,14 +174,15 @@ class Observer {
     }
 
     // True velocities at the stations, relative to the water.
-    void find_velocities(Workspace<Space>& work, StationWork& here) const
+    // From the stretch `begin` of the stations on.
+    void find_velocities(std::size_t begin, Workspace<Space>& work, StationWork& here) const
     {
         for (std::size_t k = 0; k < swimmer_.grid.blocks; ++k) {
             const Frame3<Lanes> frame = work.frame[k];
             work.integrand.store(k, {turning(frame, work.curvature_rate[k]), cross(work.omega[k], frame.t1())});
         }
-        swimmer_.to_station.integrate(work.integrand, 0, work.twist.angular, work.omega, here.omega);
-        swimmer_.to_station.integrate(work.integrand, 3, work.twist.linear, work.velocity, here.velocity);
+        swimmer_.to_station.integrate(work.integrand, 0, work.twist.angular, work.omega, here.omega, begin);
+        swimmer_.to_station.integrate(work.integrand, 3, work.twist.linear, work.velocity, here.velocity, begin);
     }
 
     EEL_CORE_APART void find_flow(const Water& water, double time, const State& y, const Workspace<Space>& work,
@@ -191,16 +198,42 @@ class Observer {
         return work.flowing ? here.relative : here.velocity;
     }
 
-    void find_accelerations_there(const LawOnGrid& law, Workspace<Space>& work, StationWork& here) const
+    void find_accelerations_there(std::size_t begin, const LawOnGrid& law, Workspace<Space>& work,
+                                  StationWork& here) const
     {
         for (std::size_t k = 0; k < swimmer_.grid.blocks; ++k)
             work.integrand.store(k, {angular_acceleration_slope(law, work, k),
                                      linear_acceleration_slope(work, work.acceleration.angular, k)});
         const Twist<Space, double>& head = work.head_acceleration;
         swimmer_.to_station.integrate(work.integrand, 0, head.angular, work.acceleration.angular,
-                                      here.angular_acceleration);
+                                      here.angular_acceleration, begin);
         swimmer_.to_station.integrate(work.integrand, 3, head.linear, work.acceleration.linear,
-                                      here.linear_acceleration);
+                                      here.linear_acceleration, begin);
+    }
+
+    // In axes of the sections, turned as the head's.
+    EEL_CORE_APART void show_sensors(const State& y, const Vector3<double>& current, const Workspace<Space>& work,
+                                     const StationWork& here) const
+    {
+        const Quaternion<Lanes> head_turn{y[3], y[4], y[5], y[6]};
+        const Vector3<double> nose{y[0], y[1], y[2]}, drift = work.head.local(current);
+        for (std::size_t k = first_sensor_block(); k < blocks(); ++k) {
+            const Frame3<Lanes> frame = here.frame[k];
+            const auto show_two = [&](Profiles::Quantity quantity, Vector3<Lanes> angular, Vector3<Lanes> linear) {
+                sense(quantity, k,
+                      Spatial<Space, Lanes>{half_turn(frame.local(angular)), half_turn(frame.local(linear))});
+            };
+            const Vector3<Lanes> water = (work.flowing ? here.flow[k].u : Vector3<Lanes>{}) + drift;
+            sense(Profiles::sensor_position, k, half_turn(nose + work.head.parent(here.position[k])));
+            sense(Profiles::sensor_orientation, k, half_turn(head_turn * here.turn[k]));
+            show_two(Profiles::sensor_twist, here.omega[k], here.velocity[k] + drift);
+            show_two(Profiles::sensor_acceleration, here.angular_acceleration[k], here.linear_acceleration[k]);
+            sense(Profiles::sensor_water, k, half_turn(frame.local(water)));
+        }
+    }
+    void sense(Profiles::Quantity quantity, std::size_t block, const auto& value) const
+    {
+        put(value, block - first_sensor_block(), profiles_.sensors, at(quantity));
     }
 
     void show_internal_wrench(Workspace<Space>& work, StationWork& here) const
@@ -290,7 +323,7 @@ class Observer {
 
     void show(Profiles::Quantity quantity, std::size_t block, const auto& value) const
     {
-        put(value, block, swimmer_.stations, at(quantity));
+        put(value, block, swimmer_.shown, at(quantity));
     }
 
     const Swimmer& swimmer_;

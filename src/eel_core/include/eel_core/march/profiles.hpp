@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the numbers of samples lie: T instants, M stations, one block of doubles for each quantity, all in one array.
+// Where the numbers of samples lie: T instants, M stations, S sensors, one block of doubles for each quantity, all in
+// one array.
 #pragma once
 
 #include <span>
@@ -32,17 +33,28 @@ struct Profiles {
         wake_momentum_rate,  // (T, 3) N, axes of the tail's section: momentum given to the wake per time
         fin_angle,           // (T, F) rad
         fin_force,           // (T, F, 3) N, of the water on each fin, axes of its section
+        sensor_position,     // (T, S, 3) m, world
+        sensor_orientation,  // (T, S, 4) x y z w, world from section
+        sensor_twist,  // (T, S, 6) rad/s, m/s, over ground; as the next two in axes of the section, as REP-103 has
+        sensor_acceleration,  // (T, S, 6) rad/s^2, m/s^2, angular and true acceleration
+        sensor_water,         // (T, S, 3) m/s, velocity of the water over ground, without the swimmer
         quantities
     };
-    static constexpr std::size_t width_of[quantities] = {3, 4, 6, 6, 3, 3, 7, 2, 3, 4, 3, 3, 3, 3, 3, 3, 3, 3, 3, 1, 3};
+    static constexpr std::size_t width_of[quantities] = {3, 4, 6, 6, 3, 3, 7, 2, 3, 4, 3, 3, 3,
+                                                         3, 3, 3, 3, 3, 3, 1, 3, 3, 4, 6, 6, 3};
 
-    std::size_t samples, stations, fins;
+    std::size_t samples, stations, fins, sensors;
     bool wrench, load;
     std::size_t begin[quantities + 1];  // of each quantity in the array; the last: its size
 
     Profiles(std::size_t instants_wanted, std::size_t points, bool wrench_wanted, bool load_wanted,
-             std::size_t fin_count = 0)
-        : samples(instants_wanted), stations(points), fins(fin_count), wrench(wrench_wanted), load(load_wanted)
+             std::size_t fin_count = 0, std::size_t sensor_count = 0)
+        : samples(instants_wanted),
+          stations(points),
+          fins(fin_count),
+          sensors(sensor_count),
+          wrench(wrench_wanted),
+          load(load_wanted)
     {
         begin[0] = 0;
         for (std::size_t q = 0; q < quantities; ++q) begin[q + 1] = begin[q] + instants(q) * numbers(q);
@@ -50,9 +62,11 @@ struct Profiles {
 
     bool along_body(std::size_t q) const { return backbone <= q && q <= resistive_force; }
     bool of_fins(std::size_t q) const { return q == fin_angle || q == fin_force; }
+    bool of_sensors(std::size_t q) const { return sensor_position <= q && q < quantities; }
     std::size_t instants(std::size_t q) const
     {
         if (of_fins(q)) return fins > 0 ? samples : 0;
+        if (of_sensors(q)) return sensors > 0 ? samples : 0;
         if (q == torque || q == force) return wrench ? samples : 0;
         if (q == fluid_force || q == resistive_force) return load ? samples : 0;
         return samples;
@@ -60,7 +74,7 @@ struct Profiles {
     // Of one instant.
     std::size_t numbers(std::size_t q) const
     {
-        return width_of[q] * (along_body(q) ? stations : of_fins(q) ? fins : 1);
+        return width_of[q] * (along_body(q) ? stations : of_fins(q) ? fins : of_sensors(q) ? sensors : 1);
     }
 
     double* at(double* whole, Quantity q, std::size_t sample) const { return whole + begin[q] + sample * numbers(q); }

@@ -56,6 +56,8 @@ struct Swimmer {
 
     // Where profiles are given:
     std::size_t stations = 0;
+    std::size_t shown =
+        0;  // the first so many, of which profiles are given; then, from `first_sensor` on, the sensors'
     Sections at_station;
     Row added2_slope, added3_slope, added_roll_slope;  // derivatives by X
     std::vector<std::size_t> nodes_before;             // how many nodes lie at or before the station
@@ -63,6 +65,10 @@ struct Swimmer {
     // For each `SectionPart`: what the sum of `to_station` over a station's own panel misses of its integral. Empty
     // where the sections are as smooth as the motion.
     std::vector<FromNose> missed;
+
+    // A stretch of `to_station` holds stations that rise: the sensors begin one.
+    std::size_t first_sensor() const { return blocks_of(shown) * width; }
+    std::size_t sensors() const { return stations > shown ? stations - first_sensor() : 0; }
 };
 
 }  // namespace eel_core

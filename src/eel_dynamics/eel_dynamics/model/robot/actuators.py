@@ -44,6 +44,9 @@ class Servo(Quantities):
         None, "N m/rad", "of the spring between gear and joint; None: stiff", 0.0, exclusive=True
     )
     series_damping: float = quantity(0.0, "N m s/rad", "of that spring", 0.0)
+    torque_constant: float | None = quantity(
+        None, "N m/A", "torque of the rotor by its current, ahead of the gear; None: not known", 0.0, exclusive=True
+    )
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -133,6 +136,12 @@ def most_torque(servos: Sequence[Servo | None], torque: np.ndarray, power: np.nd
     along = np.divide(power, np.abs(torque), out=np.zeros(torque.shape), where=torque != 0.0)  # rate along the torque
     left = np.clip(1.0 - along / fastest, 0.0, 1.0)
     return np.asarray(np.multiply(limit, left, out=np.full(torque.shape, np.inf), where=np.isfinite(limit)))
+
+
+def current_by_torque(servos: Sequence[Servo | None]) -> np.ndarray:
+    """Current of motors (J,) by their torque at the joint [A/(N m)]; NaN where no torque constant is known."""
+    constants = [each and each.torque_constant and 1.0 / (each.gear * each.torque_constant) for each in servos]
+    return np.array([np.nan if each is None else each for each in constants], dtype=float)
 
 
 def at_limit(servos: Sequence[Servo | None], torque: np.ndarray, power: np.ndarray) -> np.ndarray:

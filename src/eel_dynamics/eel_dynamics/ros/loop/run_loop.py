@@ -26,7 +26,7 @@ from eel_common.wording import one_line
 from eel_gaits.laws.law import Law
 
 from eel_dynamics.ros.curvature_inbox import CurvatureInbox
-from eel_dynamics.ros.declaration import Declaration
+from eel_dynamics.ros.declaration import Declaration, Sensors
 from eel_dynamics.ros.loop.awaited import MESSAGES
 from eel_dynamics.ros.loop.command_queue import STAND_IN, CommandQueue
 from eel_dynamics.ros.loop.inputs import Inputs
@@ -285,10 +285,15 @@ class RunLoop:
         self._simulation.set_state(position, orientation, twist)
         self.output.change_state()
 
-    def reset(self, simulation: Simulation | None = None, values: DynamicsParameters | None = None) -> None:
+    def reset(
+        self,
+        simulation: Simulation | None = None,
+        values: DynamicsParameters | None = None,
+        sensors: Sensors = (),
+    ) -> None:
         """Reset state and time to the start; the law stays. `ValueError` if it cannot begin.
 
-        simulation, values: of a new run, with other parameters.
+        simulation, values, sensors: of a new run, with other parameters.
         """
         law = self._simulation.law
         try:
@@ -301,7 +306,7 @@ class RunLoop:
             raise
         self.gate.end_steps(self.time, "the run was reset")
         if simulation is not None and values is not None:
-            self._parameters.begin(values, simulation.scene)
+            self._parameters.begin(values, simulation.scene, sensors)
             self._publishers.begin(simulation)
             self._simulation = self.gate.simulation = self.laws.simulation = simulation
             self.servo_limit.begin(simulation)

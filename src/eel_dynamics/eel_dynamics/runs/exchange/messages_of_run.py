@@ -11,7 +11,7 @@ from eel_common.topics import ENERGY_FIELDS
 from eel_dynamics.model.body.body import Body
 from eel_dynamics.model.fins.fins import SIDES, Fin
 from eel_dynamics.model.flow.flow import lattice_around, velocities_at
-from eel_dynamics.model.robot.actuators import most_torque
+from eel_dynamics.model.robot.actuators import current_by_torque, most_torque
 from eel_dynamics.model.robot.joint_signs import message_signs, sense_of
 from eel_dynamics.model.robot.part import AXES
 from eel_dynamics.model.robot.robot import Robot
@@ -114,7 +114,9 @@ def _besides(run: RunData, k: int, topic: str) -> dict[str, Any]:
         names = {"name": [joint.name for joint in run.robot.joints]}
         if topic == "joint_states" or run.motor_torque is None or run.motor_power is None:
             return names
-        return names | {"limit": most_torque(run.robot.servos, run.motor_torque[k], run.motor_power[k])}
+        servos, torque = run.robot.servos, run.motor_torque[k]
+        current = message_signs(run.robot) * current_by_torque(servos) * torque
+        return names | {"limit": most_torque(servos, torque, run.motor_power[k]), "current": current}
     profile = {"x": run.x} if topic in PROFILES else {}
     return profile | ({"fin_name": [fin.name for fin in run.fins]} if topic == "hydrodynamic_load" else {})
 

@@ -14,7 +14,7 @@ import numpy as np
 from eel_dynamics.model.axes import REP103
 from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS, OF_LEDGER, JointMotion
 from eel_dynamics.simulation.energy import EnergyLedger
-from eel_dynamics.simulation.observations import FINS, LOAD, OBSERVED, WRENCH, Observations, Variable
+from eel_dynamics.simulation.observations import FINS, LOAD, OBSERVED, SENSORS, WRENCH, Observations, Variable
 
 Kind = TypeVar("Kind", bound=type)
 
@@ -28,7 +28,7 @@ SIZES = {"time": "T", "station": "M", "swimmer": "B", "fin": "F", "joint": "J", 
 OWN = {  # of a run itself
     "time": Variable(("time",), "s", "time"),
     "x": Variable(("station",), "m", "stations of the profiles, from the nose"),
-    **{name: each for name, each in OBSERVED.items() if name not in ("energies", "powers", "closure")},
+    **{name: each for name, each in OBSERVED.items() if name not in ("energies", "powers", "closure", *SENSORS)},
     "closure_torque": Variable(("time",), "N m", "magnitude of the internal torque left over at the nose"),
     "closure_force": Variable(("time",), "N", "magnitude of the internal force left over at the nose, less its load"),
     **JOINT_ARRAYS,
@@ -87,7 +87,7 @@ def arrays_of(
     out, works (T, 7) [J], start [J]: what was observed, the works since the start and the energy there. joints: the
     motion of a robot's. done: the first so many of the instants.
     """
-    arrays = {name: array[:done] for name, array in out.arrays().items()}
+    arrays = {name: array[:done] for name, array in out.arrays().items() if name not in SENSORS}
     energies, powers, closure = (arrays.pop(name) for name in ("energies", "powers", "closure"))
     arrays |= {"closure_torque": closure[:, 0], "closure_force": closure[:, 1]}
     for first, *others in (WRENCH, LOAD, FINS):

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Messages of sensors, and the frames where these sit.
+
+imu, pressure, depth, velocity, joint_states and motor_states come at the sensor's rate, with the first sample once
+their latency is over; their stamp is the time of the reading. Each sensor at a station has a frame NAME_link below the
+head's: on /tf_static where the body ahead of it is rigid, else on /tf with each sample.
+"""
+
+import heapq
+from collections.abc import Callable, Iterator
+from itertools import count
+from typing import Any
+
+import numpy as np
+from eel_common.attitude import world_from_body
+from eel_common.ros.headers import frame_in
+from eel_common.ros.loop.serialised_message import SerialisedMessage
+from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped, TwistWithCovarianceStamped
+from tf2_msgs.msg import TFMessage
+
+from eel_dynamics.model.robot.actuators import most_torque
+from eel_dynamics.ros.parameters import DynamicsParameters
+from eel_dynamics.model.robot.joint_signs import message_signs
+from eel_dynamics.sensors.encoders import Encoders, JointReadings
+from eel_dynamics.sensors.imu import Imu, ImuReadings
+from eel_dynamics.sensors.pressure import Pressure, PressureReadings
+from eel_dynamics.sensors.sensor import Surroundings
+from eel_dynamics.sensors.suite import SensorSuite
+from eel_dynamics.sensors.velocity import VelocityReadings
+from eel_dynamics.simulation.observations import Snapshot
+from eel_dynamics.simulation.simulation import Simulation
+
+FRAMES = "sensor_frames"  # of messages on /tf
+NOT_MEASURED = 1e6  # variance, in SI units, of a number that a message has and the sensor does not tell
+SECOND = 1_000_000_000  # ns
+
+
+class SensorMessages:
+    """The messages of the sensors of a `simulation` with these `settings`.
+
+    Attributes:
+        kinds: message type by topic, and of `FRAMES` where sensors move relative to the head.
+        static: frames that do not move, for /tf_static.
+    """
+
+    def __init__(self, settings: tuple[Any, ...], simulation: Simulation, parameters: DynamicsParameters) -> None:
+        self._simulation, self._suite = simulation, SensorSuite(settings, simulation)
+        self._around = Surroundings.of(simulation.scene, simulation.flow)
+        self._due: list[tuple[int, int, str, bytes]] = []  # a heap: when [ns], count, topic, message
+        self._count = count()
+        self._messages: dict[str, SerialisedMessage] = {}
+        self.static: list[TransformStamped] = []
+        moving: list[TransformStamped] = []
+        rigid = rigid_until(simulation) if self._suite.sensors else 0.0
+        self._places: list[int] = []  # of the moving ones, in a snapshot
+        space = parameters.head_frame.rpartition("/")[0]
+        for name, sensor in self._suite.sensors.items():
+            frame = frame_in(space, f"{name}_link")
+            made = _messages_of(name, sensor.settings, simulation, frame, parameters.world_frame)
+            self._messages |= {topic: SerialisedMessage(message) for topic, message in made.items()}
+            if isinstance(sensor.settings, Encoders):
+                continue
+            transform = TransformStamped(child_frame_id=frame)
+            transform.header.frame_id = parameters.head_frame
+            transform.transform.translation.x = 0.0 - sensor.station
+            (self.static if sensor.station <= rigid else moving).append(transform)
+            if sensor.station > rigid:
+                self._places.append(simulation.setup.sensors.index(sensor.station))
+        if moving:
+            self._messages[FRAMES] = SerialisedMessage(TFMessage(transforms=moving))
+        self.kinds: dict[str, Any] = {topic: message.kind for topic, message in self._messages.items()}
+
+    def due(self, snapshot: Snapshot, nanoseconds: int) -> Iterator[tuple[str, bytes]]:
+        """Topic and message of all that is due at a sample [ns]. It must be given each sample; 0 begins anew."""
+        if not self._messages:
+            return
+        if nanoseconds == 0:
+            self._suite.begin()
+            self._due.clear()
+        for name, readings in self._suite.read(snapshot).items():
+            late = round(self._suite.sensors[name].settings.latency * SECOND)
+            for topic in _FILL[type(readings)](self, name, readings, snapshot):
+                entry = nanoseconds + late, next(self._count), topic, self._sealed(topic, nanoseconds)
+                heapq.heappush(self._due, entry)
+        while self._due and self._due[0][0] <= nanoseconds:
+            yield heapq.heappop(self._due)[2:]
+        if FRAMES in self._messages:
+            self._fill_frames(snapshot)
+            yield FRAMES, self._sealed(FRAMES, nanoseconds)
+
+    def _sealed(self, topic: str, nanoseconds: int) -> bytes:
+        message = self._messages[topic]
+        for stamp in message.stamps:
+            stamp[:] = divmod(nanoseconds, SECOND)
+        return message.data()
+
+    def _fill_imu(self, name: str, readings: ImuReadings, snapshot: Snapshot) -> tuple[str, ...]:
+        numbers = self._messages[name].numbers
+        numbers["linear_acceleration"][:] = readings.specific_force[0]
+        numbers["angular_velocity"][:] = readings.angular_velocity[0]
+        if readings.orientation is not None:
+            numbers["orientation"][:] = readings.orientation[0]
+        return (name,)
+
+    def _fill_pressure(self, name: str, readings: PressureReadings, snapshot: Snapshot) -> tuple[str, ...]:
+        depth = name.replace("pressure", "depth")
+        self._messages[name].numbers[""][0] = readings.pressure[0]
+        self._messages[depth].numbers["pose.pose.position"][2] = self._around.surface - readings.depth[0]
+        return name, depth
+
+    def _fill_velocity(self, name: str, readings: VelocityReadings, snapshot: Snapshot) -> tuple[str, ...]:
+        self._messages[name].numbers["twist.twist.linear"][:] = readings.velocity[0]
+        return (name,)
+
+    def _fill_joints(self, name: str, readings: JointReadings, snapshot: Snapshot) -> tuple[str, ...]:
+        states, motors = (self._messages[topic].numbers for topic in ("joint_states", "motor_states"))
+        torque, power = snapshot.joints["motor_torque"], snapshot.joints["motor_power"]
+        robot = self._simulation.robot
+        assert robot is not None
+        signed = readings.angle[0], readings.rate[0], snapshot.joints["joint_torque"], torque, readings.current[0]
+        fields = *(states[name] for name in ("position", "velocity", "effort")), motors["torque"], motors["current"]
+        for field, values in zip(fields, signed, strict=True):
+            field[:] = message_signs(robot) * values + 0.0  # no minus zeros
+        motors["power"][:], motors["limit"][:] = power, most_torque(robot.servos, torque, power)
+        return "joint_states", "motor_states"
+
+    def _fill_frames(self, snapshot: Snapshot) -> None:
+        """From the head to each sensor."""
+        head, numbers = world_from_body(snapshot.orientation), self._messages[FRAMES].numbers
+        x, y, z, w = snapshot.orientation
+        inverse = np.array([[w, z, -y, -x], [-z, w, x, -y], [y, -x, w, -z], [x, y, z, w]])  # times a quaternion
+        for k, place in enumerate(self._places):
+            numbers[f"transforms[{k}].transform.translation"][:] = (
+                snapshot.sensor_position[place] - snapshot.position
+            ) @ head
+            numbers[f"transforms[{k}].transform.rotation"][:] = inverse @ snapshot.sensor_orientation[place]
+
+
+_FILL: dict[type, Callable[..., tuple[str, ...]]] = {
+    ImuReadings: SensorMessages._fill_imu,
+    PressureReadings: SensorMessages._fill_pressure,
+    VelocityReadings: SensorMessages._fill_velocity,
+    JointReadings: SensorMessages._fill_joints,
+}
+
+
+def rigid_until(simulation: Simulation) -> float:
+    """X [m] up to which the body is rigid with the head: 0, or up to the first part of a robot that bends."""
+    modes = simulation.setup.modes
+    if modes is None or not len(modes):
+        return 0.0
+    first = float(np.min(modes.start))
+    return 0.0 if modes.imposed(np.linspace(0.0, first, 9)[1:]).any() else first
+
+
+def _messages_of(name: str, settings: Any, simulation: Simulation, frame: str, world: str) -> dict[str, Any]:
+    """The messages of a sensor by topic, with all that does not change."""
+    from sensor_msgs.msg import FluidPressure, JointState  # here, for its package takes a tenth of the node's start
+    from sensor_msgs.msg import Imu as ImuMessage
+
+    from eel_msgs.msg import MotorStates
+
+    variance = np.square(settings.spread(1).noise)
+    if isinstance(settings, Encoders):
+        assert simulation.robot is not None
+        zeros = [0.0] * len(simulation.robot.joints)
+        names = [joint.name for joint in simulation.robot.joints]
+        states = JointState(name=names, position=zeros, velocity=zeros, effort=zeros)
+        motors = MotorStates(name=names, torque=zeros, limit=zeros, power=zeros, current=zeros)
+        return {"joint_states": states, "motor_states": motors}
+    if isinstance(settings, Imu):
+        message = ImuMessage()
+        message.linear_acceleration_covariance, message.angular_velocity_covariance, message.orientation_covariance = (
+            np.diag(rows).ravel() for rows in variance.reshape(3, 3)
+        )
+        if not settings.orientation:
+            message.orientation_covariance[0] = -1.0
+        found = {name: (message, frame)}
+    elif isinstance(settings, Pressure):
+        weight = Surroundings.of(simulation.scene, None)
+        by_depth = 1.0 / (weight.density * weight.gravity) if weight.density else 0.0
+        place = PoseWithCovarianceStamped()
+        known = float(variance[0]) * by_depth**2
+        place.pose.covariance = np.diag([NOT_MEASURED, NOT_MEASURED, known, *[NOT_MEASURED] * 3]).ravel()
+        gauge = FluidPressure(variance=float(variance[0]))
+        found = {name: (gauge, frame), name.replace("pressure", "depth"): (place, world)}
+    else:
+        twist = TwistWithCovarianceStamped()
+        twist.twist.covariance = np.diag([*variance, *[NOT_MEASURED] * 3]).ravel()
+        found = {name: (twist, frame)}
+    for message, frame_id in found.values():
+        message.header.frame_id = frame_id
+    return {topic: message for topic, (message, _) in found.items()}

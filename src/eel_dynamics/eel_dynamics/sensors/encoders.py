@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a robot's joints tell: angle and speed by encoders, and the current of each motor.
+
+    current = torque / (gear * torque_constant)
+
+A motor without a torque constant tells NaN.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from eel_common.quantity import documented, quantity
+
+from eel_dynamics.sensors.noise import Spread
+from eel_dynamics.sensors.sensor import SensorSettings, Surroundings
+
+
+class JointReadings(NamedTuple):
+    """Readings, or true values, of the joints of a robot, each (N, J)."""
+
+    time: np.ndarray  # (N,) s
+    angle: np.ndarray  # rad
+    rate: np.ndarray  # rad/s
+    current: np.ndarray  # A, of the motors
+
+
+@documented
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Encoders(SensorSettings):
+    """Encoders and ammeters of all joints of a robot."""
+
+    what, number = "encoders", 4
+
+    resolution: float = quantity(0.0, "rad", "step of the angle that is told; 0: none", 0.0)
+    angle_noise: float = quantity(0.0, "rad", "standard deviation of a reading, before the step", 0.0)
+    angle_bias: float = quantity(0.0, "rad", "constant")
+    angle_walk: float = quantity(0.0, "rad/sqrt(s)", "standard deviation of the bias after 1 s", 0.0)
+    rate_noise: float = quantity(0.0, "rad/s", "standard deviation of a reading of the speed", 0.0)
+    current_noise: float = quantity(0.0, "A", "standard deviation of a reading", 0.0)
+    current_bias: float = quantity(0.0, "A", "constant")
+
+    def spread(self, joints: int) -> Spread:
+        return Spread.of(
+            (self.angle_noise, self.angle_bias, self.angle_walk, joints),
+            (self.rate_noise, 0.0, 0.0, joints),
+            (self.current_noise, self.current_bias, 0.0, joints),
+        )
+
+    def read(self, time: np.ndarray, motion: JointReadings, around: Surroundings, errors: np.ndarray) -> JointReadings:
+        of_angle, of_rate, of_current = np.split(errors, 3, axis=1)
+        angle, step = motion.angle + of_angle, self.resolution
+        if step:
+            angle = step * np.round(angle / step)
+        return JointReadings(time, angle, motion.rate + of_rate, motion.current + of_current)

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A pressure gauge, and the depth that follows from its reading.
+
+    p = p_surface + rho_f g depth,   depth = z_surface - z
+
+That is the hydrostatic pressure. What the motion adds is left out: stagnation, the body's own field (both of the order
+rho_f V^2 / 2, 0.5 kPa at 1 m/s or 5 cm of water) and waves. z_surface is that of the flow, or 0; the water of the
+model goes on above it, where the depth is negative.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from eel_common.quantity import documented, quantity
+
+from eel_dynamics.sensors.noise import Spread
+from eel_dynamics.sensors.sensor import Motion, StationedSettings, Surroundings
+
+
+class PressureReadings(NamedTuple):
+    """Readings of a pressure gauge, each (N,)."""
+
+    time: np.ndarray  # s
+    pressure: np.ndarray  # Pa
+    depth: np.ndarray  # m, below the surface
+
+
+@documented
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Pressure(StationedSettings):
+    """A pressure gauge."""
+
+    what, number = "pressure", 2
+
+    surface_pressure: float = quantity(101325.0, "Pa", "of the air on the water", 0.0)
+    noise: float = quantity(0.0, "Pa", "standard deviation of a reading", 0.0)
+    bias: float = quantity(0.0, "Pa", "constant")
+    walk: float = quantity(0.0, "Pa/sqrt(s)", "standard deviation of the bias after 1 s", 0.0)
+
+    def spread(self, joints: int) -> Spread:
+        return Spread.of((self.noise, self.bias, self.walk, 1))
+
+    def read(self, time: np.ndarray, motion: Motion, around: Surroundings, errors: np.ndarray) -> PressureReadings:
+        weight = around.density * around.gravity
+        gauge = weight * (around.surface - motion.position[:, 2]) + errors[:, 0]
+        depth = gauge / weight if weight else np.zeros_like(gauge)
+        return PressureReadings(time, self.surface_pressure + gauge, depth)

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What all sensors have in common: settings, the motion they feel, and the stream of their readings.
+
+A sensor sits on the backbone at a station X, in the frame of the section there, turned as the head's: x forward, y
+left, z up. The core finds its motion by the integrals that give all profiles (`show_sensors` in
+eel_core/march/observe.hpp): its acceleration is the true one, of head, turning and bending, and no difference in time.
+"""
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+from eel_common.quantity import Quantities, quantity
+
+from eel_dynamics.model.flow.flow import Flow
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.model.section_data import GRAVITY
+from eel_dynamics.sensors.noise import Errors, Spread
+from eel_dynamics.sensors.timing import Timing
+from eel_dynamics.simulation.observations import SENSORS, Observations, Snapshot
+
+
+class Motion(NamedTuple):
+    """The motion of one sensor at T instants, world and sensor axes, as of `Observations`."""
+
+    position: np.ndarray
+    orientation: np.ndarray
+    twist: np.ndarray
+    acceleration: np.ndarray
+    water: np.ndarray
+
+    @staticmethod
+    def of(seen: Observations, index: int) -> "Motion":
+        """Of the sensor number `index` in what was `seen`: the samples of a run, or the one of a snapshot."""
+        rows = (getattr(seen, name) for name in SENSORS)
+        return Motion(*(row[None, index] if isinstance(seen, Snapshot) else row[:, index] for row in rows))
+
+
+class Surroundings(NamedTuple):
+    """Density [kg/m^3] of the water, height [m] of its surface in the world, gravity [m/s^2]."""
+
+    density: float
+    surface: float
+    gravity: float = GRAVITY
+
+    @staticmethod
+    def of(scene: Scene, flow: Flow | None) -> "Surroundings":
+        """Those of a scene. The surface is that of the `flow`, if it has one; else z = 0."""
+        height = np.inf if flow is None else flow.traits.surface_height
+        return Surroundings(scene.fluid_density, float(height) if np.isfinite(height) else 0.0)
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class SensorSettings(Quantities):
+    """Settings of a kind of sensor. Immutable; `ValueError` names a field that does not fit."""
+
+    number: ClassVar[int]  # of the kind, for its seeds
+
+    rate: float = quantity(0.0, "Hz", "readings per simulated second, at samples of the run; 0: no such sensor", 0.0)
+    latency: float = quantity(0.0, "s", "from a reading, whose time its stamp is, to its message", 0.0, 60.0)
+    seed: int = quantity(0, "", "of the noise: the same gives the same readings to the last bit", 0, 2**31 - 1)
+
+    @abstractmethod
+    def spread(self, joints: int) -> Spread:
+        """Of the errors of a reading, on a robot with so many joints."""
+
+    @abstractmethod
+    def read(self, time: np.ndarray, motion: Any, around: Surroundings, errors: np.ndarray) -> Any:
+        """The readings at `time` (N,) [s], with these `errors` (N, n): a NamedTuple whose first field is their time."""
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class StationedSettings(SensorSettings):
+    """Settings of a kind of sensor that sits at stations."""
+
+    stations: tuple[float, ...] = quantity((0.0,), "m", "X of each, from the nose", any_length=True)
+
+
+class Sensor:
+    """One sensor of a kind at X = `station` [m], or on all of a robot's `joints`, which reads as time goes on."""
+
+    def __init__(self, settings: SensorSettings, around: Surroundings, station: float = 0.0, joints: int = 0):
+        self.settings, self.station, self._around, self._joints = settings, station, around, joints
+        self.begin()
+
+    def begin(self) -> None:
+        """Begin anew: the same readings follow."""
+        settings = self.settings
+        seed = settings.seed, settings.number, round(self.station * 1e9)
+        self._errors, self._timing = Errors(settings.spread(self._joints), seed), Timing(settings.rate)
+
+    def readings(self, times: np.ndarray, motion: Any) -> Any:
+        """The readings, N or none, at the next samples of a run. times (T,) [s], motion: of these samples."""
+        rows, gaps = self._timing.due(times)
+        here = motion if len(rows) == len(times) else type(motion)(*(each[rows] for each in motion))
+        return self.settings.read(times[rows], here, self._around, self._errors.draw(gaps))

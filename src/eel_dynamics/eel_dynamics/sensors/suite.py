@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: Apache-2.0
+"""All sensors of a swimmer by name, as its march goes on."""
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from eel_common.quantity import checked_instance
+
+from eel_dynamics.model.body.body import Body
+from eel_dynamics.model.robot.actuators import current_by_torque
+from eel_dynamics.model.robot.robot import Robot
+from eel_dynamics.sensors.encoders import Encoders, JointReadings
+from eel_dynamics.sensors.imu import Imu
+from eel_dynamics.sensors.pressure import Pressure
+from eel_dynamics.sensors.sensor import Motion, Sensor, SensorSettings, StationedSettings, Surroundings
+from eel_dynamics.sensors.timing import check_rate
+from eel_dynamics.sensors.velocity import Velocity
+from eel_dynamics.simulation.observations import Snapshot
+from eel_dynamics.simulation.simulation import Simulation
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
+
+KINDS: dict[str, type[SensorSettings]] = {"imu": Imu, "pressure": Pressure, "velocity": Velocity, "encoders": Encoders}
+
+
+class SensorSuite:
+    """The sensors on a `Simulation` that are on among the `settings`: `Imu`, `Pressure`, `Velocity`, `Encoders`.
+
+    `Simulation(sensors=)` must have their stations. `ValueError` for settings that do not fit the simulation.
+
+    Attributes:
+        sensors: `Sensor` by name: `imu`, `pressure`, `velocity`, `encoders`; `imu_1`, `imu_2` ... of several stations.
+    """
+
+    def __init__(self, settings: Iterable[SensorSettings], simulation: Simulation | SimulationSetup):
+        self.sensors: dict[str, Sensor] = {}
+        setup = simulation if isinstance(simulation, SimulationSetup) else simulation.setup
+        self._robot, places = setup.robot, setup.sensors
+        self._index: dict[str, int] = {}  # of those at stations, in a snapshot
+        for each in settings:
+            check_settings(each, setup.body, self._robot, math.inf)
+            if not each.rate:
+                continue
+            around = Surroundings.of(setup.scene, setup.flow)
+            if not isinstance(each, StationedSettings):
+                self.sensors[each.what] = Sensor(each, around, joints=len(self._robot.joints) if self._robot else 0)
+                continue
+            for k, station in enumerate(each.stations, start=1):
+                name = each.what if len(each.stations) == 1 else f"{each.what}_{k}"
+                if station not in places:
+                    raise ValueError(f"sensors of the simulation must have {station:g} m, for {name}, got {places}")
+                self.sensors[name], self._index[name] = Sensor(each, around, station), places.index(station)
+
+    def begin(self) -> None:
+        """Begin anew: the same readings follow."""
+        for sensor in self.sensors.values():
+            sensor.begin()
+
+    def read(self, snapshot: Snapshot) -> dict[str, Any]:
+        """The readings, one each, of the sensors that read at the `snapshot`, which follows the last one."""
+        time, found = np.array([snapshot.time]), {}
+        for name, sensor in self.sensors.items():
+            if name in self._index:
+                motion: Any = Motion.of(snapshot, self._index[name])
+            else:
+                joints = {of: row[None] for of, row in snapshot.joints.items()}
+                motion = joints_of(time, joints, self._robot)
+            readings = sensor.readings(time, motion)
+            if len(readings.time):
+                found[name] = readings
+        return found
+
+
+def places_of(settings: Iterable[SensorSettings]) -> tuple[float, ...]:
+    """X (S,) [m], rising, each once, of the sensors that are on."""
+    on_body = [each for each in settings if isinstance(each, StationedSettings) and each.rate]
+    return tuple(sorted({station for each in on_body for station in each.stations}))
+
+
+def joints_of(time: np.ndarray, arrays: dict[str, np.ndarray], robot: Robot | None) -> JointReadings:
+    """The true values of the joints of a `robot`, from the `arrays` (T, J) of a run or a snapshot by their names."""
+    by_torque = current_by_torque(robot.servos if robot else ())
+    return JointReadings(time, arrays["joint_angle"], arrays["joint_rate"], arrays["motor_torque"] * by_torque)
+
+
+def check_settings(settings: SensorSettings, body: Body, robot: Robot | None, rate: float) -> None:
+    """`ValueError` for `settings` of a sensor that is on and does not fit a swimmer, or samples at `rate` [Hz]."""
+    checked_instance("sensor", settings, SensorSettings)
+    if not settings.rate:
+        return
+    check_rate(f"{settings.what} rate", settings.rate, rate)
+    if isinstance(settings, Encoders) and (robot is None or not robot.joints):
+        raise ValueError("encoders need a robot with joints")
+    if isinstance(settings, StationedSettings):
+        for station in settings.stations:
+            if not 0.0 <= station <= body.length:
+                raise ValueError(f"{settings.what} stations must lie within 0 to {body.length:g} m, got {station:g} m")
+        if len(set(settings.stations)) < len(settings.stations):
+            raise ValueError(f"{settings.what} stations must differ, got {list(settings.stations)}")

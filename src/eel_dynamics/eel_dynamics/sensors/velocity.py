@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A velocity log: the sensor's velocity over ground, or through the water, in its own axes.
+
+Through the water is relative to the flow, current included, that there would be at the sensor without the swimmer.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from eel_common.quantity import documented, quantity
+
+from eel_dynamics.sensors.noise import Spread
+from eel_dynamics.sensors.sensor import Motion, StationedSettings, Surroundings
+
+
+class VelocityReadings(NamedTuple):
+    """Readings of a velocity log, in its axes."""
+
+    time: np.ndarray  # (N,) s
+    velocity: np.ndarray  # (N, 3) m/s
+
+
+@documented
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Velocity(StationedSettings):
+    """A velocity log, such as a Doppler log (DVL)."""
+
+    what, number = "velocity", 3
+
+    through_water: bool = quantity(False, "", "relative to the water; off: over ground")
+    noise: float = quantity(0.0, "m/s", "standard deviation of a reading", 0.0)
+    bias: tuple[float, float, float] = quantity((0.0, 0.0, 0.0), "m/s", "constant, along x, y, z")
+    walk: float = quantity(0.0, "m/s/sqrt(s)", "standard deviation of the bias after 1 s", 0.0)
+
+    def spread(self, joints: int) -> Spread:
+        return Spread.of((self.noise, self.bias, self.walk, 3))
+
+    def read(self, time: np.ndarray, motion: Motion, around: Surroundings, errors: np.ndarray) -> VelocityReadings:
+        moved = motion.twist[:, 3:] - motion.water if self.through_water else motion.twist[:, 3:]
+        return VelocityReadings(time, moved + errors)
