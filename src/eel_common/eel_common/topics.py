@@ -27,6 +27,10 @@ OWN = {  # relative names: below the swimmer's namespace
     "joint_commands": "sensor_msgs/msg/JointState",
     "fin_states": "sensor_msgs/msg/JointState",
     "motor_states": "eel_msgs/msg/MotorStates",
+    "imu": "sensor_msgs/msg/Imu",
+    "pressure": "sensor_msgs/msg/FluidPressure",
+    "depth": "geometry_msgs/msg/PoseWithCovarianceStamped",
+    "velocity": "geometry_msgs/msg/TwistWithCovarianceStamped",
     "body": "eel_msgs/msg/BodyGeometry",
     "curvature_law": "eel_msgs/msg/CurvatureLaw",
     "curvature_samples": "eel_msgs/msg/CurvatureSamples",
@@ -39,7 +43,8 @@ GLOBAL = {"/clock": "rosgraph_msgs/msg/Clock", DIAGNOSTICS: "diagnostic_msgs/msg
 LATCHED = ("body", "curvature_law", "goal")  # transient local
 INPUTS = ("curvature_samples", "joint_commands", "current", "fin_command")  # from controllers and sensors
 SAMPLED = tuple(name for name in OWN if name not in (*LATCHED, *INPUTS))  # once a sample
-WHERE_ASKED_FOR = ("joint_states", "fin_states", "motor_states", "flow_vectors")  # of `SAMPLED`: if it has such parts
+SENSORS = ("imu", "pressure", "depth", "velocity")  # of `SAMPLED`: at their own rates
+WHERE_ASKED_FOR = (*SENSORS, "joint_states", "fin_states", "motor_states", "flow_vectors")  # of `SAMPLED`: if there
 SWIMMER = "head_pose"  # without publishers of this topic the swimmer has gone
 LATER_ENERGY_FIELDS = (  # missing in older bags
     *("flow_power", "fins_power", "damping_power", "elastic"),

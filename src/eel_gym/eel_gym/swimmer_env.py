@@ -4,12 +4,13 @@
 import copy
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, Self
 
 import gymnasium
 import numpy as np
 from eel_common.head_motion import HeadMotion
-from eel_common.quantity import number
+from eel_common.quantity import checked_instance, number
 from eel_common.wording import not_one_of, one_line, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.batches.simulate_batch import MOST_THREADS
@@ -17,6 +18,8 @@ from eel_dynamics.model.body.body import Body
 from eel_dynamics.model.flow.flow import Flow
 from eel_dynamics.model.initial_state import level_orientation
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.sensors.sensor import SensorSettings
+from eel_dynamics.sensors.suite import check_settings, places_of
 from eel_dynamics.simulation.commanded_robots import CommandedRobots
 from eel_dynamics.simulation.sampled_swimmers import LEFT_OUT, Array, SampledSwimmers
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
@@ -25,6 +28,7 @@ from numpy.typing import NDArray
 from eel_gym.episode_recording import EpisodeRecording
 from eel_gym.joint_action import JointAction
 from eel_gym.picture import picture
+from eel_gym.sensing import Sensing, observed_by
 from eel_gym.task import Action, MeanHeading, Start, Task
 
 
@@ -42,10 +46,11 @@ class SwimmerEnv(Task):
     A task has a `name`, its `Numbers` (a dataclass derived from `Episode`), `observed` (names, units and bounds), and
     the methods `begin`, `observe`, `reward` and `ended`. `default_scene` and `default_action` may be replaced.
 
-    The observation is what the task observes, then the state of the action (`action.names_of_state`), as float32, in
-    the REP-103 axes of the topics. An action is clipped to its bounds. One that is not finite, or has another shape,
-    raises `gymnasium.error.InvalidAction`, and nothing moves. An episode is truncated after `duration`. It is
-    terminated when the task ends, or when the swimmer cannot go on; `info["stopped"]` then gives the reason.
+    The observation is what the task observes, then the `readings` of sensors (`sensed`), then the state of the action
+    (`action.names_of_state`), as float32, in the REP-103 axes of the topics. An action is clipped to its bounds. One
+    that is not finite, or has another shape, raises `gymnasium.error.InvalidAction`, and nothing moves. An episode is
+    truncated after `duration`. It is terminated when the task ends, or when the swimmer cannot go on; `info["stopped"]`
+    then gives the reason.
 
     Args:
         body, scene, accuracy: as in `Simulation`.
@@ -54,6 +59,7 @@ class SwimmerEnv(Task):
             "rerun" each episode is written to the folder `recordings`, in the form of the visualiser.
         flow: the water's motion, as in `Simulation`; or a function of the environment's random numbers
             (`numpy.random.Generator`) that draws the flow of an episode. None: still water.
+        sensors: `eel_dynamics.Imu`, `Pressure`, `Velocity`, `Encoders`; each episode has its own noise.
         swimmers, threads: N swimmers in parallel, and the threads that march them: for `ThreadedVectorEnv`.
         numbers: the task's, see `Numbers`.
     """
@@ -72,10 +78,12 @@ class SwimmerEnv(Task):
         swimmers: int | None = None,
         threads: int = 1,
         flow: Flow | Callable[[np.random.Generator], Flow | None] | None = None,
+        sensors: Sequence[SensorSettings] = (),
         **numbers: Any,
     ):
         shape = () if swimmers is None else (checked_count("swimmers", swimmers),)
-        super().__init__(body, scene, action, shape, numbers)
+        sensors = [checked_instance("sensors", each, SensorSettings) for each in sensors]
+        super().__init__(body, scene, action, shape, numbers, observed_by(sensors, getattr(action, "robot", None)))
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(not_one_of("render_mode", render_mode, self.metadata["render_modes"]))
         if not (flow is None or isinstance(flow, Flow) or callable(flow)):
@@ -85,7 +93,10 @@ class SwimmerEnv(Task):
         threads = checked_count("threads", threads, MOST_THREADS)
         count, stations = math.prod(shape), 51 if render_mode else 2
         own = {"body": self.body, "scene": self.scene, "robot": getattr(self.action, "robot", None)}
-        setup = SimulationSetup.of(**own, accuracy=accuracy, stations=stations)
+        for each in sensors:
+            check_settings(each, self.body, own["robot"], 1.0 / self.numbers.control_period)
+        setup = SimulationSetup.of(**own, accuracy=accuracy, stations=stations, sensors=places_of(sensors))
+        self._sensing = Sensing(sensors, setup, count)
         self.swimmers: SampledSwimmers | CommandedRobots
         if isinstance(self.action, JointAction):
             self.swimmers = CommandedRobots(count, self.action.names, self.action.kind, setup, threads)
@@ -178,6 +189,7 @@ class SwimmerEnv(Task):
             twist = (start.roll_rate, 0.0, 0.0, start.speed, 0.0, 0.0)
             flow = self.flow if self.flow is None or isinstance(self.flow, Flow) else self.flow(draws[index])
             self.swimmers.start(index, start.position, level_orientation(start.heading), twist, row, flow)
+            self._sensing.begin(index, draws[index])
         self.ticks[swimmers] = self._status[swimmers] = 0
         self._look()
         if self.shape:
@@ -223,7 +235,7 @@ class SwimmerEnv(Task):
         other.__dict__.update(self.__dict__)
         other.shape, other.head = (), HeadMotion(*(part[:, index] for part in self.head))
         other.head_heading, other.heading = float(self.head_heading[index]), float(self.heading[index])
-        other.goal = self.goal[:, index]
+        other.goal, other.readings = self.goal[:, index], self.readings[:, index]
         return other
 
     def picture_of(self, index: int) -> Any:
@@ -241,6 +253,9 @@ class SwimmerEnv(Task):
         self.head_heading = self.head.heading
         if isinstance(self.swimmers, CommandedRobots) and isinstance(self.action, JointAction):
             self.action.see(self.swimmers.joints.reshape(2, -1, *self.shape).copy())
+        for index in np.flatnonzero(self._status != LEFT_OUT).tolist() if self.sensed else ():
+            self._sensing.look(index, partial(self.swimmers.observe, index, wrench=False, load=False))
+        self.readings = self._sensing.values.reshape(-1, *self.shape)
 
     def _add_trim(self, rows: Array, left_trim: Array | float) -> None:
         """Add the bend `left_trim` [rad/m], one or (N, 1), to the action's curvature in `rows`, of one body or N."""

@@ -79,6 +79,7 @@ class Task(gymnasium.Env[Any, Any]):
         action: Action | None,
         shape: tuple[int, ...],
         numbers: dict[str, Any],
+        sensed: tuple[Observed, ...] = (),
     ):
         self.numbers = checked_numbers(self.name, self.Numbers, numbers)
         self.scene = self.default_scene() if scene is None else checked_instance("scene", scene, Scene)
@@ -86,7 +87,9 @@ class Task(gymnasium.Env[Any, Any]):
         if action is not None and not isinstance(action, Action):
             raise ValueError(f"action must be a LawAction, a KnotAction or a JointAction, got {shown(action)}")
         self.action = self.default_action() if action is None else action
-        bounds = np.array([each[2] for each in (*self.observed, *self.action.names_of_state)], dtype=np.float32)
+        self.sensed = sensed  #: what sensors tell
+        seen = (*self.observed, *sensed, *self.action.names_of_state)
+        bounds = np.array([each[2] for each in seen], dtype=np.float32)
         self.observation_space = gymnasium.spaces.Box(-bounds, bounds, dtype=np.float32)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (self.action.size,), np.float32)
         self.shape = shape  #: () for one swimmer, or (N,)
@@ -98,6 +101,7 @@ class Task(gymnasium.Env[Any, Any]):
         self.head_heading: Any = None  #: rad, of the head at present; positive: left
         self.heading: Any = np.zeros(shape) if shape else 0.0  #: rad, the same averaged over the gait's period
         self.goal: Array = np.zeros((0, *shape))
+        self.readings: Array = np.zeros((len(sensed), *shape))  #: of `sensed`
 
     # -- a task defines these
 
@@ -133,8 +137,8 @@ class Task(gymnasium.Env[Any, Any]):
     # -- results
 
     def observation(self) -> np.ndarray:
-        """(D,) or (N, D) float32: what the task observes and the state of the action, clipped to the bounds."""
-        for row, value in enumerate((*self.observe(), *self.action.state)):
+        """(D,) or (N, D) float32: what the task observes, readings and the state of the action, clipped."""
+        for row, value in enumerate((*self.observe(), *self.readings, *self.action.state)):
             self._seen[row] = value
         return np.minimum(np.maximum(self._seen, self._low), self._high).T
 
@@ -152,7 +156,7 @@ class Task(gymnasium.Env[Any, Any]):
 
     def describe(self) -> str:
         """One line for each number of the observation and of the action, with unit and bounds."""
-        seen = [*self.observed, *self.action.names_of_state]
+        seen = [*self.observed, *self.sensed, *self.action.names_of_state]
         lines = [f"  {name} [{unit or '1'}], {-bound:g} to {bound:g}" for name, unit, bound in seen]
         return "\n".join(
             ["observation:", *lines, "action, each from -1 to 1:", *(f"  {each}" for each in self.action.described())]

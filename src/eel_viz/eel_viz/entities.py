@@ -2,8 +2,8 @@
 """The entity paths of a recording, shared by loggers and blueprints.
 
 A new curve begins here with its path. Then it needs name, colour and values (`SERIES`, and the method of its topic, in
-plots/series.py; for motors robots/motor_plots.py, for fins and joints robots/parts.py), and a place in an arrangement
-(views/blueprint.py). `TIME_SERIES` in test/test_viz_loggers.py lists the curves.
+plots/series.py; for motors robots/motor_plots.py, for fins and joints robots/parts.py, for sensors plots/sensors.py),
+and a place in an arrangement (views/blueprint.py). `TIME_SERIES` in test/test_viz_loggers.py lists the curves.
 
 There are three trees: `/world` (three-dimensional, metres, the world frame of the messages, z up), `/profiles` and
 `/heat_map` (two-dimensional drawings against the abscissa X), `/plots` (scalars over time). `/numbers` holds the
@@ -83,6 +83,11 @@ FIN_ANGLES = "/plots/fin_angles"  # [deg]
 HARDEST_MOTOR = "/plots/hardest_motor"  # torque of the motor closest to its limit, and the limit [N m]
 SATURATED = "/plots/saturated_motors"  # number of motors at their limits
 MOTOR_POWER = "/plots/motor_power"  # of all motors [W]
+FORCE_READ = "/plots/imu/specific_force"  # of published sensors, in their axes [m/s^2]
+TURNING_READ = "/plots/imu/angular_velocity"  # [rad/s]
+PRESSURE_READ = "/plots/pressure"  # [Pa]
+DEPTH_READ = "/plots/depth_read"  # [m]
+VELOCITY_READ = "/plots/velocity_read"  # [m/s]
 MOTOR_WORK = "/plots/motor_work"  # of all motors since the start [J]
 
 # --- the profiles of the messages, in double precision -------------------------------------------------------------

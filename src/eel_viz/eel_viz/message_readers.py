@@ -72,6 +72,27 @@ def read_body(message: Any) -> messages.Body:
     return messages.Body(**size, x=x, **half, fins=fins, joints=joints, appendages=_appendages(message))
 
 
+def read_imu(message: Any) -> tuple[np.ndarray, np.ndarray]:
+    """From sensor_msgs/Imu: specific force (3,) [m/s^2] and angular velocity (3,) [rad/s]."""
+    force = _vector("linear_acceleration", message.linear_acceleration)
+    return force, _vector("angular_velocity", message.angular_velocity)
+
+
+def read_pressure(message: Any) -> np.ndarray:
+    """From sensor_msgs/FluidPressure: (1,) [Pa]."""
+    return _finite("fluid_pressure", np.array([message.fluid_pressure], dtype=float))
+
+
+def read_depth(message: Any) -> np.ndarray:
+    """From geometry_msgs/PoseWithCovarianceStamped of a depth gauge: (1,) [m], below z = 0."""
+    return _finite("pose.pose.position.z", np.array([-message.pose.pose.position.z], dtype=float))
+
+
+def read_velocity(message: Any) -> np.ndarray:
+    """From geometry_msgs/TwistWithCovarianceStamped of a velocity log: (3,) [m/s]."""
+    return _vector("twist.twist.linear", message.twist.twist.linear)
+
+
 def read_path(message: Any) -> np.ndarray:
     """From nav_msgs/Path: the positions (n, 3) [m]."""
     points = [(each.pose.position.x, each.pose.position.y, each.pose.position.z) for each in message.poses]

@@ -8,7 +8,7 @@ from eel_common.quantity import Quantities, quantity
 from eel_common.wording import shown
 
 SINKS = ("spawn", "connect", "serve", "save")
-BLUEPRINTS = ("overview", "torques", "motion", "robot", "swimmer", "compare")
+BLUEPRINTS = ("overview", "torques", "motion", "robot", "sensors", "swimmer", "compare")
 
 
 @dataclass(frozen=True, kw_only=True)

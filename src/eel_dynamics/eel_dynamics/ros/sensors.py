@@ -19,8 +19,8 @@ from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped, Twist
 from tf2_msgs.msg import TFMessage
 
 from eel_dynamics.model.robot.actuators import most_torque
-from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.model.robot.joint_signs import message_signs
+from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.sensors.encoders import Encoders, JointReadings
 from eel_dynamics.sensors.imu import Imu, ImuReadings
 from eel_dynamics.sensors.pressure import Pressure, PressureReadings

@@ -56,6 +56,7 @@ class Destination(ABC):
         self.incomplete = False
         self.properties: dict[str, dict[str, Any]] = {}
         self.body: Body | None = None
+        self.sensed = False  # whether some sensor is published
         self._blueprint_sent = False  # later recordings keep the user's changes in the viewer
 
     @abstractmethod
@@ -86,7 +87,7 @@ class Destination(ABC):
         """The arrangements of a recording that ends at `end` [s]; 0: still running."""
         chosen = self.settings
         parts = {name: bool(self.body and getattr(self.body, name)) for name in ("fins", "joints")}
-        look = Look(frames=chosen.frames, wake=chosen.wake, end=end, **parts)
+        look = Look(frames=chosen.frames, wake=chosen.wake, end=end, sensors=self.sensed, **parts)
         return arrangement(chosen.blueprint, live=self.live, comparison=bool(chosen.compare), look=look)
 
     def adopt_body(self, stream: rr.RecordingStream | None, body: Body) -> None:
@@ -96,9 +97,15 @@ class Destination(ABC):
         if self.live and stream is not None and changed:
             stream.send_blueprint(self.blueprint(), make_active=True, make_default=True)
 
+    def adopt_sensors(self, stream: rr.RecordingStream | None) -> None:
+        """Show the tab of sensors: to a viewer of the open `stream` at once, in a file from its end on."""
+        self.sensed = True
+        if self.live and stream is not None:
+            stream.send_blueprint(self.blueprint(), make_active=True, make_default=True)
+
     def fit(self, stream: rr.RecordingStream, end: float) -> None:
         """Fit tabs, axes, and the repeated part to a recording that ends at `end` [s]; a short one is not changed."""
-        has_parts = self.body is not None and bool(self.body.fins or self.body.joints)
+        has_parts = self.sensed or (self.body is not None and bool(self.body.fins or self.body.joints))
         if not self.live and (end >= SHORT or has_parts):
             stream.send_blueprint(self.blueprint(end), make_active=False, make_default=True)
 

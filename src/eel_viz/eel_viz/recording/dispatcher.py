@@ -40,6 +40,10 @@ READERS: dict[str, Callable[[Any], Any]] = {  # topic: from a message to the log
     "fin_states": readers.read_joints,
     "joint_states": readers.read_joints,
     "motor_states": readers.read_motors,
+    "imu": readers.read_imu,
+    "pressure": readers.read_pressure,
+    "depth": readers.read_depth,
+    "velocity": readers.read_velocity,
     "energy": readers.read_energy,
     "diagnostics": readers.read_diagnostics,
 }

@@ -20,6 +20,7 @@ from eel_viz.limit import Limit
 from eel_viz.messages import Body, Load, Pose, Profiles, Twist, same
 from eel_viz.plots.comparison import Comparison
 from eel_viz.plots.profiles import ProfilePlots
+from eel_viz.plots.sensors import SensorPlots
 from eel_viz.plots.series import Series
 from eel_viz.recording.run_text import RunText
 from eel_viz.robots.parts import Parts
@@ -42,7 +43,7 @@ class Loggers:
         torque = Limit(settings.colour_limit, grows=not settings.colour_limit)  # N m: for the colours of C3
         this: list[object] = [self._text, Numbers(stream), Series(stream), ProfilePlots(stream, settings, torque)]
         this += [SwimmerScene(stream, torque), Track(stream), Arrows(stream, settings), Course(stream, settings.reach)]
-        this.append(Parts(stream))
+        this += [Parts(stream), SensorPlots(stream)]
         self._drawers: tuple[list[object], list[object]] = this, []  # drawers of this run, and of the compared one
         if settings.compare:
             names = (name, settings.compare.strip("/") or "eel")

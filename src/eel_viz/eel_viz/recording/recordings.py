@@ -14,6 +14,8 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
+from eel_common.topics import SENSORS
+
 from eel_viz.recording.destination import Delivery, Destination, LogFunction
 from eel_viz.recording.loggers import Loggers
 
@@ -95,7 +97,7 @@ class Recordings:
         self._lasting: dict[tuple[str, bool], tuple[Any, ...]] = {}  # (topic, whether of the compared run): last values
         self._resets: deque[float] = deque(maxlen=RESETS)
         self._begun: deque[float] = deque(maxlen=MAXIMUM_RECORDINGS)  # s: start times of the last recordings
-        self._limit_reported = self._disorder_reported = False
+        self._limit_reported = self._disorder_reported = self._sensed = False
         self._last_retry = time.monotonic()
         self.incomplete = False
         self._recordings: dict[int, Recording] = {}
@@ -116,6 +118,11 @@ class Recordings:
         sent: time of sending [ns, wall time]; without it a topic begins with the newest recording.
         """
         known_as = topic if compared is None else f"{compared}/{topic}"
+        if topic in SENSORS and compared is None and not self._sensed:
+            self._sensed = True
+            for index, destination in enumerate(self._destinations):
+                opened = self._newest.opened.get(index)
+                destination.adopt_sensors(opened[1].stream if opened else None)
         for loggers in self._loggers_for(known_as, stamp, new_publisher, sent):
             loggers.log(topic, stamp, *values, compared=compared is not None)
 

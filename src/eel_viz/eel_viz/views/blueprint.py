@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The arrangements of a recording, as functions without data. Each fits a window of 1280 by 720 pixels.
 
-A recording carries all of them as tabs: those of `ARRANGEMENTS`, `robot` if the body has joints, and `compare` if
-another run is drawn over this one. The content of a view is logged by the classes of recording/loggers.py, under a
-path of entities.py.
+A recording carries all of them as tabs: those of `ARRANGEMENTS`, `robot` if the body has joints, `sensors` if
+any are published, and `compare` if another run is drawn over this one. The content of a view is logged by the classes
+of recording/loggers.py, under a path of entities.py.
 """
 
 from collections.abc import Callable
@@ -126,6 +126,23 @@ def motion(look: Look) -> rrb.Container:
     )
 
 
+def sensors(look: Look) -> rrb.Container:
+    """What sensors read, beside the depth of the head."""
+    return rrb.Horizontal(
+        rrb.Vertical(
+            series_view(look, f"Specific force at the IMU [m/s²]: {XYZ}", entities.FORCE_READ),
+            series_view(look, f"Angular velocity at the IMU [rad/s]: {XYZ}", entities.TURNING_READ),
+            series_view(look, f"Velocity by the log [m/s]: {XYZ}", entities.VELOCITY_READ),
+        ),
+        rrb.Vertical(
+            following_view(look),
+            series_view(look, "Depth [m]: of the head grey, read yellow", entities.DEPTH, entities.DEPTH_READ),
+            series_view(look, "Pressure [Pa]", entities.PRESSURE_READ),
+        ),
+        name="sensors",
+    )
+
+
 def swimmer(look: Look) -> rrb.Container:
     """Only the swimmer, for films."""
     return rrb.Horizontal(following_view(look), name="swimmer")
@@ -159,7 +176,7 @@ def compare(look: Look) -> rrb.Container:
 
 
 ARRANGEMENTS: dict[str, Callable[[Look], rrb.Container]] = dict(
-    zip(BLUEPRINTS, (overview, torques, motion, robot, swimmer, compare), strict=True)
+    zip(BLUEPRINTS, (overview, torques, motion, robot, sensors, swimmer, compare), strict=True)
 )
 
 
@@ -172,7 +189,7 @@ def arrangement(
     end. comparison: with another run.
     """
     checked_choice("blueprint", first, ARRANGEMENTS)
-    asked_for = {"compare": comparison, "robot": look.joints}
+    asked_for = {"compare": comparison, "robot": look.joints, "sensors": look.sensors}
     names = [name for name in ARRANGEMENTS if name == first or asked_for.get(name, True)]
     swim = (rr.encodings.TimeInt(seconds=seconds) for seconds in (REPEATED_FROM * look.end, look.end))
     return rrb.Blueprint(

@@ -24,7 +24,7 @@ WAKE = entities.WAKE, entities.WAKE_LEGEND
 class Look:
     """Options of a view: `frames`, the axes of head and tail; the `wake`; and the `end` of the run [s], 0: unknown.
 
-    fins, joints: whether the body has any.
+    fins, joints: whether the body has any; sensors: whether any are published.
     """
 
     frames: bool = False
@@ -32,6 +32,7 @@ class Look:
     end: float = 0.0
     fins: bool = False
     joints: bool = False
+    sensors: bool = False
 
     @property
     def hidden(self) -> tuple[str, ...]:

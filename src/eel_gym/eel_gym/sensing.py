@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the sensors of N swimmers tell a policy: of each the last reading that has come, 0 before the first.
+
+The readings are those of `eel_dynamics.SensorSuite`, at the ends of control steps. Each episode has noise of its own.
+"""
+
+import heapq
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import count
+from typing import Any
+
+import numpy as np
+from eel_dynamics.model.robot.robot import Robot
+from eel_dynamics.sensors.encoders import Encoders
+from eel_dynamics.sensors.imu import Imu
+from eel_dynamics.sensors.pressure import Pressure
+from eel_dynamics.sensors.sensor import SensorSettings, StationedSettings
+from eel_dynamics.sensors.suite import SensorSuite
+from eel_dynamics.simulation.observations import Snapshot
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
+
+from eel_gym.task import FARTHEST, FASTEST, SPIN, Observed
+
+STRONGEST = 200.0  # m/s^2, bound of a specific force
+WIDEST = 3.2  # rad, bound of an angle of a joint
+
+
+def observed_by(settings: Sequence[SensorSettings], robot: Robot | None) -> tuple[Observed, ...]:
+    """What a policy sees of sensors with these `settings`: names as of topics, units, bounds."""
+    seen: list[Observed] = []
+    for each in settings:
+        stations = each.stations if isinstance(each, StationedSettings) else (0.0,)
+        for k in range(1, 1 + len(stations)):
+            name = each.what if len(stations) == 1 else f"{each.what}_{k}"
+            seen += [Observed(f"{name} {part}", unit, bound) for part, unit, bound in _parts(each, robot)]
+    return tuple(seen)
+
+
+def _parts(settings: SensorSettings, robot: Robot | None) -> list[tuple[str, str, float]]:
+    if isinstance(settings, Imu):
+        parts = [(f"specific force {axis}", "m/s^2", STRONGEST) for axis in "xyz"]
+        parts += [(f"angular velocity {axis}", "rad/s", SPIN) for axis in "xyz"]
+        return parts + [(f"orientation {axis}", "", 1.0) for axis in "xyzw" if settings.orientation]
+    if isinstance(settings, Pressure):
+        return [("depth", "m", FARTHEST)]
+    if isinstance(settings, Encoders):
+        names = [joint.name for joint in robot.joints] if robot else []
+        return [
+            *((f"angle {name}", "rad", WIDEST) for name in names),
+            *((f"rate {name}", "rad/s", SPIN) for name in names),
+        ]
+    return [(f"velocity {axis}", "m/s", FASTEST) for axis in "xyz"]
+
+
+class Sensing:
+    """The sensors with these `settings` of `swimmers`, which have the `setup`.
+
+    Attributes:
+        values: (n, N) float64, the numbers that `observed_by` names.
+    """
+
+    def __init__(self, settings: Sequence[SensorSettings], setup: SimulationSetup, swimmers: int):
+        self._settings, self._setup = tuple(settings), setup
+        self._suites = [SensorSuite(self._settings, setup) for _ in range(swimmers)]
+        self._waiting: list[list[Any]] = [[] for _ in range(swimmers)]  # heaps: when due [s], count, rows, numbers
+        self._count = count()
+        self.values = np.zeros((len(observed_by(settings, setup.robot)), swimmers))
+        self._rows: dict[str, slice] = {}
+        for name, sensor in self._suites[0].sensors.items():
+            begin = max((rows.stop for rows in self._rows.values()), default=0)
+            self._rows[name] = slice(begin, begin + len(_parts(sensor.settings, setup.robot)))
+
+    def begin(self, index: int, random: np.random.Generator) -> None:
+        """Begin an episode of a swimmer, with noise drawn from its `random` numbers."""
+        if self._settings:
+            drawn = [replace(each, seed=int(random.integers(2**31))) for each in self._settings]
+            self._suites[index], self.values[:, index] = SensorSuite(drawn, self._setup), 0.0
+            self._waiting[index].clear()
+
+    def look(self, index: int, observe: Callable[[], Snapshot]) -> None:
+        """Take the readings of a swimmer at present, and what of earlier ones comes now."""
+        if not self._settings:
+            return
+        snapshot, waiting = observe(), self._waiting[index]
+        for name, (_, *parts) in self._suites[index].read(snapshot).items():
+            settings = self._suites[index].sensors[name].settings
+            seen = {Pressure: parts[1:], Encoders: parts[:2]}.get(type(settings), parts)  # the depth; no currents
+            numbers = np.concatenate([part.ravel() for part in seen if part is not None])
+            heapq.heappush(waiting, (snapshot.time + settings.latency, next(self._count), self._rows[name], numbers))
+        while waiting and waiting[0][0] <= snapshot.time + 1e-9:
+            _, _, rows, numbers = heapq.heappop(waiting)
+            self.values[rows, index] = numbers
