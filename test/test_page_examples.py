@@ -27,7 +27,7 @@ PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 BLOCK = re.compile(r"(?:<!-- (listing)[^\n]*-->\n)?^```([^\n`]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 RUN = ("eel simulate", "eel identify", "eel ballast")
 FOREIGN = ("colcon", "dask", "export", "pip", "python", "python3", "rerun", "rosdep", "source", "sudo", "touch")
-FOREIGN += ("robot_state_publisher", "ros2_control_node", "rviz2", "spawner")  # of ROS 2
+FOREIGN += ("ekf_node", "robot_state_publisher", "ros2_control_node", "rviz2", "spawner")  # of ROS 2
 INPUTS = ("goal_path", "goal_pose", "current", "joint_commands", "fin_command")  # of the pilot, of the dynamics node
 SERVICES = ("reset", "pause", "step", "set_state")
 

@@ -92,9 +92,10 @@ class SwimmerEnv(Task):
         self.metadata = self.metadata | {"render_fps": round(1.0 / self.numbers.control_period)}
         threads = checked_count("threads", threads, MOST_THREADS)
         count, stations = math.prod(shape), 51 if render_mode else 2
-        own = {"body": self.body, "scene": self.scene, "robot": getattr(self.action, "robot", None)}
+        robot = getattr(self.action, "robot", None)
+        own = {"body": self.body, "scene": self.scene, "robot": robot}
         for each in sensors:
-            check_settings(each, self.body, own["robot"], 1.0 / self.numbers.control_period)
+            check_settings(each, self.body, robot, 1.0 / self.numbers.control_period)
         setup = SimulationSetup.of(**own, accuracy=accuracy, stations=stations, sensors=places_of(sensors))
         self._sensing = Sensing(sensors, setup, count)
         self.swimmers: SampledSwimmers | CommandedRobots

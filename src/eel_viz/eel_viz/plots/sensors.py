@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Curves of what sensors read, where it is published, by the methods of topics."""
 
+from typing import Any
+
 import numpy as np
 from eel_common.topics import SENSORS
 
@@ -9,7 +11,7 @@ from eel_viz.batched_stream import BatchedStream
 from eel_viz.scene3d import colours
 
 AXES = tuple(zip("xyz", colours.AXIS, strict=True))
-CURVES = {  # topic: entities, each with name and colour of its values
+CURVES: dict[str, dict[str, tuple[Any, ...]]] = {  # topic: entities, each with name and colour of its values
     "imu": {entities.FORCE_READ: AXES, entities.TURNING_READ: AXES},
     "pressure": {entities.PRESSURE_READ: (("pressure [Pa]", colours.PLAIN),)},
     "depth": {entities.DEPTH_READ: (("depth, read [m]", colours.FORCE),)},
