@@ -13,7 +13,6 @@ import tempfile
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
-from types import SimpleNamespace as NS
 from typing import Any
 
 from eel_dynamics.analysis.trim import Lump
@@ -53,7 +52,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         fine.to_rerun(folder / "falling.rrd", compare=draft)
-        to_rerun(folder / "course.rrd", [course()], ["pilot"])
+        course(folder / "course.rrd")
         to_rerun(folder / "servos.rrd", [weakened()], ["eight servos"], blueprint="robot")
         write = partial(write_film, folder=folder)
         try:
@@ -83,21 +82,13 @@ def main() -> int:
     return 0
 
 
-def course() -> Iterator[tuple[str, Any]]:
-    """The messages of a swim past way points, by the pilot."""
-    pilot, snapshots = Pilot(), []
-    simulations: list[Simulation] = []
+def course(recording: Path) -> None:
+    """A swim past way points, by the pilot."""
+    pilot = Pilot()
     pilot.follow(path(COURSE, 0.5, pilot.settings.limits))
-
-    def observe(simulation: Simulation) -> None:
-        simulations[:] = [simulation]
-        if round(simulation.time / STEP) % 2 == 0:
-            snapshots.append(simulation.observe())
-
-    swim_with(pilot, COURSE_END, scene=Scene(ledger=False), stations=51, each=observe)
-    points = [NS(pose=NS(position=NS(x=x, y=y, z=z))) for x, y, z in [(0.0, 0.0, 0.0), *COURSE]]
-    yield "goal", NS(poses=points)
-    yield from messages_of_run(Run.of_snapshots(snapshots, simulations[0], Law(name="pilot")))
+    voyage = swim_with(pilot, COURSE_END, kept_every=2 * STEP)
+    assert voyage.run is not None
+    voyage.run.to_rerun(recording, goal=[(0.0, 0.0, 0.0), *COURSE])
 
 
 def weakened() -> Iterator[tuple[str, Any]]:

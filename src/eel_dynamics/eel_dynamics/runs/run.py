@@ -3,7 +3,9 @@
 
 import os
 import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -20,7 +22,7 @@ from eel_dynamics.model.body.body import Body
 from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.exchange.eel_viz_functions import function_of_eel_viz
-from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
+from eel_dynamics.runs.exchange.messages_of_run import goal_message, messages_of_run
 from eel_dynamics.runs.exchange.properties_of_run import properties_of_run
 from eel_dynamics.runs.exchange.recorded_run import fields_of_bag
 from eel_dynamics.runs.motions import SmoothingEffect, effect_of_smoothing
@@ -162,20 +164,24 @@ class Run(SensedRun):
         *,
         load: bool = True,
         numbers: dict[str, Any] | None = None,
+        goal: Any = None,
         **settings: Any,
     ) -> None:
         """Record the run to Rerun, as the visualiser shows a swimmer, with its figures as properties.
 
         target: a file (.rrd) or a `rerun.RecordingStream`. compare: another run, drawn over this one. load: show the
         water's force and the wake; a run without them is simulated again for them. numbers: numbers and texts of your
-        own, by name, as the properties `numbers`. settings: of the visualiser, such as blueprint="torques",
-        skin_rate=50. `ImportError` without the package eel_viz and rerun-sdk.
+        own, by name, as the properties `numbers`. goal: way points to draw, (n, 3) [m]. settings: of the visualiser,
+        such as blueprint="torques", skin_rate=50. `ImportError` without the package eel_viz and rerun-sdk.
         """
         record, runs = function_of_eel_viz("rerun"), [self] if compare is None else [self, compare]
         runs = [run.with_load() if load else run for run in runs]
         names = [f"{run.law.name} {run.accuracy.name}" for run in runs]
         properties = properties_of_run(runs[0]) | ({"numbers": numbers} if numbers else {})
-        record(target, [messages_of_run(run) for run in runs], names, properties, **settings)
+        messages: list[Iterator[Any]] = [messages_of_run(run) for run in runs]
+        if goal is not None:
+            messages[0] = chain([goal_message(goal)], messages[0])
+        record(target, messages, names, properties, **settings)
 
     @cached_property
     def refined(self) -> "Run":

@@ -9,11 +9,13 @@ import numpy as np
 from eel_dynamics.model.initial_state import head_motion_of
 from eel_gaits.pilot.pilot import Pilot
 
-from eel_dynamics import Scene, Simulation
+from eel_dynamics import Run, Scene, Simulation
+from eel_gaits import Law
 from eel_studies.points import AccuracyLike
 
 STEP = 0.02  # s, from one sample of the head's motion to the next
 LAST_PART = 30.0  # s
+STATIONS = 51  # of a run that is kept
 
 
 @dataclass(frozen=True)
@@ -29,6 +31,7 @@ class Voyage:
     wanted_height: np.ndarray  # (T,) m
     misses: tuple[float, ...]  # m, least distance of the head from each passed way point
     news: tuple[str, ...]  # the pilot's reports
+    run: Run | None = None  # the swimmer, where it was asked for
 
     @property
     def heading_error(self) -> np.ndarray:
@@ -59,19 +62,25 @@ def swim_with(
     accuracy: AccuracyLike = "draft",
     until: Callable[[Pilot], bool] = lambda pilot: False,
     each: Callable[[Simulation], None] = lambda simulation: None,
+    kept_every: float = 0.0,
     **start: Any,
 ) -> Voyage:
     """Let the `pilot` swim for at most `duration` [s], or until `until(pilot)` is true.
 
-    scene: by default with motion only. start: keywords of `Simulation`, such as position and twist. each(simulation):
-    called at each step.
+    scene: by default with motion only, or without ledger where a run is kept. start: keywords of `Simulation`, such as
+    position and twist. each(simulation): called at each step. kept_every: time between the samples of `Voyage.run` [s],
+    a multiple of `STEP`; 0: no run.
     """
-    scene = scene or Scene(internal_wrench=False, ledger=False)
-    simulation = Simulation(**{"scene": scene, "accuracy": accuracy, "stations": 2, **start})
-    x, rows = pilot.law.x, []
+    kept = round(kept_every / STEP)
+    scene = scene or Scene(internal_wrench=kept > 0, ledger=False)
+    stations = STATIONS if kept else 2
+    simulation = Simulation(**{"scene": scene, "accuracy": accuracy, "stations": stations, **start})
+    x, rows, snapshots = pilot.law.x, [], []
     simulation.add_samples(0.0, x, *pilot.begin())
     for step in range(round(duration / STEP)):
         each(simulation)
+        if kept and step % kept == 0:
+            snapshots.append(simulation.observe())
         head = head_motion_of(simulation.head)
         samples = pilot.step(step * STEP, head, STEP)
         found, wanted = pilot.estimate, pilot.demand
@@ -83,4 +92,5 @@ def swim_with(
         simulation.add_samples((step + 1) * STEP, x, *samples)
         simulation.advance((step + 1) * STEP)
     columns: list[Any] = [np.array(column) for column in zip(*rows, strict=True)]
-    return Voyage(*(*columns, tuple(pilot.misses), tuple(news.text for news in pilot.news)))
+    run = Run.of_snapshots(snapshots, simulation, Law(name="pilot")) if kept else None
+    return Voyage(*columns, tuple(pilot.misses), tuple(news.text for news in pilot.news), run)

@@ -6,7 +6,9 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from eel_common.quantity import checked_row, numbers
 from eel_common.topics import ENERGY_FIELDS
+from eel_common.wording import shown
 
 from eel_dynamics.model.body.body import Body
 from eel_dynamics.model.fins.fins import SIDES, Fin
@@ -31,6 +33,15 @@ def messages_of_run(run: RunData) -> Iterator[tuple[str, SimpleNamespace]]:
     for k in range(len(run.time)):
         yield from _sample(run, k)
     yield "diagnostics", _status(run, end, "computed", _checks(run))
+
+
+def goal_message(points: Any) -> tuple[str, SimpleNamespace]:
+    """Topic and message of a goal with way `points` (n, 3) [m]. `ValueError` for others."""
+    if (places := numbers("goal", points)).ndim != 2 or places.shape[1] != 3:
+        raise ValueError(f"goal must be way points (n, 3), got {shown(points)}")
+    checked_row("goal", places.ravel(), None)
+    poses = [SimpleNamespace(pose=SimpleNamespace(position=SimpleNamespace(x=x, y=y, z=z))) for x, y, z in places]
+    return "goal", SimpleNamespace(poses=poses)
 
 
 def outline(body: Body, x: np.ndarray) -> dict[str, np.ndarray]:
