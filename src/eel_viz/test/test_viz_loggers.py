@@ -313,9 +313,10 @@ def test_nothing_is_shown_that_no_test_compares_with_the_messages(made):
     plots = (entities.TORQUE, entities.FORCE, entities.CURVATURE)
     compared = {*TIME_SERIES, *NUMBERS, entities.BACKBONE, entities.SKIN, entities.HEAD, entities.TAIL, entities.FOLLOW}
     compared |= {entities.TRACK, entities.STROBES, entities.TRAIL, entities.HEADING, entities.SPEED_NOTE}
-    compared |= {entities.TORQUE_NOTE, *(f"{note}/words" for note in (entities.SPEED_NOTE, entities.TORQUE_NOTE))}
     compared |= {
+        f"{entities.SPEED_NOTE}/words",
         entities.FLOW,
+        entities.FLOW_LEGEND,
         entities.LOAD,
         entities.LOAD_ENDS,
         entities.WAKE,
@@ -359,6 +360,8 @@ def test_arrows_of_the_water_are_its_velocity_and_the_fastest_so_far_has_a_fixed
         fastest = max(fastest, np.linalg.norm(velocity, axis=1).max())
         np.testing.assert_allclose(arrows["origins"][k], position, atol=SINGLE)
         np.testing.assert_allclose(arrows["vectors"][k], 0.16 / fastest * velocity, atol=SINGLE)
+    (told,) = read(path, entities.FLOW_LEGEND).values["labels"][-1]
+    assert told == f"water without the swimmer, longest {fastest:.2g} m/s"
 
 
 def test_the_wake_shows_what_the_tail_gave_and_fades(record_made_up):
@@ -379,24 +382,8 @@ def test_the_wake_shows_what_the_tail_gave_and_fades(record_made_up):
     assert np.all(np.diff(((shades >> 24) & 255).astype(int)) <= 0)
 
 
-def test_notes_say_how_fast_the_head_is_and_where_the_greatest_torque_was(long_swim):
+def test_notes_say_how_fast_the_head_is_and_where_it_goes(long_swim):
     path, samples = long_swim
-    stamps = sorted(stamp for stamp, topics in samples.items() if "internal_wrench" in topics)
-    note, place = (read(path, entity) for entity in (f"{entities.TORQUE_NOTE}/words", entities.TORQUE_NOTE))
-    follow = read(path, entities.FOLLOW)
-    frames = dict(zip(follow.stamps.tolist(), zip(follow["translation"], follow["scale"], strict=True), strict=True))
-    middles = dict(zip(place.stamps.tolist(), place["translation"], strict=True))
-    for stamp, (words,) in zip(note.stamps.tolist(), note.values["labels"], strict=True):
-        assert stamp > 0
-        torques = {at: samples[at]["internal_wrench"][0].values["torque_3"] for at in stamps if at <= stamp}
-        greatest = max(np.abs(torques[at]).max() for at in torques if stamp - RECENT - 50_000_000 <= at)
-        told, _, _, _, _, _, x, _ = words.split()
-        assert float(told) == pytest.approx(greatest, rel=0.051)
-        backbone = samples[stamp]["backbone"][0]
-        at = [np.interp(float(x), backbone.x, column) for column in backbone.position.T]
-        centre, radius = np.array(frames[stamp][0][0]), frames[stamp][1][0][0]
-        seen = [camera.in_picture((np.array(each) - centre) / radius) for each in (middles[stamp][0], at)]
-        np.testing.assert_allclose(seen[0], seen[1], atol=0.006)
     arrow = read(path, entities.HEADING)
     assert len(arrow.stamps) > 100
     for stamp, (begin,), (ahead,) in zip(arrow.stamps.tolist(), arrow["origins"], arrow["vectors"], strict=True):
@@ -535,7 +522,6 @@ def test_the_order_of_topics_does_not_matter(tmp_path):
         (entities.SPEED, "scalars"),
         (entities.HEADING, "vectors"),
         (entities.SPEED_NOTE, "translation"),
-        (f"{entities.TORQUE_NOTE}/words", "strips"),
         (f"{entities.TORQUE}/curves", "strips"),
     ):
         forwards, backwards = (read(path, entity) for path in paths)

@@ -55,11 +55,11 @@ class Comparison:
         self._farthest = self._worst = self._greatest = 0.0  # m, N m, N m
         self._frame, self._water = FollowFrame(), WaterBox(stream, entities.BOTH_WATER)
         for path, name, colour in (
-            (entities.OTHER_SPEED, f"{names[1]} [m/s]", colours.OTHER),
+            (entities.OTHER_SPEED, f"{names[1]} [m/s]", colours.AXIS[0]),
             (entities.DISTANCE, "distance [m]", colours.PLAIN),
             (entities.TORQUE_DIFFERENCE_MOST, "greatest over X [N m]", colours.PLAIN),
         ):
-            stream.log_series_style(path, [name], [colour])
+            stream.log_series_style(path, [name], [colours.curve(colour)])
 
     def add_head(self, side: "Side", stamp: int, position: np.ndarray) -> None:
         """Take a head's position (3,) [m]; log the distance between the two heads for each complete pair."""

@@ -4,6 +4,8 @@
 Paths are in entities.py.
 """
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 from eel_common.attitude import attitude
 
@@ -46,6 +48,12 @@ BESIDES = {  # curves that begin with the first non-zero value
 }
 
 
+def log_styles(stream: BatchedStream, series: Mapping[str, Sequence[tuple[str, colours.Colour]]]) -> None:
+    """Log name and colour of each curve of `series`, by the path; colours fit the light theme and the dark one."""
+    for path, lines in series.items():
+        stream.log_series_style(path, [name for name, _ in lines], [colours.curve(colour) for _, colour in lines])
+
+
 class Series:
     """Logs the head's motion and the energy ledger, through the methods of topics, in double precision."""
 
@@ -53,8 +61,7 @@ class Series:
         self._stream = stream
         self._attitude = Attitude()
         self._besides: set[str] = set()  # paths of `BESIDES` with lines
-        for path, lines in SERIES.items():
-            stream.log_series_style(path, *zip(*lines, strict=True))
+        log_styles(stream, SERIES)
 
     def head_pose(self, stamp: int, pose: Pose) -> None:
         if self._stream.number_due("head_pose", stamp):

@@ -21,7 +21,7 @@ LABELS = {  # key of the diagnostics: its label
     "accuracy": "accuracy",
     "error_position": "estimated error of the position",
     "error_torque": "of the torque",
-    "real_time_factor": "real-time factor",
+    "real_time_factor": "pace [times real time]",
     "at_torque_limit": "**at their torque limits:**",
     "closure_torque_relative": "closure",
     "energy_residual_worst": "worst residual [J]",
@@ -37,6 +37,8 @@ MOST_WAITING = 100  # statuses, the earliest ones
 PREFIXES = (("", 1.0), ("m", 1e-3), ("µ", 1e-6))
 DIGITS = 3  # of a number
 VOLATILE = ("warnings", "real_time_factor")  # keys that are shown only while they are fresh
+UNKNOWN_AT_0 = ("error_position", "error_torque", "real_time_factor")  # 0: not known so far
+WAITING = "waiting"  # message of a node that has not begun
 
 
 class Path(NamedTuple):
@@ -150,8 +152,10 @@ class Summary:
         law = "" if self._law is None else f"law **{plain(self._law)}**"
         fresh = self.stamp - self._state[0] <= MAXIMUM_AGE
         body = "" if self._body is None else f"body {self._body.length:.3g} m, {self._body.mass:.4g} kg"
-        lines = [", ".join(part for part in (law, plain(self._state[1], LONGEST_TEXT) if fresh else "", body) if part)]
-        shown = [key for key in LABELS if self.values.get(key) and (fresh or key not in VOLATILE)]
+        begun = self._state[1].startswith(WAITING) and self.stamp > self._state[0]
+        state = plain(self._state[1], LONGEST_TEXT) if fresh and not begun else ""
+        lines = [", ".join(part for part in (law, state, body) if part)]
+        shown = [key for key in LABELS if self._known(key) and (fresh or key not in VOLATILE)]
         lines.append(", ".join(f"{LABELS[key]} {_shown(key, self.values[key])}" for key in shown))
         if self._path is not None:
             path = f"mean speed **{self._path.speed:.3f} m/s**, path {self._path.length:.2f} m"
@@ -163,6 +167,14 @@ class Summary:
             most = f"**{peak.value:+.2g} N m** at X = {peak.x:.2f} m, {peak.stamp / 1e9:.2f} s"
             lines.append(f"greatest C3 since the start {most}")
         return "  \n".join(line for line in lines if line)
+
+    def _known(self, key: str) -> bool:
+        """Whether the diagnostics have told the value of `key`."""
+        value = self.values.get(key, "")
+        try:
+            return bool(value) and not (key in UNKNOWN_AT_0 and float(value) == 0.0)
+        except ValueError:
+            return True
 
     def numbers(self) -> dict[str, float | str]:
         """The values of the diagnostics, converted to numbers if possible."""
@@ -177,7 +189,7 @@ class Summary:
     def figures(self) -> dict[str, str]:
         """The main figures by name, for the comparison of two runs."""
         shown = {"law": plain(self._law or "")}
-        shown |= {LABELS[key]: _shown(key, self.values[key]) for key in COMPARED if self.values.get(key)}
+        shown |= {LABELS[key]: _shown(key, self.values[key]) for key in COMPARED if self._known(key)}
         if self._path is not None:
             shown["mean speed [m/s]"] = f"{self._path.speed:.4f}" if self._path.seconds > 0 else "0"
             shown["path [m]"] = f"{self._path.length:.3f}"

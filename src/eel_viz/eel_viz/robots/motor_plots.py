@@ -8,6 +8,7 @@ from eel_viz.batched_stream import BatchedStream
 from eel_viz.limit import Limit
 from eel_viz.messages import AT_LIMIT, Motors
 from eel_viz.plots.heat_map import ROWS, HeatMap
+from eel_viz.plots.series import log_styles
 from eel_viz.scene3d import colours
 
 SERIES = {
@@ -49,8 +50,7 @@ class MotorPlots:
         self._limit = Limit(0.0)
         self._last: tuple[int, float] | None = None  # ns, W
         self._work = 0.0  # J
-        for path, lines in SERIES.items():
-            stream.log_series_style(path, *zip(*lines, strict=True))
+        log_styles(stream, SERIES)
 
     def draw(self, stamp: int, motors: Motors) -> None:
         """Continue with the `motors` at `stamp` [ns]."""

@@ -29,7 +29,7 @@ class Arrows:
         self._stream, self._settings = stream, settings
         self._both = SameStamp(self._draw)
         self._wake = Wake(stream, settings.wake_scale)
-        self._explained, self._fastest = False, 0.0  # m/s: greatest water velocity so far
+        self._explained, self._fastest, self._told = False, 0.0, ""  # m/s: of the water so far, and in the legend
         for path, colour in COLOURS.items():
             stream.log_static(path, rr.Arrows3D.from_fields(colors=[colour], radii=[RADII[path]]))
 
@@ -47,7 +47,11 @@ class Arrows:
     def flow_vectors(self, stamp: int, position: np.ndarray, velocity: np.ndarray) -> None:
         """Draw the water's velocities (n, 3) [m/s] at points (n, 3) [m] as arrows. The fastest so far has `LONGEST`."""
         if self._stream.drawing_due("flow", stamp):
-            self._fastest = max(self._fastest, float(np.linalg.norm(velocity, axis=1).max(initial=0.0)))
+            fastest = float(np.linalg.norm(velocity, axis=1).max(initial=0.0))
+            self._fastest = max(self._fastest, fastest)
+            if (told := f"{self._fastest:.2g} m/s") != self._told:
+                self._told = told
+                legend.log_flow(self._stream, stamp, told)
             self._log(stamp, entities.FLOW, position, LONGEST / max(self._fastest, 1e-9) * velocity)
 
     def _draw(self, stamp: int, backbone: Backbone, load: Load) -> None:

@@ -2,8 +2,9 @@
 """The meaning of each colour, the same in every view, and distinct for colour-blind readers.
 
 The colours of the axes are Okabe and Ito's orange, bluish green and sky blue. The diverging map goes from a light blue
-through the dark of the eel's back to a light red. So both signs differ in hue and lightness from zero, and a body
-without torque keeps its own colour.
+through the dark of the eel's back to a light red, ever lighter to both sides. So both signs differ in hue and lightness
+from zero, and a body without torque keeps its own colour. Space, drawings and maps have a dark ground in every theme.
+Curves over time have the theme's own ground, so their lightness lies between (`curve`).
 """
 
 import numpy as np
@@ -20,8 +21,8 @@ WAKE = (150, 120, 235)  # violet: momentum given to the wake, and its power
 FLOW = (112, 190, 216)  # pale blue: motion of the undisturbed water
 PATH = (150, 172, 192)  # blue-grey: path of the head
 COURSE = (150, 232, 196)  # mint: way points of a goal
-SPRINGS = (176, 132, 96)  # brown: springs and dampers of joints
-FIN = (186, 214, 130)  # lime: fins, and their power
+SPRINGS = (0, 150, 136)  # teal: springs and dampers of joints
+FIN = (140, 214, 110)  # lime: fins, and their power
 APPENDAGE = (170, 150, 200)  # lilac: appendages, and their power
 OTHER = (244, 244, 240)  # white: the run that is laid over this one
 PLAIN = (190, 196, 202)  # a single quantity in its plot
@@ -37,18 +38,19 @@ WATER_BACKGROUND = (9, 20, 33)
 PLOT_BACKGROUND = (13, 16, 17)
 WATER_DEEP, WATER_SHALLOW, WATER_FLOOR = (8, 20, 32), (24, 64, 90), (46, 108, 128)
 BACK, BELLY = (80, 98, 82), (226, 222, 200)  # colours of the skin
+BRIGHTEST_CURVE = 0.28  # luminance, 0 to 1: a contrast of 3 with white
 IRIS, PUPIL = (214, 178, 92), (8, 9, 10)
 
 _ANCHORS = np.array(
     [
         (150, 205, 255),
-        (88, 160, 250),
-        (52, 114, 208),
-        (48, 84, 128),
+        (96, 166, 250),
+        (62, 128, 216),
+        (62, 106, 158),
         BACK,
-        (124, 66, 48),
-        (198, 78, 48),
-        (244, 118, 70),
+        (142, 86, 62),
+        (206, 90, 58),
+        (246, 126, 80),
         (255, 182, 136),
     ],
     dtype=float,
@@ -65,6 +67,14 @@ LOADS = np.concatenate([np.linspace((84, 92, 102), (246, 246, 242), 255), [ACTUA
 def dim(colour: Colour, factor: float = 0.45) -> Colour:
     """The same hue, darker: for drawings in the background, such as an envelope."""
     red, green, blue = (int(channel * factor) for channel in colour)
+    return red, green, blue
+
+
+def curve(colour: Colour) -> Colour:
+    """The same hue, dark enough for a white ground: of a luminance of `BRIGHTEST_CURVE` at most."""
+    light = (np.array(colour) / 255.0) ** 2.2
+    share = min(1.0, BRIGHTEST_CURVE / float(light @ (0.2126, 0.7152, 0.0722)))
+    red, green, blue = (int(channel) for channel in 255.0 * (share * light) ** (1 / 2.2))
     return red, green, blue
 
 

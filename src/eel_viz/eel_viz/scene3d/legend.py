@@ -21,10 +21,11 @@ BAR_AT = (-0.50, -0.425)  # tangents: the middle of the bar
 BAR_SIZE = (0.27, 0.018)
 WORDS_AT = -0.42  # tangent: the height of the words
 FORCE_AT, ENDS_AT, WAKE_AT = -0.06, 0.27, 0.51  # tangents: the middles of the words
-PARTS_AT, RINGS_AT, BALLS_AT = -0.463, 0.30, -0.36  # tangents: the height of the lower words, and the middles of
-# the words for rings and balls
+FLOW_AT = (0.2, -0.38)  # tangents: the middle of the words on moving water, above the others
+PARTS_AT, RINGS_AT, BALLS_AT = -0.455, 0.30, -0.36  # tangents: the height of the words below, and the middles of
+# those of the rings and of the balls
 LETTERS = 0.020  # tangent: height of a capital
-BAND = (-0.60, -0.39)  # tangents: lower and upper edge of the legend's background
+BAND = (-0.60, -0.365)  # tangents: lower and upper edge of the ground of the legend
 STEPS = 33
 
 
@@ -59,6 +60,12 @@ def log_words(stream: BatchedStream, stamp: int) -> None:
     arrows = (FORCE_AT, "force of the water", colours.FORCE), (ENDS_AT, "nose and tail", colours.ENDS)
     stream.log(stamp, f"{entities.LEGEND}/arrows", _words(WORDS_AT, arrows))
     stream.log(stamp, entities.WAKE_LEGEND, _words(WORDS_AT, [(WAKE_AT, "wake", colours.WAKE)]))
+
+
+def log_flow(stream: BatchedStream, stamp: int, longest: str) -> None:
+    """Log what the arrows of the water are, and the speed that the longest of them stands for."""
+    words = f"water without the swimmer, longest {longest}"
+    stream.log(stamp, entities.FLOW_LEGEND, _words(FLOW_AT[1], [(FLOW_AT[0], words, colours.FLOW)]))
 
 
 def log_parts(stream: BatchedStream, *, fins: bool, joints: bool, appendages: bool) -> None:

@@ -66,11 +66,10 @@ class SwimmerScene:
             self._stream.add_pose(stamp, entities.EYES, position[0], backbone.orientation[0])
 
     def internal_wrench(self, stamp: int, wrench: Profiles) -> None:
-        """Colour the flanks by the torque C3, and show the greatest of the last seconds at its place."""
+        """Colour the flanks by the torque C3."""
         if not self._stream.drawing_due("flanks", stamp):
             return
-        limit, recent = self._limit.value, self._limit.recent
-        self._notes.peak(stamp, recent.place, recent.value)
+        limit = self._limit.value
         if limit != self._explained:
             if not self._explained:
                 legend.log_bar(self._stream)

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws the water around a frame of `camera`: a floor with light on it, two walls behind the swimmer, and scales.
+"""Draws the water around a frame of `camera`: a floor, two walls behind the swimmer, and scales.
 
-The floor's light is fixed in the world. Floor and walls fade into the water with distance. The floor's lines lie at
-round coordinates of the world, the walls' lines at round depths. Some have a label: x and y along the floor, the depth
-(-z) along the edge between the walls. The box follows the frame in steps of whole meshes. The size of its mesh fits the
-frame's radius.
+Floor and walls fade into the water with distance. The floor's lines lie at round coordinates of the world, the walls'
+lines at round depths. Some have a label: x and y along the floor, the depth (-z) along the edge between the walls. The
+box follows the frame in steps of whole meshes. The size of its mesh fits the frame's radius.
 """
 
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -34,8 +32,6 @@ FACE = np.stack(np.meshgrid(*2 * [np.linspace(0.0, 1.0, TILES)], indexing="ij"),
 )  # along, across
 EDGE = np.flatnonzero(FACE[:, 1] % 1.0 == 0.0)  # of a wall: only its lower and upper edge
 GRID, LABELS, WALLS, FLOOR = "grid", "labels", "walls", "floor"
-TEXTURE, WAVES = 96, 7  # pixels of the floor's light along each side, and number of the waves that focus it
-TILE = 2.0  # period of the floor's light [radii when the mesh was chosen]
 
 
 class WaterBox:
@@ -48,14 +44,7 @@ class WaterBox:
         self._box: tuple[tuple[float, ...], ...] | None = None
         walls = [k * len(EDGE) + tiles(TILES, 2) for k in range(2)]
         stream.log_static(f"{root}/{WALLS}", rr.Mesh3D.from_fields(triangle_indices=np.concatenate(walls)))
-        floor = rr.Mesh3D.from_fields(
-            triangle_indices=tiles(TILES, TILES),
-            albedo_texture_buffer=caustics().tobytes(),
-            albedo_texture_format=rr.components.ImageFormat(
-                width=TEXTURE, height=TEXTURE, color_model="RGB", channel_datatype="U8"
-            ),
-        )
-        stream.log_static(f"{root}/{FLOOR}", floor)
+        stream.log_static(f"{root}/{FLOOR}", rr.Mesh3D.from_fields(triangle_indices=tiles(TILES, TILES)))
         stream.log_static(f"{root}/{GRID}", rr.LineStrips3D.from_fields(radii=rr.Radius.ui_points(0.5)))
 
     @property
@@ -106,25 +95,18 @@ class WaterBox:
         behind = np.stack([x0 + u * (x1 - x0), np.full_like(u, y1), z0 + v * (z1 - z0)], axis=1)
         beside = np.stack([np.full_like(u, x1), y0 + u * (y1 - y0), z0 + v * (z1 - z0)], axis=1)
         lit = np.clip(1.0 - 1.8 * np.hypot(u - 0.5, v - 0.5), 0.0, 1.0)
-        self._log_mesh(stamp, FLOOR, floor, lit, colours.WATER_FLOOR, floor[:, :2] / (TILE * self._mesh))
+        self._log_mesh(stamp, FLOOR, floor, lit, colours.WATER_FLOOR)
         above = np.tile((v * np.sin(np.pi * u))[EDGE], 2)
         self._log_mesh(stamp, WALLS, np.concatenate([behind[EDGE], beside[EDGE]]), above, colours.WATER_SHALLOW)
 
     def _log_mesh(
-        self,
-        stamp: int,
-        name: str,
-        places: np.ndarray,
-        lit: np.ndarray,
-        bright: colours.Colour,
-        pattern: np.ndarray | None = None,
+        self, stamp: int, name: str, places: np.ndarray, lit: np.ndarray, bright: colours.Colour
     ) -> None:
         """Log the mesh `name` with vertices at `places` (n, 3) [m], in the colour `bright` by shares `lit` (n,)."""
         deep = np.array(colours.WATER_DEEP)
         mesh = rr.Mesh3D.from_fields(
             vertex_positions=places.astype(np.float32),
             vertex_colors=(deep + lit[:, None] * (np.array(bright) - deep)).astype(np.uint8),
-            vertex_texcoords=None if pattern is None else pattern.astype(np.float32),
         )
         self._stream.log(stamp, f"{self._root}/{name}", mesh)
 
@@ -155,22 +137,6 @@ class WaterBox:
             shades,
         )
         self._stream.log(stamp, f"{self._root}/{LABELS}", letters)
-
-
-@lru_cache(maxsize=1)
-def caustics() -> np.ndarray:
-    """Light below waves, uint8 (TEXTURE, TEXTURE, 3), periodic: rays refracted by the slopes of a wavy surface."""
-    chance = np.random.default_rng(3)
-    number = chance.integers(-4, 5, size=(WAVES, 2))  # numbers of waves per tile
-    phase = chance.uniform(0.0, 2.0 * np.pi, WAVES)
-    rays = np.stack(np.meshgrid(*2 * [np.arange(0.0, 1.0, 0.25 / TEXTURE)]), axis=-1)
-    slopes = np.cos(2.0 * np.pi * rays @ number.T + phase) @ (
-        number / np.maximum(1.0, np.square(number).sum(1))[:, None]
-    )
-    pixels = ((rays + 0.05 * slopes) * TEXTURE).astype(int) % TEXTURE
-    hits = np.bincount((pixels @ (TEXTURE, 1)).ravel(), minlength=TEXTURE**2).reshape(TEXTURE, TEXTURE) / 16.0
-    light = np.clip(0.32 + 0.30 * hits, 0.0, 1.0)
-    return np.asarray(np.repeat((255.0 * light)[:, :, None], 3, axis=2), dtype=np.uint8)
 
 
 def fitting_mesh(limit: float) -> float:

@@ -30,8 +30,7 @@ REPEATED_FROM = 0.4  # of a run: playback repeats the rest, where the swim is se
 POWER_SHOWN = 4.0  # s: window of the shown power, so that its scale fits the swim and not its start
 TORQUE_MAP = "Torque C3 over body and time"
 LOAD_MAP = "Torque of each motor in time, as a share of its limit, red at it; in N m without limits"
-HARDEST = "Hardest-working motor [N m]: torque red, limit white"
-XYZ = "x orange, y green, z blue"
+HARDEST = "Hardest-working motor [N m]"
 
 
 def overview(look: Look) -> rrb.Container:
@@ -41,35 +40,16 @@ def overview(look: Look) -> rrb.Container:
         rrb.Vertical(
             map_view(entities.HEAT_MAP, TORQUE_MAP),
             profile_view(entities.TORQUE, "Internal torque C(X)"),
-            series_view(look, power_name(look), entities.POWER, entities.POWER_BESIDES, last=POWER_SHOWN),
+            series_view(look, "Power [W]", entities.POWER, entities.POWER_BESIDES, last=POWER_SHOWN, several=True),
             rrb.Horizontal(
                 series_view(look, "Speed of the head [m/s]", entities.SPEED),
                 series_view(look, "Depth of the head [m]", entities.DEPTH),
             ),
-            row_shares=[0.95, 0.85, 1.3, 1.1],
+            row_shares=[0.85, 0.85, 1.9, 0.9],
         ),
         column_shares=[1.15, 1.0],
         name="overview",
     )
-
-
-def power_name(look: Look) -> str:
-    """The name of the plot of powers, short enough for a window of 1280 pixels. A flow's power, if any, is blue.
-
-    Beside fins and dampers the nose is not named: its colour is the same in the scene's legend.
-    """
-    named = {
-        "nose magenta": not (look.fins and look.joints),
-        "fins lime": look.fins,
-        "dampers brown": look.joints,
-    }
-    words = ("actuators red", "drag yellow", "wake violet", *(name for name, there in named.items() if there))
-    return f"Power [W]: {', '.join(words)}"
-
-
-def energy_name(look: Look) -> str:
-    """The name of the plot of energies. Weight and springs have curves if there are any."""
-    return f"Energy [J]: body grey, water yellow, weight blue{', springs brown' if look.joints else ''}"
 
 
 def torques(look: Look) -> rrb.Container:
@@ -91,7 +71,7 @@ def robot(look: Look) -> rrb.Container:
         rrb.Vertical(following_view(look), texts(look), row_shares=[2.3, 1.0]),
         rrb.Vertical(
             map_view(entities.LOAD_MAP, LOAD_MAP),
-            series_view(look, HARDEST, entities.HARDEST_MOTOR),
+            series_view(look, HARDEST, entities.HARDEST_MOTOR, several=True),
             series_view(look, "Motors at their limits", entities.SATURATED),
             rrb.Horizontal(
                 series_view(look, "Power of all motors [W]", entities.MOTOR_POWER, last=POWER_SHOWN),
@@ -111,15 +91,15 @@ def motion(look: Look) -> rrb.Container:
             path_view(look),
             rrb.Horizontal(
                 series_view(look, "Speed of the head [m/s]", entities.SPEED),
-                series_view(look, energy_name(look), entities.KINETIC, entities.STORED),
+                series_view(look, "Energy [J]", entities.KINETIC, entities.STORED, several=True),
             ),
             row_shares=[2.1, 1.0],
         ),
         rrb.Vertical(
-            series_view(look, "Head [deg]: heading blue, pitch green, roll orange", entities.ATTITUDE),
-            series_view(look, f"Velocity of the head in base_link [m/s]: {XYZ}", entities.LINEAR),
-            series_view(look, f"Angular velocity in base_link [rad/s]: {XYZ}", entities.ANGULAR),
-            *([series_view(look, "Angles of the fins [deg]", entities.FIN_ANGLES)] if look.fins else []),
+            series_view(look, "Attitude of the head [deg]", entities.ATTITUDE, several=True),
+            series_view(look, "Velocity of the head in base_link [m/s]", entities.LINEAR, several=True),
+            series_view(look, "Angular velocity in base_link [rad/s]", entities.ANGULAR, several=True),
+            *([series_view(look, "Angles of the fins [deg]", entities.FIN_ANGLES, several=True)] if look.fins else []),
         ),
         column_shares=[1.3, 1.0],
         name="motion",
@@ -156,7 +136,7 @@ def compare(look: Look) -> rrb.Container:
             following_view(look, both=True),
             rrb.Horizontal(
                 series_view(look, "Heads apart [m]", entities.DISTANCE),
-                series_view(look, "Speeds [m/s]: this grey, other white", *speeds),
+                series_view(look, "Speeds [m/s]", *speeds, several=True),
             ),
             row_shares=[1.9, 1.0],
         ),

@@ -113,10 +113,12 @@ def texts(look: Look) -> rrb.Container:
     )
 
 
-def series_view(look: Look, name: str, *paths: str, last: float = 0.0) -> rrb.TimeSeriesView:
-    """Values over time, of the whole run or of the `last` seconds before the cursor.
+def series_view(
+    look: Look, name: str, *paths: str, last: float = 0.0, several: bool = False
+) -> rrb.TimeSeriesView:
+    """Values over time, of the whole run or of the `last` seconds before the cursor, in the colours of the theme.
 
-    The name gives the meaning of the colours, so no legend covers the curves.
+    several: curves, which the viewer's legend names.
     """
     start = end = rrb.TimeRangeBoundary.infinite()
     if last:
@@ -127,8 +129,7 @@ def series_view(look: Look, name: str, *paths: str, last: float = 0.0) -> rrb.Ti
         name=name,
         origin=entities.PLOTS,
         contents=list(paths),
-        plot_legend=rrb.PlotLegend(visible=False),
+        plot_legend=rrb.PlotLegend(visible=several, corner="LeftTop"),
         axis_x=rrb.TimeAxis(view_range=rr.TimeRange(start=start, end=end)),
         time_ranges=rrb.VisibleTimeRange(entities.TIMELINE, start=start, end=end) if last else None,
-        background=rrb.archetypes.PlotBackground(color=colours.PLOT_BACKGROUND),
     )
