@@ -31,8 +31,10 @@ html_show_sphinx = False
 mathjax_path = "tex-svg.js"  # shipped by the package: one file with its fonts, nothing from the network
 (mathjax,) = (str(path.locate()) for path in files("sphinx-mathjax-offline") or () if path.name == mathjax_path)
 html_static_path = ["site", mathjax]
-html_css_files, html_js_files = ["site.css"], ["tables.js"]
+html_css_files, html_js_files = ["site.css"], ["tables.js", "copy.js", ("swims.js", {"defer": "defer"})]
 html_search_scorer = str(Path(__file__).with_name("site") / "search.js")
+# Rerun's web viewer would ask other servers for its newest release, and tell them of its use
+POLICY = """<meta http-equiv="Content-Security-Policy" content="connect-src 'self'">"""
 LINK_OUT = re.compile(r"\[([^\]]+)\]\((\.\./[^)#]+)\)")
 
 
@@ -48,6 +50,12 @@ def without_links_to_folders(app, name, source):
     source[0] = LINK_OUT.sub(shown, source[0])
 
 
+def with_policy(app, name, template, context, tree):
+    """A page's scripts reach the site itself alone."""
+    context["metatags"] = context.get("metatags", "") + POLICY
+
+
 def setup(app):
     """What Sphinx calls first."""
     app.connect("source-read", without_links_to_folders)
+    app.connect("html-page-context", with_policy)

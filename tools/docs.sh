@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# The site of docs/ in out/docs, or (docs.sh notebook) the notebook run anew in out/notebook.
+# The site of docs/ in out/docs, with the recordings of its gallery, or (docs.sh notebook) the notebook run anew in out/notebook.
 # Sphinx and Jupyter lie in an environment of their own, .venv-docs, pinned by docs/requirements.txt; it sees this
 # folder's packages. A warning is an error: a link that leads nowhere, a name that autodoc does not find.
 set -euo pipefail
@@ -25,4 +25,5 @@ if [ "${1-}" = notebook ]; then
 fi
 .venv/bin/python tools/reference_pages.py
 "$env/bin/python" -m sphinx --builder html --fail-on-warning --keep-going --quiet docs out/docs
+.venv/bin/python tools/gallery.py site out/docs
 echo "[docs] out/docs/index.html"
