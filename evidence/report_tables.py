@@ -9,9 +9,11 @@ import csv
 import re
 import sys
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 from eel_common.files.markdown import table, with_part
+from speed_chart import speed_chart
 
 ROOT = Path(__file__).resolve().parent.parent
 REPORTS = ROOT / "benchmarks" / "reports"
@@ -45,8 +47,8 @@ class Report:
         """The number behind a label."""
         return float(self.rest(label).split()[0])
 
-    def ratios(self, case: str) -> str:
-        """How many times cheaper we are in the cases whose heading matches, and in the sizes listed under it."""
+    def ratios(self, case: str) -> tuple[float, float]:
+        """The least and the greatest of how many times cheaper we are in the cases whose heading matches, and in the sizes listed under it."""
         found, inside = [], False
         for line in self.lines:
             if re.match(r"\d|with |motion alone$|[A-Z]", line):
@@ -56,7 +58,7 @@ class Report:
                 found.append(float(ratio[1]))
         if not found:
             raise ValueError(f"{self.path.name} has no case {case!r} under {self.figure}: {self.command}")
-        return f"{min(found):,.0f} to {max(found):,.0f} times"
+        return min(found), max(found)
 
 
 def link(report: Report, folder: str = "") -> str:
@@ -66,12 +68,31 @@ def link(report: Report, folder: str = "") -> str:
 
 TARGETS = {"0.01": "1e-2 (`draft`)", "0.001": "1e-3", "0.0001": "1e-4 (`standard`)", "1e-06": "1e-6 (`fine`)"}
 AGAIN = ", on a busy machine, to be measured again"  # where a report says so
+TITLE = "Processor time at equal error, by ours"
 MOTION, ALL = "motion alone", "ledger, wrench, 201 samples"
 
 
+CHART = ROOT / "docs" / "images" / "speed.svg"
+
+
+def bars(folder: str) -> str:
+    """README and the landing page: a chart of what other programs take for the falling gait, which is drawn."""
+    peers = Report("peers")
+    others = {
+        "the paper's own scheme": Report("paper_scheme").ratios("motion alone"),
+        "MuJoCo, joints prescribed": peers.ratios("[0-9]+ links, joints prescribed"),
+        "MuJoCo, servos": peers.ratios("10 links, step"),
+        "PyElastica": peers.ratios("[0-9]+ elements"),
+    }
+    chart = speed_chart(TITLE, [("this simulator", 1.0, 1.0), *((name, *times) for name, times in others.items())])
+    CHART.write_text(chart, encoding="utf-8")
+    told = ", ".join(f"{name} {least:,.0f} to {most:,.0f}" for name, (least, most) in others.items())
+    return f"![{TITLE}: this simulator 1, {told}]({folder}images/speed.svg)"
+
+
 def speed() -> str:
-    """README: error against cost of the falling gait, and what other programs take for it."""
-    falling, scheme, peers = map(Report, ("falling", "paper_scheme", "peers"))
+    """docs/explanation/accuracy.md: error against cost of the falling gait."""
+    falling, peers = Report("falling"), Report("peers")
     rows = []
     for target, label in TARGETS.items():
         cells = [label]
@@ -83,16 +104,11 @@ def speed() -> str:
 
     cases = [f"with the error estimate, {case}, target {target}" for case in (MOTION, ALL) for target in TARGETS]
     longer = [falling.value(case) for case in cases]
-    prescribed, servos = peers.ratios("[0-9]+ links, joints prescribed"), peers.ratios("10 links, step")
     again = AGAIN if "to be measured again" in peers.path.read_text(encoding="utf-8") else ""
     return f"""{table(("target", MOTION, ALL), rows)}
 
 Times real time (error of the head's position, by its path). A run that measures its own error, as
-`simulate` does, takes {min(longer):.1f} to {max(longer):.1f} times as long. Others take longer at equal
-error, with less physics of the water ({link(falling)}, {link(peers)}{again}):
-- the paper's own scheme: {scheme.ratios("motion alone")}
-- MuJoCo: {prescribed} with joints prescribed, {servos} with servos
-- PyElastica: {peers.ratios("[0-9]+ elements")}"""
+`simulate` does, takes {min(longer):.1f} to {max(longer):.1f} times as long. From {link(falling, "../../")}; other programs: {link(peers, "../../")}{again}."""
 
 
 ACTUATORS, OF_PATH = " of the actuators' work", " of the path"
@@ -196,7 +212,9 @@ def _from(report: Report, head: Sequence[str], rows: Sequence[Sequence[str]], ma
 
 
 BLOCKS: dict[str, dict[str, Callable[[], str]]] = {
-    "README.md": {"life": life, "speed": speed},
+    "README.md": {"life": life, "bars": partial(bars, "docs/")},
+    "docs/index.md": {"life": life, "bars": partial(bars, "")},
+    "docs/explanation/accuracy.md": {"speed": speed},
     "docs/explanation/trust.md": {"checks": checks},
     "docs/howto/controllers.md": {"lockstep": lockstep},
     "docs/howto/learning.md": {"gym": gym},

@@ -45,6 +45,7 @@ def power(value: float) -> str:
 
 QUOTED = {
     "docs/explanation/accuracy.md": (
+        *(f"| {power(target)} (`{name}`) |" for name, target in accuracy.PRESETS.items() if target > 1e-8),
         ", ".join(f"`{name}` {power(target)}" for name, target in accuracy.PRESETS.items()),
         f"The tolerance of a step is a {accuracy.STEPS_ERRORS:g}th of the target",
         f"gets a {accuracy.SAFE_STEPS_ERRORS:g}th. Of a robot it is a {accuracy.ROBOT_STEPS:g}th.",
@@ -105,7 +106,6 @@ QUOTED = {
         f"visualiser's data (port {Settings().port}) and web viewer ({Settings().web_port})",
         *(f" -L {port}:127.0.0.1:{port} " for port in (Settings().port, Settings().web_port)),
     ),
-    "README.md": tuple(f"| {power(target)} (`{name}`) |" for name, target in accuracy.PRESETS.items() if target > 1e-8),
 }
 
 
