@@ -48,7 +48,10 @@ class Report:
         return float(self.rest(label).split()[0])
 
     def ratios(self, case: str) -> tuple[float, float]:
-        """The least and the greatest of how many times cheaper we are in the cases whose heading matches, and in the sizes listed under it."""
+        """The least and the greatest number of times that we are cheaper.
+
+        Of the cases whose heading matches, and of the sizes listed under it.
+        """
         found, inside = [], False
         for line in self.lines:
             if re.match(r"\d|with |motion alone$|[A-Z]", line):
@@ -108,7 +111,8 @@ def speed() -> str:
     return f"""{table(("target", MOTION, ALL), rows)}
 
 Times real time (error of the head's position, by its path). A run that measures its own error, as
-`simulate` does, takes {min(longer):.1f} to {max(longer):.1f} times as long. From {link(falling, "../../")}; other programs: {link(peers, "../../")}{again}."""
+`simulate` does, takes {min(longer):.1f} to {max(longer):.1f} times as long.
+From {link(falling, "../../")}; other programs: {link(peers, "../../")}{again}."""
 
 
 ACTUATORS, OF_PATH = " of the actuators' work", " of the path"

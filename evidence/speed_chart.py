@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A bar chart of how many times longer other programs take, as SVG that can be read on a light ground and a dark one."""
+"""A bar chart of how many times longer other programs take, as SVG for a light ground and a dark one."""
 
 import math
 from collections.abc import Sequence

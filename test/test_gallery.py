@@ -16,7 +16,7 @@ from eel_dynamics import simulate
 from eel_gaits import straight
 
 ROOT = Path(__file__).resolve().parents[1]
-needs_browser = pytest.mark.skipif(browser.found() is None, reason="Chromium is not installed (apt-get install chromium)")
+needs_browser = pytest.mark.skipif(browser.found() is None, reason="no Chromium: apt-get install chromium")
 WINDOW = 480, 400  # pixels: software draws
 PAGE = """<!doctype html><meta charset="utf-8">{policy}<link rel="stylesheet" href="_static/site.css">
 <body data-theme="{theme}"><section id="gallery"><section id="swim"><img src="_static/swim.webp"></section>

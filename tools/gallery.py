@@ -3,7 +3,7 @@
 
 `python tools/gallery.py site FOLDER` puts recordings and viewer into the site in FOLDER (`make docs`);
 `python tools/gallery.py pictures` draws docs/images/gallery anew (`make pictures`).
-The code of a section writes the recording SECTION.rrd. Rerun's executable holds its web viewer: it serves the two files.
+The code of a section writes the recording SECTION.rrd. Rerun's executable serves the two files of its web viewer.
 """
 
 import contextlib
@@ -47,7 +47,9 @@ def record(name: str, code: str, target: Path) -> None:
         command = [native_viewer(), "rrd", "optimize", str(written), "-o", str(target)]
         subprocess.run(command, check=True, capture_output=True)
     if target.stat().st_size > LARGEST:
-        raise ValueError(f"{target.name} must be at most {LARGEST / 1e6:g} MB, got {target.stat().st_size / 1e6:.2f} MB")
+        raise ValueError(
+            f"{target.name} must be at most {LARGEST / 1e6:g} MB, got {target.stat().st_size / 1e6:.2f} MB"
+        )
 
 
 def add_viewer(folder: Path) -> None:

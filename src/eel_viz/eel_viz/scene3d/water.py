@@ -99,9 +99,7 @@ class WaterBox:
         above = np.tile((v * np.sin(np.pi * u))[EDGE], 2)
         self._log_mesh(stamp, WALLS, np.concatenate([behind[EDGE], beside[EDGE]]), above, colours.WATER_SHALLOW)
 
-    def _log_mesh(
-        self, stamp: int, name: str, places: np.ndarray, lit: np.ndarray, bright: colours.Colour
-    ) -> None:
+    def _log_mesh(self, stamp: int, name: str, places: np.ndarray, lit: np.ndarray, bright: colours.Colour) -> None:
         """Log the mesh `name` with vertices at `places` (n, 3) [m], in the colour `bright` by shares `lit` (n,)."""
         deep = np.array(colours.WATER_DEEP)
         mesh = rr.Mesh3D.from_fields(

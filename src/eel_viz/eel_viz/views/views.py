@@ -113,9 +113,7 @@ def texts(look: Look) -> rrb.Container:
     )
 
 
-def series_view(
-    look: Look, name: str, *paths: str, last: float = 0.0, several: bool = False
-) -> rrb.TimeSeriesView:
+def series_view(look: Look, name: str, *paths: str, last: float = 0.0, several: bool = False) -> rrb.TimeSeriesView:
     """Values over time, of the whole run or of the `last` seconds before the cursor, in the colours of the theme.
 
     several: curves, which the viewer's legend names.

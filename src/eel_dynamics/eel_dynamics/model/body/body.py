@@ -83,8 +83,8 @@ class Body:
         round_added_mass: C_a, of a circular section by that of potential flow, along axes 2 and 3; a section between
             plate and circle has 1 - (1 - C_a) s^2 with its roundness s. 1 where the flow is attached; 0.2 in separated
             cross flow.
-        joint_drag, link_length: c_s and p [m] of the drag of links, -1/2 rho_f c_s (A / p) abs(V) V1 per length: 0 for one
-            smooth body, 0.87 where each link is a blunt cylinder alone.
+        joint_drag, link_length: c_s and p [m] of the drag of links, -1/2 rho_f c_s (A / p) abs(V) V1 per length: 0 for
+            one smooth body, 0.87 where each link is a blunt cylinder alone.
         base_drag: c_b, of the area at the tail's end, -1/2 rho_f c_b A(l) V1 abs(V1) there.
         appendages: drag areas fixed to sections, each an `Appendage`. appendage_factor: times all of these areas.
         name: what messages call the body.
