@@ -71,7 +71,7 @@ def link(report: Report, folder: str = "") -> str:
 
 TARGETS = {"0.01": "1e-2 (`draft`)", "0.001": "1e-3", "0.0001": "1e-4 (`standard`)", "1e-06": "1e-6 (`fine`)"}
 AGAIN = ", on a busy machine, to be measured again"  # where a report says so
-TITLE = "Processor time at equal error, by ours"
+TITLE = "Processor time for the same swim at equal error, times ours (logarithmic)"
 MOTION, ALL = "motion alone", "ledger, wrench, 201 samples"
 
 
