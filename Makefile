@@ -2,7 +2,7 @@
 # The two commands are `make demo` and `make test`; each does all the set-up itself, inside this folder.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: docs notebook evidence help demo test sanitize aarch64 validation build bench lint soak robustness clean
+.PHONY: docs notebook evidence pictures help demo test sanitize aarch64 validation build bench lint soak robustness clean
 RUN := tools/run.sh
 
 help:   ## this list
@@ -29,7 +29,7 @@ soak: build   ## the long tests (ARGS=... goes to pytest)
 bench: build   ## speed and accuracy figures (ARGS=NAME for one of them)
 	@$(RUN) python benchmarks/run.py $(ARGS)
 
-docs: build   ## the site of docs/ in out/docs, links checked
+docs: build   ## the site of docs/ in out/docs with its gallery, links checked
 	@$(RUN) tools/docs.sh
 
 notebook: build   ## run docs/tutorials/swim.ipynb anew, with its outputs in out/notebook
@@ -37,6 +37,10 @@ notebook: build   ## run docs/tutorials/swim.ipynb anew, with its outputs in out
 
 evidence: build   ## write the pages, tables and pictures of docs that the scripts in evidence make (ARGS=NAME for some)
 	@$(RUN) python evidence/everything.py $(ARGS)
+
+pictures: build   ## draw the films and pictures of docs anew, those of the gallery too (needs a Vulkan driver)
+	@$(RUN) python evidence/everything.py pictures manoeuvres tutorial_pictures
+	@$(RUN) python tools/gallery.py pictures $(ARGS)
 
 robustness: build   ## list every fault, and the test that shows what happens, in out/robustness.md
 	@$(RUN) python evidence/fault_table.py

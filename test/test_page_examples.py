@@ -25,6 +25,7 @@ from eel_gaits import straight
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 BLOCK = re.compile(r"(?:<!-- (listing)[^\n]*-->\n)?^```([^\n`]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+DEAR = ("gallery",)  # `make docs` runs it too
 RUN = ("eel simulate", "eel identify", "eel ballast")
 FOREIGN = ("colcon", "dask", "export", "pip", "python", "python3", "rerun", "rosdep", "source", "sudo", "touch")
 FOREIGN += ("ekf_node", "robot_state_publisher", "ros2_control_node", "rviz2", "spawner")  # of ROS 2
@@ -120,7 +121,12 @@ def folder(tmp_path, monkeypatch):
 
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize(
-    "page", [pytest.param(page, id=page.stem) for page in PAGES if blocks(page, "python") or blocks(page, "")]
+    "page",
+    [
+        pytest.param(page, id=page.stem, marks=[pytest.mark.soak] if page.stem in DEAR else [])
+        for page in PAGES
+        if blocks(page, "python") or blocks(page, "")
+    ],
 )
 def test_python_of_a_page_runs_and_its_shell_names_what_exists(page, folder):
     """In one folder: some commands read files that the Python before them has written, or the measured files."""

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Plots against X, the heat map, colours and summary: what is drawn, read back from a recording."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import rerun as rr
@@ -13,8 +15,10 @@ from eel_viz.plots.series import Attitude
 from eel_viz.plots.state_text import Summary, number, quantity
 from eel_viz.recording.reading import read
 from eel_viz.robots import motor_plots
-from eel_viz.scene3d import colours
+from eel_viz.scene3d import colours, legend
+from eel_viz.scene3d.arrows import RADII, Arrows
 from eel_viz.scene3d.lettering import strokes_of
+from eel_viz.settings import Settings
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -253,7 +257,6 @@ def test_contrast_is_that_of_the_web_s_guidelines():
 def test_space_drawings_and_maps_have_our_ground_and_letters_and_all_else_the_theme_s(stream):
     """The viewer draws its own labels on plates of its theme: none may be shown on a ground of ours."""
     from eel_viz.recording.loggers import Loggers
-    from eel_viz.settings import Settings
     from eel_viz.views.blueprint import ARRANGEMENTS
     from eel_viz.views.views import PLAIN
     from made_up import Swimmer
@@ -295,6 +298,22 @@ def test_letters_are_as_high_and_stand_where_they_are_told():
         x = np.concatenate(strokes_of("XX", align))[:, 0]
         assert (x.min() + x.max()) / 2 == pytest.approx((0.5 - align) * 2 * 20 / 21, abs=0.01)
     assert len(strokes_of("ä")) == len(strokes_of("?"))
+
+
+def test_arrows_are_as_thick_as_fits_the_body(stream):
+    arrows = Arrows(stream, Settings())
+    arrows.body(0, SimpleNamespace(length=0.1))
+    stream.disconnect()
+    for path, thickness in RADII.items():
+        assert read(stream.path, path, static=True)["radii"][-1] == pytest.approx([0.1 * thickness])
+
+
+def test_the_legend_tells_small_torques_in_thousandths(stream):
+    legend.log_limit(stream, 0, limit=0.0015, unit="N m", name="C3")
+    legend.log_limit(stream, 1, limit=0.3, unit="N m", name="C3")
+    stream.disconnect()
+    told = read(stream.path, f"{entities.LEGEND}/labels").values["labels"]
+    assert told == [["-1.5", "C3 [mN m]", "+1.5"], ["-0.3", "C3 [N m]", "+0.3"]]
 
 
 def test_diverging_colours_are_ordered_and_differ_in_hue_from_the_middle():

@@ -10,15 +10,15 @@ from eel_common.attitude import world_from_section
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
-from eel_viz.messages import Backbone, Load
+from eel_viz.messages import Backbone, Body, Load
 from eel_viz.same_stamp import SameStamp
 from eel_viz.scene3d import colours, legend
 from eel_viz.scene3d.centre_line import forces_along, forces_at_ends
 from eel_viz.scene3d.track import Wake
 from eel_viz.settings import Settings
 
-LONGEST = 0.16  # m: longest arrow of the water's velocity
-RADII = {entities.LOAD: 0.0022, entities.LOAD_ENDS: 0.004, entities.FLOW: 0.0018}  # m
+LONGEST = 0.16  # body lengths: longest arrow of the water's velocity
+RADII = {entities.LOAD: 0.0022, entities.LOAD_ENDS: 0.004, entities.FLOW: 0.0018}  # body lengths
 COLOURS = {entities.LOAD: colours.FORCE, entities.LOAD_ENDS: colours.ENDS, entities.FLOW: colours.FLOW}
 
 
@@ -30,8 +30,18 @@ class Arrows:
         self._both = SameStamp(self._draw)
         self._wake = Wake(stream, settings.wake_scale)
         self._explained, self._fastest, self._told = False, 0.0, ""  # m/s: of the water so far, and in the legend
+        self._length = 1.0  # m, of the body
+        self._log_styles()
+
+    def body(self, stamp: int, body: Body) -> None:
+        self._length = body.length
+        self._log_styles()
+
+    def _log_styles(self) -> None:
+        """Log colour and thickness of the arrows, for all times."""
         for path, colour in COLOURS.items():
-            stream.log_static(path, rr.Arrows3D.from_fields(colors=[colour], radii=[RADII[path]]))
+            style = rr.Arrows3D.from_fields(colors=[colour], radii=[RADII[path] * self._length])
+            self._stream.log_static(path, style)
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
         if self._stream.drawing_due("line with load", stamp):
@@ -52,7 +62,7 @@ class Arrows:
             if (told := f"{self._fastest:.2g} m/s") != self._told:
                 self._told = told
                 legend.log_flow(self._stream, stamp, told)
-            self._log(stamp, entities.FLOW, position, LONGEST / max(self._fastest, 1e-9) * velocity)
+            self._log(stamp, entities.FLOW, position, LONGEST * self._length / max(self._fastest, 1e-9) * velocity)
 
     def _draw(self, stamp: int, backbone: Backbone, load: Load) -> None:
         places, forces = forces_along(backbone, load)

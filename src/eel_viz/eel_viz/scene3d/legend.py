@@ -27,6 +27,7 @@ PARTS_AT, RINGS_AT, BALLS_AT = -0.455, 0.30, -0.36  # tangents: the height of th
 LETTERS = 0.020  # tangent: height of a capital
 BAND = (-0.60, -0.365)  # tangents: lower and upper edge of the ground of the legend
 STEPS = 33
+MILLI = 0.01  # below this limit the bar tells thousandths of its unit
 
 
 def log_bar(stream: BatchedStream) -> None:
@@ -46,6 +47,8 @@ def log_bar(stream: BatchedStream) -> None:
 
 def log_limit(stream: BatchedStream, stamp: int, *, limit: float, unit: str, name: str) -> None:
     """Log the bar's range from `stamp` [ns] on: the values -limit to +limit of the quantity `name`."""
+    if limit < MILLI:
+        limit, unit = 1e3 * limit, f"m{unit}"
     under = camera.before_eye(DISTANCE, *BAR_AT) - 1.3 * LETTERS * camera.UP
     places = [under + share * BAR_SIZE[0] * camera.RIGHT for share in (-0.5, 0.0, 0.5)]
     stream.log(

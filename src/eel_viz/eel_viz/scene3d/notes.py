@@ -14,6 +14,7 @@ from eel_viz.scene3d.lettering import standing_texts
 PERIOD = 400_000_000  # ns: a number that changed faster could not be read
 LETTERS = 0.043  # height of a capital [radii]
 AHEAD = (0.06, 0.26)  # from head to begin and end of the arrow [body lengths]
+THICK = 0.007  # radius of the arrow [body lengths]
 NEARER = 0.25
 SLOW = 0.01  # body lengths per second, below which no direction is shown
 ABOVE = 0.12  # of the words over the arrow [radii]
@@ -27,7 +28,12 @@ class Notes:
         self._stream = stream
         self._heading = SameStamp(self._draw_heading)
         self._words, self._written = "", -PERIOD  # and when they were written [ns]
-        stream.log_static(entities.HEADING, rr.Arrows3D.from_fields(colors=[colours.NOTE], radii=[0.007]))
+        self.fit(1.0)
+
+    def fit(self, length: float) -> None:
+        """Fit the arrow to a body of `length` [m]."""
+        style = rr.Arrows3D.from_fields(colors=[colours.NOTE], radii=[THICK * length])
+        self._stream.log_static(entities.HEADING, style)
 
     def body(self, stamp: int, backbone: Backbone, velocity: np.ndarray, frame: Frame) -> None:
         """Take the body at `stamp` [ns]. velocity: of the whole swimmer, (3,) [m/s]. frame: the camera's."""

@@ -36,6 +36,7 @@ class SwimmerScene:
     def body(self, stamp: int, body: Body) -> None:
         """Take the sections, and log the constant data of skin and eyes."""
         self._skin = skin = Skin(body.x, body.half_width, body.half_height)
+        self._notes.fit(body.length)
         self._stream.log_static(entities.SKIN, rr.Mesh3D.from_fields(triangle_indices=skin.triangles))
         # until a torque comes; not static, as static colours would hide later ones
         self._stream.add_row(0, entities.SKIN, rr.Mesh3D, vertex_colors=skin.shades)
