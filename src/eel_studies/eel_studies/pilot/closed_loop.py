@@ -93,4 +93,4 @@ def swim_with(
         simulation.advance((step + 1) * STEP)
     columns: list[Any] = [np.array(column) for column in zip(*rows, strict=True)]
     run = Run.of_snapshots(snapshots, simulation, Law(name="pilot")) if kept else None
-    return Voyage(*columns, tuple(pilot.misses), tuple(news.text for news in pilot.news), run)
+    return Voyage(*(*columns, tuple(pilot.misses), tuple(news.text for news in pilot.news), run))
