@@ -64,10 +64,18 @@ class Destination(ABC):
         """The stream of recording `number` (1, 2, ...), called `name`; None if it cannot be opened at present."""
 
     def make_stream(
-        self, sink: rr.FileSink | rr.GrpcSink, name: str, batches: rr.ChunkBatcherConfig | None = None
+        self,
+        sink: rr.FileSink | rr.GrpcSink,
+        name: str,
+        batches: rr.ChunkBatcherConfig | None = None,
+        identifier: str | None = None,
     ) -> rr.RecordingStream:
-        """A stream to `sink` for a recording called `name`. batches: how Rerun batches data before sending."""
-        stream = rr.RecordingStream(APPLICATION, batcher_config=batches or rr.ChunkBatcherConfig.DEFAULT())
+        """A stream to `sink` for a recording called `name`. batches: how Rerun batches data before sending.
+
+        identifier: of the recording; None: a new one.
+        """
+        batcher = batches or rr.ChunkBatcherConfig.DEFAULT()
+        stream = rr.RecordingStream(APPLICATION, recording_id=identifier, batcher_config=batcher)
         stream.set_log_time_enabled(False)
         stream.set_sinks(sink, default_blueprint=self.blueprint())
         if self.live and not self._blueprint_sent:  # viewers ignore a default blueprint after the first data

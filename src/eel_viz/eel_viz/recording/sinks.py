@@ -10,6 +10,7 @@ import ipaddress
 import socket
 import subprocess
 import threading
+import uuid
 from functools import partial
 from urllib.parse import urlsplit
 
@@ -54,9 +55,10 @@ class ServerDestination(Destination):
             cors_allow_origin=pages,
         )
         self.uri = f"rerun+http://{self._here}:{port}/proxy"
-        self._host = rr.RecordingStream(APPLICATION, send_properties=False)
+        # viewers list the server's own recording with the runs: the first run carries it on
+        self._identifier: str | None = str(uuid.uuid4())
+        self._host = rr.RecordingStream(APPLICATION, recording_id=self._identifier, send_properties=False)
         self._host.set_sinks(server)
-        self._host.send_recording_name("(server)")  # viewers list it with the runs
         self._viewers = ViewerConnections(port)
         self._shown_uri = f"rerun+http://{self._name}:{port}/proxy"
         log_info(f"serving on {address}; to look at it, now or later: rerun {self._shown_uri}")
@@ -66,7 +68,9 @@ class ServerDestination(Destination):
             )
 
     def open(self, number: int, name: str) -> Delivery:
-        return ServerDelivery(self, self.make_stream(rr.GrpcSink(self.uri), name), self._viewers)
+        stream = self.make_stream(rr.GrpcSink(self.uri), name, identifier=self._identifier)
+        self._identifier = None
+        return ServerDelivery(self, stream, self._viewers)
 
     def close(self) -> None:
         """Close the servers, after the streams of the recordings."""
