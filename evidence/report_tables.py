@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 
 from eel_common.files.markdown import table, with_part
-from speed_chart import speed_chart
+from others.speed_chart import speed_chart
 
 ROOT = Path(__file__).resolve().parent.parent
 REPORTS = ROOT / "benchmarks" / "reports"

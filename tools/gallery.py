@@ -108,7 +108,7 @@ def main(words: list[str]) -> int:
     """Status 2 for words that are none, 3 where the viewer cannot draw."""
     match words:
         case ["site", folder]:
-            make_site(Path(folder))
+            make_site(Path(folder).resolve())
         case ["pictures", *names]:
             try:
                 draw_pictures(names)
