@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 
 from eel_common.files.markdown import table, with_part
-from others.speed_chart import speed_chart
+from others.speed_chart import TITLE, speed_chart
 
 ROOT = Path(__file__).resolve().parent.parent
 REPORTS = ROOT / "benchmarks" / "reports"
@@ -71,25 +71,26 @@ def link(report: Report, folder: str = "") -> str:
 
 TARGETS = {"0.01": "1e-2 (`draft`)", "0.001": "1e-3", "0.0001": "1e-4 (`standard`)", "1e-06": "1e-6 (`fine`)"}
 AGAIN = ", on a busy machine, to be measured again"  # where a report says so
-TITLE = "Processor time for the same swim at equal error, times ours (logarithmic)"
 MOTION, ALL = "motion alone", "ledger, wrench, 201 samples"
 
 
 CHART = ROOT / "docs" / "images" / "speed.svg"
 
 
-def bars(folder: str) -> str:
-    """README and the landing page: a chart of what other programs take for the falling gait, which is drawn."""
+def others() -> dict[str, tuple[float, float]]:
+    """Least and greatest number of times that other programs take longer for the falling gait, by program."""
     peers = Report("peers")
-    others = {
+    return {
         "the paper's own scheme": Report("paper_scheme").ratios("motion alone"),
         "MuJoCo, joints prescribed": peers.ratios("[0-9]+ links, joints prescribed"),
         "MuJoCo, servos": peers.ratios("10 links, step"),
         "PyElastica": peers.ratios("[0-9]+ elements"),
     }
-    chart = speed_chart(TITLE, [("this simulator", 1.0, 1.0), *((name, *times) for name, times in others.items())])
-    CHART.write_text(chart, encoding="utf-8")
-    told = ", ".join(f"{name} {least:,.0f} to {most:,.0f}" for name, (least, most) in others.items())
+
+
+def bars(folder: str) -> str:
+    """README and the landing page: the chart, and what it says in words."""
+    told = ", ".join(f"{name} {least:,.0f} to {most:,.0f}" for name, (least, most) in others().items())
     return f"![{TITLE}: this simulator 1, {told}]({folder}images/speed.svg)"
 
 
@@ -235,7 +236,8 @@ def with_figures(page: str, blocks: dict[str, Callable[[], str]]) -> str:
 
 
 def main() -> int:
-    """Write the tables."""
+    """Write the tables and the chart."""
+    CHART.write_text(speed_chart(others()), encoding="utf-8")
     for name, blocks in BLOCKS.items():
         path = ROOT / name
         path.write_text(with_figures(path.read_text(encoding="utf-8"), blocks), encoding="utf-8")

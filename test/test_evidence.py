@@ -25,6 +25,7 @@ from eel_gaits.pilot.settings import PilotSettings
 from everything import SCRIPTS
 from matplotlib.figure import Figure
 from midline_files import kern_midline, write_midlines
+from others.speed_chart import speed_chart
 from studied import ballast, courses, cylinder, laws_of_swimming
 
 ROOT = FilePath(__file__).resolve().parents[1]
@@ -127,6 +128,10 @@ def test_the_page_of_manoeuvres_has_the_figures_of_a_swim_and_every_gait():
 def test_tables_are_those_of_the_newest_reports(page):
     text = (ROOT / page).read_text(encoding="utf-8")
     assert report_tables.with_figures(text, report_tables.BLOCKS[page]) == text
+
+
+def test_the_chart_of_speed_is_that_of_the_newest_reports():
+    assert report_tables.CHART.read_text(encoding="utf-8") == speed_chart(report_tables.others())
 
 
 def test_every_fault_is_told_once_below_a_heading_of_the_page():
