@@ -47,7 +47,7 @@ def site(tmp_path_factory):
         yield address
 
 
-@pytest.fixture(params=["light", "dark"])
+@pytest.fixture(params=["light", pytest.param("dark", marks=pytest.mark.soak)])
 def opened(request, site, tmp_path):
     """A page of that theme whose recording is open."""
     with browser.browser(tmp_path) as page:

@@ -9,6 +9,7 @@ The code of a section writes the recording SECTION.rrd. Rerun's executable serve
 import contextlib
 import gzip
 import io
+import os
 import re
 import subprocess
 import sys
@@ -60,9 +61,12 @@ def add_viewer(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     with served_viewer() as address:
         script, module = (urllib.request.urlopen(f"{address}/{name}").read() for name in (SCRIPT, MODULE))
-    (folder / SCRIPT).write_bytes(script)
-    (folder / f"{MODULE}.gz").write_bytes(gzip.compress(module, mtime=0))
-    stamp.write_text(rerun.__version__)
+    packed = gzip.compress(module, mtime=0)
+    files = {SCRIPT: script, f"{MODULE}.gz": packed, stamp.name: rerun.__version__.encode()}
+    for name, content in files.items():  # each whole, for another process may do the same
+        draft = folder / f"{name}.{os.getpid()}"
+        draft.write_bytes(content)
+        draft.replace(folder / name)
 
 
 @contextlib.contextmanager
