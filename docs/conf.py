@@ -6,6 +6,8 @@ from importlib.metadata import files
 from pathlib import Path
 
 project = "Eel simulator"
+manifest = Path(__file__).parents[1] / "src" / "eel_dynamics" / "package.xml"
+version = re.findall(r"<version>(.*)</version>", manifest.read_text())[0]
 author = "Eel simulator maintainers"
 copyright = "Eel simulator maintainers, Apache-2.0"
 extensions = [
@@ -25,7 +27,7 @@ default_role = "code"
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # signatures stay readable; docstrings give shapes and units
 html_theme = "furo"
-html_title = project
+html_title = f"{project} {version}"
 html_copy_source = False
 html_show_sphinx = False
 mathjax_path = "tex-svg.js"  # shipped by the package: one file with its fonts, nothing from the network

@@ -8,6 +8,7 @@ from eel_common.topics import SENSORS
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
+from eel_viz.plots.series import log_styles
 from eel_viz.scene3d import colours
 
 AXES = tuple(zip("xyz", colours.AXIS, strict=True))
@@ -44,5 +45,5 @@ class SensorPlots:
             for (path, lines), row in zip(CURVES[topic].items(), rows, strict=True):
                 if path not in self._named:
                     self._named.add(path)
-                    self._stream.log_series_style(path, *zip(*lines, strict=True))
+                    log_styles(self._stream, {path: lines})
                 self._stream.add_scalars(stamp, path, row)

@@ -110,13 +110,13 @@ def sensors(look: Look) -> rrb.Container:
     """What sensors read, beside the depth of the head."""
     return rrb.Horizontal(
         rrb.Vertical(
-            series_view(look, f"Specific force at the IMU [m/s²]: {XYZ}", entities.FORCE_READ),
-            series_view(look, f"Angular velocity at the IMU [rad/s]: {XYZ}", entities.TURNING_READ),
-            series_view(look, f"Velocity by the log [m/s]: {XYZ}", entities.VELOCITY_READ),
+            series_view(look, "Specific force at the IMU [m/s²]", entities.FORCE_READ, several=True),
+            series_view(look, "Angular velocity at the IMU [rad/s]", entities.TURNING_READ, several=True),
+            series_view(look, "Velocity by the log [m/s]", entities.VELOCITY_READ, several=True),
         ),
         rrb.Vertical(
             following_view(look),
-            series_view(look, "Depth [m]: of the head grey, read yellow", entities.DEPTH, entities.DEPTH_READ),
+            series_view(look, "Depth of the head [m]", entities.DEPTH, entities.DEPTH_READ, several=True),
             series_view(look, "Pressure [Pa]", entities.PRESSURE_READ),
         ),
         name="sensors",
