@@ -45,7 +45,7 @@ def test_what_is_taken(given, field, taken):
         ({"sink": 3}, "sink must be a list of texts, got 3"),
         (
             {"blueprint": "mine"},
-            "blueprint must be one of overview, torques, motion, robot, swimmer, compare, got 'mine'",
+            "blueprint must be one of overview, torques, motion, robot, sensors, swimmer, compare, got 'mine'",
         ),
         ({"rate": 0}, "rate must be >= 0.1 Hz, got 0"),
         ({"rate": float("nan")}, "rate must be finite, got nan"),
