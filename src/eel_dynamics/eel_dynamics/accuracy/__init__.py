@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What decides grid and steps of a run: a target, the needs of its law, bounds of the steps."""
+"""How grid and steps of a run follow from its target, its law, and bounds of the steps."""

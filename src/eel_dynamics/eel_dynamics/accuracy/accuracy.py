@@ -4,14 +4,14 @@
 A target is a relative error. The error of the head's position is relative to the length of its path, or to the length
 of the body if that is longer. The error of the torque field is relative to its own maximum.
 
-One rule leads from a target to settings, and `simulate` measures the error that they deliver (`companion.py`):
+These rules lead from a target to settings, and `simulate` measures the resulting error (`companion.py`):
 
 - The tolerance per step is the target divided by `STEPS_ERRORS`. A swim takes hundreds of steps, whose errors add up.
 - The points per body length grow by `POINTS_PER_DECADE` for each decade of the target. Gauss points in panels without
   kinks converge exponentially, so a further decade costs a fixed number of points.
-- Runs with the ledger march by the embedded pair: each step costs a quadrature of the works, so few long steps are
-  cheaper. So do runs with the internal wrench at fine targets. Others march by Adams' method: one evaluation in a step.
-- Fixed steps of the classical method, of order 4, grow in number with the fourth root of the target.
+- Runs with the ledger march with the embedded pair: each step costs a quadrature of the works, so few long steps are
+  cheaper. So do runs with the internal wrench at fine targets. Others use Adams' method, with one evaluation per step.
+- The number of fixed steps of the classical method, of order 4, grows with the fourth root of the target's inverse.
 """
 
 import dataclasses
@@ -29,38 +29,38 @@ from eel_dynamics.model.section_data import WATCHED
 
 PRESETS = {"draft": 1e-2, "standard": 1e-4, "fine": 1e-6, "reference": 1e-8}
 COARSEST, FINEST = 0.1, 1e-10
-# Errors of steps that add up in a swim: of one that measures its error, and is made finer where that is too great; and
-# of motions that cannot be, such as a node's, with room for sensitive ones.
+# Number of step errors that add up in a swim: in a run that measures its error and is refined if that is too large; and
+# in one that cannot be refined, such as a node's, with a margin for sensitive motions.
 STEPS_ERRORS, SAFE_STEPS_ERRORS = 400.0, 1000.0
 # The same at a target of 1e-4 where the third derivative of the curvature jumps at each control step. The pair takes
-# one or two steps between two jumps, and more with the fifth root of the target. Adams' method, whose steps remember
-# those before, takes 10 to 20.
+# one or two steps between two jumps, and more with the fifth root of the target. Adams' method, a multistep method,
+# takes 10 to 20.
 CONTROL_STEPS_ERRORS = 300.0
-# The same of a robot's steps, which are of order 3: errors were 0.2 to 6 times the tolerance (18 for a tail with little
+# The same for a robot's steps, of order 3: errors were 0.2 to 6 times the tolerance (18 for a tail with little
 # damping), at any tolerance.
 ROBOT_STEPS = 20.0
-# Times as many behind series springs: they ring after each command, and the torque's error is 50 times the tolerance.
+# A further factor with series springs: they ring after each command, and the torque's error is 50 times the tolerance.
 RINGING = 4.0
-POINTS_PER_DECADE = 8.0  # per body length: one block of nodes, which processors take at once
-COARSE_POINTS = 7.0, -3.0  # per decade, and at a target of one, where these are fewer: for runs that are made finer
+POINTS_PER_DECADE = 8.0  # per body length: one block of nodes, processed together
+COARSE_POINTS = 7.0, -3.0  # per decade, and at a target of 1, if that gives fewer: for runs that are refined
 # The pair's output between steps is of order 4 and Adams' is a cubic: below this target its torque needs shorter steps.
 CUBIC_TARGET = 5e-4
 LEAST_POINTS = 4.0  # per body length
 FIXED_STEPS = 12.0  # per period, of the classical method at a target of 1e-2
 FIXED = "fixed steps"
-ROBOTS = "rosenbrock"  # the method of robots, whatever was asked for
+ROBOTS = "rosenbrock"  # the method of robots, for any requested method
 KINKS = tuple(WATCHED)
 ORDERS = {"adams": (1, 2, 3, 4, 5, 6), "dormand_prince": (5,), "classical": (4,), ROBOTS: (3,)}
 FINEST_TOLERANCE = 1e-13  # below, round-off
 LONGEST_STEP = 0.1  # of the shortest time over which the shape changes. The works are integrals over it
-ANY = 30.0  # resolution until the scene is known
-OTHER_GRIDS = 4  # times that points are added until the grid is another one: the panels of a robot are many
-FURTHER_POINTS = 9.0  # more points per length, which make any grid finer: the last eight nodes are always filled
+ANY = 30.0  # placeholder for the resolution until the scene is known
+OTHER_GRIDS = 4  # attempts at adding points until the grid changes: a robot has many panels
+FURTHER_POINTS = 9.0  # added points per length that refine any grid: nodes come in blocks of eight
 WAVES_POWER = 0.85  # points grow with this power of the number of waves on the body
-SPARED = 8.0  # points per length that grow with the waves too, of those that the panels have to spare
-# The companion of a run, with which it measures its error: some ten times the error, at about a third of the cost.
-# Half of the points tell the error of the grid even where it falls as slowly as with the first power of the points. Of
-# less than `FEW_POINTS` per length six tenths remain: nodes come in blocks, and at a target of 1e-3 the companion of a
+SPARED = 8.0  # of the spare points per length in the panels, those that also grow with the waves
+# The companion of a run, which measures its error: about ten times the error, at about a third of the cost.
+# Half of the points show the error of the grid even if it falls only with the first power of the points. With
+# less than `FEW_POINTS` per length 60 % remain: nodes come in blocks, and at a target of 1e-3 the companion of a
 # run of 40 nodes had 24, whose own error was above the target.
 # The longest step differs too, because it alone may limit the steps of both. With ten times the tolerance Adams' method
 # often takes the same steps: 9 of 277 random swims then had an error above its estimate, with 30 times 3.
@@ -69,48 +69,48 @@ SPARED = 8.0  # points per length that grow with the waves too, of those that th
 LOOSER, FEWER_POINTS, LONGER_STEPS = 30.0, 0.5, 1.5
 FEW_POINTS, FEWER_OF_FEW = 22.0, 0.6
 FINE, LOOSER_THAN_FINE = 1e-6, 20.0
-# The errors of a robot's steps go with the tolerance itself, so that the distance to a companion of ten times the
-# tolerance is some nine times the error. All of it is the estimate, no less: where motors and stops reach their limits,
-# a companion may be as exact as the run by chance. By half of it, 4 of 3,500 robots were above their target unseen.
-# Steps that growth alone bounds, as the first ones, make ten times the error too where they are longer by the cube root
+# The errors of a robot's steps are proportional to the tolerance, so the distance to a companion with ten times the
+# tolerance is about nine times the error. The estimate is all of it, not a part: at the limits of motors and stops
+# a companion may be as exact as the run by chance. With half of it, 4 of 3,500 robots exceeded their target unnoticed.
+# Steps that only growth bounds, as the first ones, have ten times the error too if they are longer by the cube root
 # of ten.
 ROBOT_LOOSER, ROBOT_LONGER_STEPS = 10.0, 2.15
 LEAST_ROBOT_TIGHTER = 1.0 / 4.0
-ADAMS_ERROR = 3.0  # some times that of the embedded pair at the same tolerance
-# What a tightened run changes with the ratio r < 1 of the wanted error to the measured one: the tolerance with r^1.2,
-# the points with r^-0.2, the longest steps with r^0.2. Orders 5 to 6 lose r or more in each of them.
+ADAMS_ERROR = 3.0  # times the error of the embedded pair at the same tolerance
+# Changes of a tightened run, with the ratio r < 1 of the wanted error to the measured one: the tolerance by r^1.2,
+# the points by r^-0.2, the longest steps by r^0.2. With orders 5 to 6 each of these reduces the error by r or more.
 TIGHTER, DENSER, SHORTER = 1.2, 0.2, 0.2
-LEAST_TIGHTER, LEAST_DENSER = 1.0 / 8.0, 1.4  # the run before becomes the companion of the tightened one
-LEAST_TIGHTENED = 0.02  # least ratio in one go: a saturated error says little of the settings
+LEAST_TIGHTER, LEAST_DENSER = 1.0 / 8.0, 1.4  # the previous run becomes the companion of the tightened one
+LEAST_TIGHTENED = 0.02  # least ratio at a time: a saturated error tells little about the settings
 
 
 @lru_cache(maxsize=256)
 def variant(settings: "Accuracy", **changes: Any) -> "Accuracy":
-    """The `settings` with these `changes`, which the points of a sweep share."""
+    """The `settings` with these `changes`, cached for the points of a sweep."""
     return dataclasses.replace(settings, **changes)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Accuracy:
-    """Settings of a run. `ValueError` names a setting that does not fit.
+    """Settings of a run. `ValueError` names a bad setting.
 
     Attributes:
-        name: what messages call the settings.
+        name: of the settings, in messages.
         resolution: points per body length, 1 to 1000.
         tolerance: relative error per adaptive step.
-        step: [s]; where given, the steps are those of the classical Runge-Kutta method (order 4), of this length.
-        method: "dormand_prince" (order 5) or "adams" (order 1 to 6), or "classical" where the steps are fixed. Robots
-            have one of their own, "rosenbrock" (order 3), for any of them.
-        order: of the method; 5 where none is given ("classical": 4).
-        target: the relative error that the settings are for, 1e-10 to 0.1; None where they were given one by one. With
-            a target, resolution, tolerance, method and order are chosen for it once the scene is known.
-        fixed: where given, so many steps of the classical method per shortest period of the law (or per second).
-        kinks: which kinks of the drag along the body are found and integrated exactly: "all", the "jumps" alone, or
-            "none". V|V| has a kink where cross flow or roll change their sign; the printed friction law jumps.
+        step: [s]; if given, the steps are those of the classical Runge-Kutta method (order 4), of this length.
+        method: "dormand_prince" (order 5) or "adams" (order 1 to 6), or "classical" for fixed steps. Robots always use
+            "rosenbrock" (order 3).
+        order: of the method; 5 by default ("classical": 4).
+        target: the relative error for which the settings are made, 1e-10 to 0.1; None if they were given one by one.
+            With a target, resolution, tolerance, method and order are chosen when the scene is known.
+        fixed: if given, the number of steps of the classical method per shortest period of the law (or per second).
+        kinks: which kinks of the drag along the body are found and integrated exactly: "all", only the "jumps", or
+            "none". V|V| has a kink where cross flow or roll changes its sign; the printed friction law jumps.
         longest_step: of adaptive steps, relative to the shortest time over which the shape changes; up to 1.
-        waves: on the body, that the points are for whatever the law has; None: those of law and flow.
-        refinable: whether the run is made finer where its measured error exceeds the target, as by `simulate`: then
-            the settings chosen for a target are cheaper.
+        waves: number of waves on the body that the points must resolve; None: those of law and flow.
+        refinable: whether the run is refined if its measured error exceeds the target, as by `simulate`: then the
+            settings chosen for a target are cheaper.
     """
 
     name: str
@@ -118,7 +118,7 @@ class Accuracy:
     tolerance: float = 1e-6
     step: float | None = None
     method: str = "dormand_prince"
-    order: Any = None  # an int once made
+    order: Any = None  # an int after construction
     target: float | None = None
     fixed: float | None = None
     kinks: str = "all"
@@ -173,7 +173,7 @@ class Accuracy:
         return float(min(1000.0, (self.resolution + SPARED) * max(1.0, waves) ** WAVES_POWER - SPARED))
 
     def in_scene(self, scene: Scene) -> "Accuracy":
-        """The settings for the target in `scene`. Settings that were given one by one stay the same."""
+        """The settings for the target in `scene`. Settings given one by one stay the same."""
         if self.target is None:
             return self
         decades = math.log10(1.0 / self.target)
@@ -190,9 +190,10 @@ class Accuracy:
         return variant(self, resolution=resolution, tolerance=tolerance, method=method, order=5)
 
     def for_control_steps(self) -> "Accuracy":
-        """These settings in a scene, for a curvature that each of many short control steps has anew: without a target.
+        """These settings in a scene, without a target, for a curvature that changes at each of many short control
+        steps.
 
-        Settings that were given one by one stay the same.
+        Settings given one by one stay the same.
         """
         if self.target is None or self.fixed is not None:
             return self.as_it_is()
@@ -201,9 +202,9 @@ class Accuracy:
         return variant(self.as_it_is(), tolerance=tolerance, method="dormand_prince", order=5)
 
     def for_robot(self, rings: bool = False) -> "Accuracy":
-        """These settings in a scene, for the steps of a robot. Steps of one length stay as they are.
+        """These settings in a scene, for the steps of a robot. Fixed steps stay the same.
 
-        rings: whether it has series springs.
+        rings: whether the robot has series springs.
         """
         if self.method in ("classical", ROBOTS):
             return self
@@ -216,7 +217,7 @@ class Accuracy:
         return variant(self, target=None)
 
     def coarser(self) -> "Accuracy":
-        """Settings with some ten times the error, for the companion with which a run measures its own error."""
+        """Settings with about ten times the error, for the companion with which a run measures its own error."""
         looser = LOOSER if self.tolerance > FINE else LOOSER_THAN_FINE
         looser = ROBOT_LOOSER if self.method == ROBOTS else looser
         fewer = FEWER_POINTS if self.resolution >= FEW_POINTS else FEWER_OF_FEW
@@ -224,11 +225,11 @@ class Accuracy:
 
     @property
     def _longer_steps(self) -> float:
-        """Times that the longest step of a companion is longer."""
+        """The factor of a companion's longest step."""
         return ROBOT_LONGER_STEPS if self.method == ROBOTS else LONGER_STEPS
 
     def by_adams(self) -> "Accuracy":
-        """Settings with some such error by Adams' method, where these are those of the embedded pair."""
+        """Settings with about the same error with Adams' method, if these are for the embedded pair."""
         if self.method != "dormand_prince":
             return self
         return variant(self, method="adams", order=5, tolerance=max(FINEST_TOLERANCE, self.tolerance / ADAMS_ERROR))
@@ -242,7 +243,7 @@ class Accuracy:
         return variant(self._changed(*changes), kinks="all")
 
     def with_other_points(self) -> "Accuracy":
-        """The same settings with so many more points that the grid is another one for certain."""
+        """The same settings with enough additional points to change the grid."""
         return variant(self, resolution=min(1000.0, max(1.4 * self.resolution + 2.0, self.resolution + FURTHER_POINTS)))
 
     def _changed(self, looser: float, denser: float, longer: float) -> "Accuracy":
@@ -260,10 +261,10 @@ class Accuracy:
 
     @staticmethod
     def of(value: "str | float | Accuracy") -> "Accuracy":
-        """The settings that `value` asks for.
+        """The settings for `value`.
 
-        value: a preset's name or a target relative error, either with ", fixed steps" behind it. Settings are returned
-        as they are. `ValueError` says what is possible.
+        value: a preset's name or a target relative error, either followed by ", fixed steps" if wanted. Settings are
+        returned unchanged. `ValueError` says what is possible.
         """
         if isinstance(value, Accuracy):
             return value

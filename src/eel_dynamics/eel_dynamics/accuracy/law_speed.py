@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The speed that a law gives to the sections of a body, from the strokes of its terms.
+"""The speed of a body's sections under a law, from the strokes of its terms.
 
 Strokes are root mean squares over the sections about the body's mean place, as if the body lay still.
 """
@@ -19,8 +19,8 @@ POINTS = 64  # along the body
 
 @lru_cache(maxsize=4096)
 def speed_of(law: Law, length: float) -> float:
-    """Order of magnitude of the speed [m/s] that `law` gives to a body of `length` [m]."""
-    speeds = []  # body lengths per second, of the terms of one axis, period and envelope together
+    """Order of magnitude of the speed [m/s] of a body of `length` [m] under `law`."""
+    speeds = []  # body lengths per second, of all terms of one axis, period and envelope
     for (_, period, envelope), terms in groups_of(law).items():
         stroke = math.sqrt(0.5 * _moved(tuple(terms), period > 0.0, length)) / length * height_of(envelope)
         if period > 0.0:
@@ -32,8 +32,8 @@ def speed_of(law: Law, length: float) -> float:
 
 @lru_cache(maxsize=4096)
 def _moved(waveforms: tuple, moving: bool, length: float) -> float:
-    """Mean square [m^2] of the displacement of the sections about their mean place: of sine and cosine in time together
-    where the `waveforms` are `moving`, else twice that of their sum."""
+    """Mean square [m^2] of the displacement of the sections about their mean place: sum of sine and cosine in time if
+    the `waveforms` are `moving`, otherwise twice the square of their sum."""
     x = length * (np.arange(POINTS) + 0.5) / POINTS
     with np.errstate(over="ignore", invalid="ignore"):
         bends = np.zeros((2, POINTS))

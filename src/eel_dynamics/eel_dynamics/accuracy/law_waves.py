@@ -10,17 +10,17 @@ from eel_gaits.laws.spline import natural_spline
 from eel_gaits.laws.term import LAW_ROW, Term, amplitude_of
 from eel_gaits.sources.sampled_law import SampledLaw
 
-PART_OF_PEAK = 0.75  # of the turns where all terms bend the body most
-TURN_POINTS = 64  # along the body, for the angle that a law bends it by
-MOST_KNOTS = 8  # of laws whose panels are cut at them
-MOST_WAVES = 200.0  # on the body: with the most points that a grid may have, five for each
-WIGGLE_POINTS, WINDOW = 1024, 128  # along the body, for the turning points of an amplitude; of these close together
-# Part of the greatest amplitude, by which it must rise or fall between two turns that count. Smaller waves move the
-# body by less, and the points for the others carry most of them.
+PART_OF_PEAK = 0.75  # of the turns at the strongest bend by all terms
+TURN_POINTS = 64  # along the body, for the angle by which a law bends it
+MOST_KNOTS = 8  # of laws whose knots become ends of panels
+MOST_WAVES = 200.0  # on the body: five points each on the finest grid
+WIGGLE_POINTS, WINDOW = 1024, 128  # along the body, for the turning points of an amplitude; size of a local window
+# Part of the greatest amplitude: least rise or fall between two turns that count. Smaller waves move the
+# body less, and the points for the others resolve most of them.
 LEAST_WIGGLE = 1e-3
-SHARPNESS, FEW_KNOTS = 1.5, 6  # of a spline's waves; of one whose waves need no count
-MODES, LEFT_OUT = 128, 1e-3  # of rows: polynomials along the body, and the part of the rows that none carries
-SHORTEST_RAMP = 1e-9  # s, or of the time that it ends at: below, steps of time do not see it
+SHARPNESS, FEW_KNOTS = 1.5, 6  # factor for a spline's waves; most knots of a spline whose waves are not counted
+MODES, LEFT_OUT = 128, 1e-3  # of rows: number of polynomials along the body, and part of the rows left out
+SHORTEST_RAMP = 1e-9  # s, or relative to its end: time steps do not resolve a shorter ramp
 
 
 def groups_of(law: Law) -> dict:
@@ -40,9 +40,9 @@ def waveform(term: Term) -> tuple:
 def _waves(waveforms: tuple, length: float) -> float:
     """The largest number of waves into which terms (axis, waveform) bend a body of `length` [m].
 
-    A spline counts as an eighth of its intervals. An amplitude counts as the waves that it has itself, where they are
-    shortest. A turn of the backbone is a wave too, because its direction goes once around. The turns are those of the
-    term that turns it most, or three quarters of those of all terms together where the body is bent most.
+    A spline counts as an eighth of its intervals. An amplitude counts as its own waves, where they are shortest. A full
+    turn of the backbone is a wave too, because its direction goes once around. The turns are those of the strongest
+    term, or three quarters of those of all terms together where the body is bent most.
     """
     waves = [length * abs(wave_number) / (2.0 * np.pi) for _, (_, _, wave_number, _) in waveforms]
     waves += [(len(knots) - 1) / 8.0 for _, (_, knots, _, _) in waveforms]
@@ -58,11 +58,11 @@ def _waves(waveforms: tuple, length: float) -> float:
 
 @lru_cache(maxsize=4096)
 def _wiggles(amplitude: tuple, knots: tuple, length: float) -> float:
-    """The number of waves that an amplitude itself has on a body of `length` [m], by its turning points.
+    """The number of waves of an amplitude itself on a body of `length` [m], from its turning points.
 
-    It counts all but the smallest (`LEAST_WIGGLE`), or as many everywhere as where they are closest. These waves are
-    sharper than sines, so each counts as one and a half. A spline of few knots has none, because the panels are cut at
-    its knots.
+    It counts all except the smallest (`LEAST_WIGGLE`), or extrapolates from where they are closest. These waves are
+    sharper than sines, so each counts as one and a half. A spline of few knots has none, because panels end at its
+    knots.
     """
     if len(amplitude) <= 2 or 0 < len(knots) <= FEW_KNOTS:
         return 0.0
@@ -73,7 +73,7 @@ def _wiggles(amplitude: tuple, knots: tuple, length: float) -> float:
 
 
 def _turns(values: np.ndarray) -> list[int]:
-    """Indices of the values where they turn, from rising to falling or back, by `LEAST_WIGGLE` or more."""
+    """Indices of the values at their turning points, after changes of `LEAST_WIGGLE` or more."""
     steps, least = np.diff(values), LEAST_WIGGLE * np.max(np.abs(values))
     kept = [0]  # the start, the turns, and the farthest point since the last
     for index in [*(np.flatnonzero(np.diff(np.sign(steps))) + 1), len(steps)]:
@@ -89,7 +89,7 @@ def _turns(values: np.ndarray) -> list[int]:
 def check_law(law: Law, length: float) -> float:
     """The number of waves of `law` on a body of `length` [m].
 
-    `ValueError` for a law with more waves than any grid carries, or with a ramp so short that it is a jump.
+    `ValueError` for a law with more waves than any grid can resolve, or with a ramp as short as a jump.
     """
     with np.errstate(over="ignore", invalid="ignore"):
         waves = _waves(tuple((term.axis, waveform(term)) for term in law.terms), length)
@@ -110,18 +110,18 @@ def check_law(law: Law, length: float) -> float:
 
 @lru_cache(maxsize=64)
 def waves_of_rows(law: SampledLaw) -> float:
-    """The number of waves into which the rows of a law bend the body, from the degree of the polynomials in X that
-    carry all but `LEFT_OUT` of them. A wave of w wavelengths needs about the degree pi w + 3."""
+    """The number of waves on the body of a law's rows, from the degree of the polynomials in X that represent all but
+    `LEFT_OUT` of them. A wave of w wavelengths needs about the degree pi w + 3."""
     points, weights = np.polynomial.legendre.leggauss(MODES)
     x = 0.5 * law.length * (points + 1.0)
     modes = np.polynomial.legendre.legvander(points, MODES - 1) * np.sqrt(np.arange(MODES) + 0.5)
     of_rows = natural_spline(law.x, np.eye(len(law.x)), x) @ (weights[:, None] * modes)
     power = (law.values[:, :, 0].reshape(-1, len(law.x)) @ of_rows) ** 2
-    left = np.max(np.cumsum(power[:, ::-1], axis=1), axis=0)[::-1]  # of each mode and those above it, of any row
+    left = np.max(np.cumsum(power[:, ::-1], axis=1), axis=0)[::-1]  # of each mode and the higher ones, in any row
     return max(1.0, (int(np.count_nonzero(left > LEFT_OUT**2 * left[0])) - 4) / np.pi)
 
 
 def knots_of_law(law: Law) -> tuple[float, ...]:
-    """Inner knots X [m] of the splines of `law`: their third derivatives jump there. None where they are many."""
+    """Inner knots X [m] of the splines of `law`, where third derivatives jump. None of them if they are many."""
     knots = sorted({knot for term in law.terms for knot in term.knots[1:-1]})
     return tuple(knots) if len(knots) <= MOST_KNOTS else ()

@@ -11,31 +11,31 @@ import eel_core
 from eel_dynamics.accuracy.accuracy import LONGEST_STEP
 from eel_dynamics.accuracy.error_estimate import floors
 
-# A run takes at most so many evaluations per simulated second. They take seconds of wall time. The most exact runs need
+# Most evaluations of a run per simulated second. They take seconds of wall time. The most exact runs need
 # a tenth of them.
 MOST_EVALUATIONS = 500_000.0
-# A run may take so many steps beyond that limit, at any time, on a body of at most SPARE_POINTS points.
+# Steps that a run may take beyond that limit, at any time, on a body of at most SPARE_POINTS points.
 SPARE_STEPS = 200_000.0
 # With more points than these along the body, the spare steps decrease as the cost of a step increases.
 SPARE_POINTS = 30.0
-# A run always has at least so many spare steps.
+# Least number of spare steps of a run.
 LEAST_SPARE = 6_000.0
 # The head counts as at rest below this speed, in body lengths per time scale.
 SLOWEST = 1e-3
 # Momenta below this part of the speed that the law gives to the body need not be exact to the last digit.
 PART_OF_SPEED = 0.5
-# A step takes at most this part of the time between two breakpoints of the shape, where longest_step is LONGEST_STEP.
-# Between two samples the error alone sets the step: a controller's lie close together on the scale of the motion.
+# A step takes at most this part of the time between two breakpoints of the shape, if longest_step is LONGEST_STEP.
+# Between two samples only the error sets the step: a controller's samples are close together on the motion's scale.
 PART_OF_SPAN = 0.25
-# This part holds instead where there is a ledger. Most of the energy that a sudden ramp puts in comes back, and little
+# This part holds instead with a ledger. Most of the energy that a sudden ramp puts in comes back, and little
 # may be left over.
 PART_OF_RAMP = 0.125
-# In a step: its last is the first of the next.
+# Evaluations per step: its last one is the first of the next.
 EVALUATIONS = {"adams": 1, "dormand_prince": 6, "classical": 4, "rosenbrock": 4}
 
 
 def check_cost(what: str, scale: float, most_evaluations: float) -> None:
-    """`ValueError` where the time `scale` [s] of `what` is too short for `most_evaluations` per simulated second."""
+    """`ValueError` if the time `scale` [s] of `what` is too short for `most_evaluations` per simulated second."""
     needed = 1.0 / (LONGEST_STEP * scale)
     if needed > most_evaluations:
         raise ValueError(
@@ -47,10 +47,10 @@ def check_cost(what: str, scale: float, most_evaluations: float) -> None:
 def step_bounds_of(
     setup: Any, here: Any, between_samples: bool, law_scale: float, speed: float = 0.0
 ) -> eel_core.StepBounds:
-    """The bounds of the steps of a swimmer of this `SimulationSetup` on the grid of `here`, a `Discretisation`.
+    """The bounds of the steps of a swimmer with this `SimulationSetup` on the grid of `here`, a `Discretisation`.
 
-    between_samples: whether the curvature is a quintic between two samples. law_scale [s]: the shortest time scale of
-    the law and the initial velocity. speed [m/s]: that the law gives to the body.
+    between_samples: whether the curvature is a quintic between two samples. law_scale: [s], the shortest time scale of
+    the law and the initial velocity. speed: [m/s], of the body under the law.
     """
     accuracy, length, mass = setup.settings, setup.body.length, here.mass
     scale = min(law_scale, here.weight_time, setup.time_scale_of_surroundings)
@@ -60,7 +60,7 @@ def step_bounds_of(
     sudden = not between_samples or setup.sudden_changes
     slowest = max(SLOWEST * length / min(scale, 10.0), PART_OF_SPEED * speed)
     return eel_core.StepBounds(
-        tolerance=math.inf if accuracy.method == "classical" else accuracy.tolerance,  # infinite: steps of one length
+        tolerance=math.inf if accuracy.method == "classical" else accuracy.tolerance,  # infinite: fixed steps
         longest=fixed or longest,
         smallest=1e-11 * min(scale, 1.0),
         length=length,

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where torques and flows that are given over time change suddenly: steps end there, and are short in between.
+"""Sudden changes of torques and flows given over time: steps end there, and are short in between.
 
-A step is chosen by its error at a few instants, and would pass over what begins and ends between them. So what is given
-is looked at beforehand, at one random instant in each `STEP`. What cubics through four even instants do not follow is
-sudden: first through instants `GAPS[0]` apart; where that is so, through closer ones.
+A step is chosen by its error at a few instants, and would pass over anything that begins and ends between them. So
+given functions are sampled beforehand, at one random instant in each `STEP`. A change is sudden if cubics through four
+even instants do not follow it: first through instants `GAPS[0]` apart; where these fail, through closer ones.
 """
 
 import math
@@ -21,22 +21,22 @@ from eel_dynamics.model.robot.actuators import Torque
 from eel_dynamics.model.robot.robot import Robot
 
 GAPS = 1.0 / 4.0, 1.0 / 16.0, 1.0 / 128.0  # s
-LONGEST = 2.0  # s: no step passes over a change that lasts longer
-SUDDEN = 1e-3  # part of the greatest value by which a cubic misses it
-FEWEST = 4  # intervals
-APART = 2.0  # gaps between two sudden changes; nearer ones are one
-UNSEEN = 0.02  # s: the longest step by a torque that is not looked at beforehand
-PLACES = 5  # along the body at its start, where a flow is looked at
-Values = Callable[[np.ndarray], np.ndarray]  # of instants (N,) [s], (N, n)
+LONGEST = 2.0  # s: no step passes over a longer change
+SUDDEN = 1e-3  # error of a cubic, relative to the greatest value
+FEWEST = 4  # least number of intervals
+APART = 2.0  # gaps: closer sudden changes are one
+UNSEEN = 0.02  # s: the longest step with a torque that is not sampled beforehand
+PLACES = 5  # places along the body at its start where a flow is sampled
+Values = Callable[[np.ndarray], np.ndarray]  # from instants (N,) [s] to values (N, n)
 
 
 def given_torques(robot: Robot | None) -> list[Torque]:
-    """The torques of joints that are given over time."""
+    """The joint torques that are given over time."""
     return [] if robot is None else [each.actuator for each in robot.joints if isinstance(each.actuator, Torque)]
 
 
 def given_flows(flow: Flow | None) -> list[FlowField]:
-    """The flows that are functions whose period is not known."""
+    """The flows that are functions of unknown period."""
     fields = () if flow is None else parts_of(flow)
     return [each for each in fields if isinstance(each, FlowField) and each.period is None]
 
@@ -50,9 +50,9 @@ def sudden_changes(
     length: float,
     until: float,
 ) -> frozenset[float]:
-    """Times [s] at which torques and flows begin or end to change suddenly, before `until` [s] (0: of tables all).
+    """Times [s] at which torques and flows begin or end to change suddenly, before `until` [s] (0: all of tables).
 
-    A flow is looked at along a straight body of this `length` [m], at its start.
+    A flow is sampled along a straight body of this `length` [m], at its start.
     """
     found: set[float] = set()
     for torque in given_torques(robot):
@@ -61,7 +61,7 @@ def sudden_changes(
         found |= changes_of(partial(_torques, torque), start, end, torque.time or ())
     places = position - np.linspace(0.0, length, PLACES)[:, None] * world_from_body(np.array(orientation))[:, 0]
     for field in given_flows(flow):
-        with suppress(ValueError):  # the run itself tells of what does not fit
+        with suppress(ValueError):  # the run itself reports bad values
             found |= changes_of(partial(_velocities, field, places), 0.0, until)
     return frozenset(found)
 
@@ -75,9 +75,9 @@ def _velocities(field: FlowField, places: np.ndarray, times: np.ndarray) -> np.n
 
 
 def changes_of(value_at: Values, start: float, end: float, others: Iterable[float] = ()) -> set[float]:
-    """Times between `start` and `end` [s] where what is given begins or ends to change suddenly.
+    """Times between `start` and `end` [s] at which values begin or end to change suddenly.
 
-    It is looked at at the `others` [s] too.
+    others: [s], further instants at which they are sampled.
     """
     if not end > start:
         return set()
@@ -97,8 +97,8 @@ def changes_of(value_at: Values, start: float, end: float, others: Iterable[floa
 def _sudden_parts(
     value_at: Values, start: float, end: float, gap: float, looks: np.ndarray, seen: np.ndarray, allowed: float
 ) -> list[tuple[float, float]]:
-    """The parts of the time from `start` to `end` [s] in which cubics through instants a `gap` [s] apart miss what was
-    `seen` (N, n) by more than is `allowed`."""
+    """The parts of the time from `start` to `end` [s] in which cubics through instants a `gap` [s] apart differ from
+    the samples `seen` (N, n) by more than is `allowed`."""
     ends = np.linspace(start, end, 1 + max(FEWEST, math.ceil((end - start) / gap)))
     values, inside = value_at(ends), slice(*np.searchsorted(looks, (start, end)))
     home = np.clip(np.searchsorted(ends, looks[inside]) - 1, 0, len(ends) - 2)
@@ -107,7 +107,7 @@ def _sudden_parts(
     a, b, c, d = (values[first + place] for place in range(4))
     sides = -(s - 1) * (s - 2) * (s - 3) / 6 * a + s * (s - 1) * (s - 2) / 6 * d
     guessed = sides + s * (s - 2) * (s - 3) / 2 * b - s * (s - 1) * (s - 3) / 2 * c  # Lagrange
-    bad = np.zeros(len(ends) + 1, dtype=bool)  # of the intervals, and beyond both ends
+    bad = np.zeros(len(ends) + 1, dtype=bool)  # for the intervals, and beyond both ends
     bad[1 + home[np.any(np.abs(guessed - seen[inside]) > allowed, axis=1)]] = True
     turns = ends[np.flatnonzero(bad[1:] != bad[:-1])].tolist()
     parts: list[tuple[float, float]] = []

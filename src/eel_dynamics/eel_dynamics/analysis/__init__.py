@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a run tells: speed, power, efficiency, actuators, limits of the model, summary."""
+"""Analysis of a run: speed, power, efficiency, actuators, limits of the model, summary."""

@@ -4,8 +4,8 @@
     analysis = run.analysis()          # the later half of the run, in whole periods
     analysis.mean_speed, analysis.strouhal, analysis.propulsive_efficiency
 
-A ratio with a zero denominator is None: a swimmer at rest has no Strouhal number. Figures that need data which the run
-lacks (ledger, internal wrench) raise `ValueError`.
+A ratio with a zero denominator is None: a swimmer at rest has no Strouhal number. Figures whose data the run lacks
+(ledger, internal wrench) raise `ValueError`.
 """
 
 import numpy as np
@@ -18,7 +18,7 @@ from eel_dynamics.analysis.powers import area, drag_powers, power_density, torqu
 from eel_dynamics.analysis.settling import FEWEST, Settling, settling_of
 from eel_dynamics.model.section_data import GRAVITY
 
-STILL = 1e-9  # of the body's length in a period: slower is round-off, and no motion
+STILL = 1e-9  # of the body's length per period: a smaller displacement is round-off
 
 
 class Analysis:
@@ -33,7 +33,7 @@ class Analysis:
 
     @cached_property
     def mean_speed(self) -> float:
-        """U [m/s]: arc length of the path of the centre of mass, averaged over one period, by the time.
+        """U [m/s]: arc length of the path of the centre of mass, averaged over one period, divided by the time.
 
         The averaged centre moves with |c(t + T) - c(t)| / T; its mean over the window (Kern and Koumoutsakos, J. Exp.
         Biol. 209 (2006), average over a cycle likewise). A window of one period holds one such value.
@@ -44,20 +44,20 @@ class Analysis:
     def speed_change(self) -> float | None:
         """Change of the speed over one period, from the first period of the window to its last, relative to U.
 
-        A window of one period is compared with the period before it. Undefined where there is none, and at rest.
+        A window of one period is compared with the period before it. Undefined without one, and at rest.
         """
         change = self._path.speed_change()
         return change / self.mean_speed if change is not None and self.moves else None
 
     @cached_property
     def settling(self) -> Settling:
-        """How the mean speed of a period changes in the window, which counts for three periods at least."""
+        """The change of the period's mean speed in the window, which is extended to three periods if possible."""
         return settling_of(self._path.speeds(self.window.edges(FEWEST)))
 
     @property
     def settled(self) -> bool:
         """Whether the gait has settled: the mean speed of a period changes by at most 1 % within the window, and by at
-        most 1 % more from there on (`settling`). At rest: yes."""
+        most 1 % afterwards (`settling`). True at rest."""
         return not self.moves or self.settling.settled
 
     @property
@@ -77,7 +77,7 @@ class Analysis:
 
     @property
     def slip(self) -> float | None:
-        """U T / |lambda|: speed of the swimmer by that of the strongest yaw wave along the body (Gray 1933; Lighthill,
+        """U T / |lambda|: speed of the swimmer / speed of the strongest yaw wave along the body (Gray 1933; Lighthill,
         J. Fluid Mech. 9 (1960)). Undefined without a travelling yaw wave, and at rest."""
         wave = self.window.travelling_wave
         if wave is None or not self.moves:
@@ -88,9 +88,9 @@ class Analysis:
     def tail_excursion(self) -> float:
         """A [m]: peak-to-peak excursion of the tail across the mean path, mean over the periods.
 
-        The tail less its average over the period around each instant (which takes out way and turn), less what lies
-        along the path of the averaged centre of mass; then the greatest distance between two points of a period. In a
-        window of a single period the mean path is the chord from its start to its end.
+        From the tail's path its average over the period around each instant is subtracted (this removes the mean motion
+        and turn), then the component along the path of the averaged centre of mass. A is the greatest distance between
+        two points of a period. In a window of a single period the mean path is the chord from its start to its end.
         """
         return self._path.tail_excursion(self.moves)
 
@@ -102,11 +102,11 @@ class Analysis:
 
     @property
     def swimming_number(self) -> float | None:
-        """Sw = 2 pi f A l / nu, with the tail's excursion A from side to side; undefined in water without viscosity.
+        """Sw = 2 pi f A l / nu, with the tail's peak-to-peak excursion A; undefined in water without viscosity.
 
         Gazzola, Argentina and Mahadevan, Nature Phys. 10 (2014), call A the tail beat amplitude. Their fit of animals
-        in turbulent flow, Re = 0.4 Sw, is f A / U = 1 / (0.8 pi) = 0.40: a Strouhal number, which takes A from side to
-        side. Half of that would be twice the Strouhal number of animals.
+        in turbulent flow, Re = 0.4 Sw, is f A / U = 1 / (0.8 pi) = 0.40: a Strouhal number with a peak-to-peak A. With
+        half of that A it would be twice the Strouhal number of animals.
         """
         size = 2.0 * np.pi * self.frequency * self.tail_excursion * self.run.body.length
         return size / self.run.scene.viscosity if self.run.scene.viscosity else None
@@ -120,8 +120,8 @@ class Analysis:
 
     @cached_property
     def actuator_power(self) -> float:
-        """<P> [W]: mean power of the actuators, -integral of C . dK/dt over the body, braking counted against driving
-        (the net power; eq. 26 of Boyer, Porez and Leroyer 2010 for C). From the ledger."""
+        """<P> [W]: mean power of the actuators, -integral of C . dK/dt over the body, net of braking (eq. 26 of Boyer,
+        Porez and Leroyer 2010 for C). From the ledger."""
         return self.window.rate(self._ledger.actuator_work, self._ledger.actuator_power)
 
     @property
@@ -132,9 +132,9 @@ class Analysis:
 
     @property
     def positive_actuator_power(self) -> float:
-        """Mean [W] of the integral of max(-C . dK/dt, 0) over the body: what actuators cost that cannot take energy
-        back. By the trapezoidal rule over the stations and 64 instants in a period; between samples the power per
-        length, which is smooth, is a spline, and its positive part, which has kinks, is taken after that."""
+        """Mean [W] of the integral of max(-C . dK/dt, 0) over the body: the cost of actuators that cannot take energy
+        back. By the trapezoidal rule over the stations and 64 instants per period. Between samples the power per
+        length, which is smooth, is a spline; its positive part, which has kinks, is taken afterwards."""
         time = self.window.instants
         density = self.window.spline(power_density(self.run))(time)
         return float(area(area(np.maximum(density, 0.0), self.run.x), time)) / (time[-1] - time[0])
@@ -162,30 +162,30 @@ class Analysis:
 
     @property
     def cost_of_transport(self) -> float | None:
-        """<P> / (m U) [J/(kg m)]: energy per mass and way; undefined at rest."""
+        """<P> / (m U) [J/(kg m)]: energy per mass and distance; undefined at rest."""
         return self.actuator_power / (self.run.body_mass * self.mean_speed) if self.moves else None
 
     @property
     def specific_cost_of_transport(self) -> float | None:
-        """<P> / (m g U): the same by the weight, without unit (Gabrielli and von Karman 1950); undefined at rest."""
+        """<P> / (m g U): the same per weight, dimensionless (Gabrielli and von Karman 1950); undefined at rest."""
         cost = self.cost_of_transport
         return None if cost is None else cost / GRAVITY
 
     @property
     def hydromechanical_efficiency(self) -> float | None:
-        """1 + <wake> / <actuators>: part of the work that is not shed into the wake (Lighthill 1960, whose power of
-        the wake this is). Undefined where the actuators do no work, and where the tail leads in the window."""
+        """1 + <wake> / <actuators>: part of the work that is not shed into the wake (with the wake power of Lighthill
+        1960). Undefined if the actuators do no work, and if the tail leads in the window."""
         return self._part(lambda: self.actuator_power + self.wake_power)
 
     @property
     def propulsive_efficiency(self) -> float | None:
-        """-<axial friction + nose> / <actuators>: part of the work that overcomes the drag of going ahead, cross flow
-        counted as loss. Undefined as the hydromechanical efficiency is."""
+        """-<axial friction + nose> / <actuators>: part of the work that overcomes the drag of swimming ahead, with
+        cross flow counted as loss. Undefined when the hydromechanical efficiency is."""
         return self._part(lambda: -(self.friction_power + self.nose_power))
 
     @property
     def tail_leads(self) -> bool:
-        """Whether V1(l) > 0 at a sample of the window: the theory then lets the wake feed energy in."""
+        """Whether V1(l) > 0 at a sample of the window: in the theory the wake then supplies energy."""
         return bool(np.any(self._ledger.wake_power[self.window.inside] > 0.0))
 
     # -- torque along the body

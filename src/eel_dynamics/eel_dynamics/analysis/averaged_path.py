@@ -15,7 +15,7 @@ from eel_dynamics.analysis.powers import area
 class AveragedPath:
     """The averaged path in a `window`. A window of a single period holds one step of it, from its start to its end.
 
-    Paths are evaluated at N instants that are equally far apart, with n of them in each period.
+    Paths are evaluated at N equidistant instants, with n of them in each period.
     """
 
     def __init__(self, window: AveragingWindow):
@@ -72,7 +72,7 @@ class AveragedPath:
 
     @cached_property
     def _steps(self) -> np.ndarray:
-        """(N - n, 3) [m], of the centre of mass over the water in the period that begins at an instant."""
+        """(N - n, 3) [m], displacement of the centre of mass over the water in the period after each instant."""
         centre = self._paths[:, 0]
         return np.asarray(centre[self._period :] - centre[: -self._period])
 
@@ -82,7 +82,7 @@ class AveragedPath:
 
 
 def _widths(points: np.ndarray) -> np.ndarray:
-    """(B,) [m], the greatest distance between two of the points (B, n, 3) of each beat."""
+    """(B,) [m], the greatest distance between two of the points (B, n, 3) in each beat."""
     squares = np.sum(points**2, axis=2)
     apart = squares[:, :, None] + squares[:, None] - 2.0 * points @ points.transpose(0, 2, 1)
     return np.sqrt(np.maximum(0.0, np.max(apart, axis=(1, 2))))

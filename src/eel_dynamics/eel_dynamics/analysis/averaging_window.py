@@ -15,11 +15,11 @@ from eel_gaits.laws.law import Law
 from eel_gaits.laws.term import Term
 from eel_gaits.sources.sampled_law import SampledLaw
 
-LONGEST_COMMON = 12  # of the strongest wave's periods, after which the whole gait must repeat
-FEWEST_SAMPLES = 8  # in a period
-WHOLE = 1e-4  # part of a period that may be missing: the period of measured rows is not exact
-PLACES = 33  # along the body, at which the strength of a wave is evaluated
-FINE = 64  # points in a period at which a path or its width is evaluated
+LONGEST_COMMON = 12  # of the strongest wave's periods: the whole gait must repeat within them
+FEWEST_SAMPLES = 8  # per period
+WHOLE = 1e-4  # part of a period that may be missing, as the period of measured rows is not exact
+PLACES = 33  # along the body, for the strength of a wave
+FINE = 64  # points per period for a path or its width
 
 
 def strength(term: Term, x: np.ndarray, time: np.ndarray) -> float:
@@ -30,8 +30,8 @@ def strength(term: Term, x: np.ndarray, time: np.ndarray) -> float:
 def by_strength(law: Law | SampledLaw, x: np.ndarray, time: np.ndarray) -> list[tuple[Term, float]]:
     """The periodic terms of `law` and their greatest curvatures [rad/m], the strongest first.
 
-    Yaw comes before pitch whatever their strength, and what does not bend the body last. x (M,) [m] and time (T,) [s]:
-    where and when strength is measured; one term alone is not.
+    Yaw comes before pitch at any strength, and terms without effect come last. x (M,) [m] and time (T,) [s]: places and
+    times at which strength is measured; a single term needs none.
     """
     if len(law.waves) == 1:
         return [(law.waves[0], math.inf)]
@@ -40,8 +40,8 @@ def by_strength(law: Law | SampledLaw, x: np.ndarray, time: np.ndarray) -> list[
 
 
 def common_period(law: Law | SampledLaw, x: np.ndarray, time: np.ndarray) -> float:
-    """Time [s] after which the gait repeats: the least whole multiple of the strongest wave's period that is one of
-    every other term's too. `ValueError` for a law without period, or where that multiple is above 12."""
+    """Time [s] after which the gait repeats: the least whole multiple of the strongest wave's period that is also a
+    multiple of every other term's. `ValueError` for a law without period, or a multiple above 12."""
     return _common_period(law, by_strength(law, x, time))
 
 
@@ -61,11 +61,10 @@ def _common_period(law: Law | SampledLaw, waves: list[tuple[Term, float]]) -> fl
 
 
 class AveragingWindow:
-    """The last `periods` whole periods of `run` (None: as many as make up the later half of the run, at least one).
+    """The last `periods` whole periods of `run` (None: those in the later half of the run, at least one).
 
     run, periods; period [s]: after which the gait of the later half repeats; start, end [s]; wave: the strongest wave
-    (yaw, else pitch).
-    `ValueError` where the run is too short or its samples too few.
+    (yaw, else pitch). `ValueError` if the run is too short or has too few samples.
     """
 
     def __init__(self, run, periods: int | None = None):
@@ -102,16 +101,16 @@ class AveragingWindow:
 
     @property
     def instants(self) -> np.ndarray:
-        """(N,) [s], of the window's periods, `FINE` in each period of the strongest wave."""
+        """(N,) [s], over the window's periods, `FINE` per period of the strongest wave."""
         count = FINE * round(self.period / self.wave.period) * self.periods
         return np.linspace(self.end - self.periods * self.period, self.end, count + 1)
 
     def mean(self, values: np.ndarray) -> np.ndarray:
-        """Mean over the window of samples (T, ...), the spline through them integrated."""
+        """Mean over the window of samples (T, ...): the integral of the spline through them."""
         return np.asarray(self.spline(values).integrate(self.start, self.end) / self.duration)
 
     def edges(self, fewest: int) -> np.ndarray:
-        """(n + 1,) [s], of the window's periods, or of the run's last `fewest` ones where the window has fewer."""
+        """(n + 1,) [s], of the window's periods, or of the run's last `fewest` periods if the window has fewer."""
         whole = math.floor((self.end - float(self.run.time[0])) / self.period + WHOLE)
         count = min(whole, max(self.periods, fewest))
         return np.maximum(self.end - self.period * np.arange(count, -1, -1), self.run.time[0])
@@ -119,7 +118,7 @@ class AveragingWindow:
     def rate(self, work: np.ndarray, power: np.ndarray) -> float:
         """Mean power [W] over the window of `work` (T,) [J], whose derivative is `power` (T,) [W].
 
-        The work at the window's start is that of Hermite's cubic between two samples.
+        Between two samples the work at the window's start is interpolated by Hermite's cubic.
         """
         first = max(0, int(np.searchsorted(self.run.time, self.start, side="right")) - 1)
         (before, after), (work_before, work_after), (rate, later) = (
@@ -132,8 +131,8 @@ class AveragingWindow:
         return float(work[-1] - at_start) / self.duration
 
     def spline(self, values: np.ndarray):
-        """Cubic spline in time through samples (T, ...), not a knot at its ends. `ValueError` where not finite."""
-        from scipy.interpolate import make_interp_spline  # in half the time of CubicSpline
+        """Cubic not-a-knot spline in time through samples (T, ...). `ValueError` if they are not finite."""
+        from scipy.interpolate import make_interp_spline  # twice as fast as CubicSpline
 
         return make_interp_spline(self.run.time, values, k=min(3, len(self.run.time) - 1))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks a run against what the coefficients of its hull, and a slender tail, stand for.
+"""Checks whether a run is within the range of its hull's coefficients, and of a slender tail.
 
 | limit | why | what to do |
 |---|---|---|
@@ -9,9 +9,9 @@
 | the height rises to the tail within twice its half-height | a wing, not a tail | `lateral_added_mass` along X |
 | Strouhal number > 1 | separated flow at the tail: no slender theory is right there | take the thrust for too great |
 
-KC = max|V2| T / (2 a) of the sections in the rear half (Keulegan and Carpenter 1958), with the half-height a across
-their way. The factor of an endless strip of half-height a that waves with the wavenumber k, by that of a rigid one, is
-exact potential flow. k is the change of the phase of V2 over the last quarter of the body, by its length.
+KC = max|V2| T / (2 a) of the sections in the rear half (Keulegan and Carpenter 1958), with the half-height a normal to
+their motion. The ratio of added masses of an endless strip of half-height a, waving with the wavenumber k or rigid, is
+exact potential flow. k is the change of the phase of V2 over the last quarter of the body, divided by its length.
 """
 
 import numpy as np
@@ -26,17 +26,16 @@ MOST_WAVY, MOST_STROUHAL = 0.5, 1.0
 REAR, LAST = 0.5, 0.75  # of the length
 STRIP = np.array([[0.0, 1.0], [0.1, 0.991], [0.2, 0.969], [0.3, 0.941], [0.5, 0.875], [0.7, 0.805], [1.0, 0.708],
                   [1.5, 0.576], [2.0, 0.479], [3.0, 0.353], [5.0, 0.229]])  # fmt: skip
-"""k a, and the added mass of an endless strip that waves so, by that of a rigid one."""
+"""k a, and the added mass of an endless strip that waves in this way, relative to that of a rigid one."""
 PLACES = 33  # along the body
-COINCIDENT = 1e-9  # of the body's length, by which the last station may lie ahead of the tail
-RISEN = 0.02  # part of the rise of the height from which on it counts
+COINCIDENT = 1e-9  # of the body's length: allowed distance of the last station from the tail
+RISEN = 0.02  # a smaller part of the rise of the height does not count
 
 
 def hull_warnings(run) -> list[str]:
     """Limits of the hull's coefficients and of the slender tail that a `Run` exceeded, one line each.
 
-    Those of a motion need a gait with a period, a station at the tail, and water that moves at most with a uniform
-    current.
+    Limits of a motion need a gait with a period, a station at the tail, and water at rest or with a uniform current.
     """
     found = [_of_rise(run)] if run.scene.reactive else []
     if abs(run.x[-1] - run.body.length) > COINCIDENT * run.body.length:
@@ -57,7 +56,7 @@ def hull_warnings(run) -> list[str]:
 
 
 def _of_rise(run) -> str:
-    """A warning if the body's height rises to the tail over a length that is short against it."""
+    """A warning if the body's height rises to the tail over a short length."""
     x = np.linspace(REAR * run.body.length, run.body.length, 513)
     a = run.body.half_height(x)
     high = len(a) - 1 - int(np.argmax(a[::-1]))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The demand of a run on a robot with n joints: a chain of n + 1 rigid links in place of the continuous backbone.
+"""The demand of a run on a robot with n joints: a chain of n + 1 rigid links instead of the continuous backbone.
 
 Joint j represents the segment (j - 1) l/n to j l/n, and lies in its middle, X = (j - 1/2) l/n. Its angles are the
-integrals of K2 (pitch) and K3 (yaw) over the segment, its torques -C2, -C3 there (the motor turns the part ahead
-against the part behind: their power per length is -C . dK/dt, C of eq. 26 of Boyer, Porez and Leroyer 2010).
+integrals of K2 (pitch) and K3 (yaw) over the segment. Its torques are -C2, -C3 there: the motor turns the part ahead
+relative to the part behind, with the power per length -C . dK/dt, C of eq. 26 of Boyer, Porez and Leroyer 2010.
 """
 
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ class Motors:
     time: np.ndarray  # (T,) s
     angle: np.ndarray  # (T, n) rad
     speed: np.ndarray  # (T, n) rad/s
-    torque: np.ndarray  # (T, n) N m, of the motor
+    torque: np.ndarray  # (T, n) N m, motor torque
     peak: dict[str, np.ndarray]  # (n,) greatest magnitudes of the `QUANTITIES`, between samples too (`analysis.peaks`)
 
     @property
@@ -43,7 +43,7 @@ QUANTITIES = ("angle", "speed", "torque", "power")  # rad, rad/s, N m, W
 class Joints:
     """`count` joints of a body of `length` [m], from values at the stations x (M,) [m]: at least 4, from nose to tail.
 
-    Values between the stations are those of a cubic spline, which is linear in the values: each result is one matrix
+    Between the stations, values are those of a cubic spline, which is linear in them: each result is one matrix
     times the values.
 
     Attributes:
@@ -60,7 +60,7 @@ class Joints:
         self._value = spline(self.x)  # (count, M)
 
     def angle(self, curvature: np.ndarray) -> np.ndarray:
-        """Angles (..., count, 3) [rad] of a curvature (..., M, 3) [rad/m], or speeds [rad/s] of its rate."""
+        """Angles (..., count, 3) [rad] from a curvature (..., M, 3) [rad/m], or speeds [rad/s] from its rate."""
         return self._integral @ curvature
 
     def motor_torque(self, torque: np.ndarray) -> np.ndarray:
@@ -70,7 +70,7 @@ class Joints:
 
 @dataclass(frozen=True, repr=False)
 class Actuators:
-    """The demand on n joints in pitch and yaw, and the difference of their power from the continuous body's."""
+    """The demand on n joints in pitch and yaw, and the difference of their power from the continuous body's power."""
 
     time: np.ndarray  # (T,) s
     x: np.ndarray  # (n,) m, positions of the joints
@@ -92,7 +92,7 @@ class Actuators:
 
     @property
     def power_difference(self) -> np.ndarray:
-        """(T,) W: power of the joints minus that of the continuous body; it falls like 1/n^2."""
+        """(T,) W: power of the joints minus power of the continuous body; it falls like 1/n^2."""
         return self.power - self.continuous_power
 
     @property
@@ -121,8 +121,8 @@ class Actuators:
 def actuators_of(run, joints: int) -> Actuators:
     """The demand of `run` on a robot of `joints` motors per axis.
 
-    `ValueError` for a number below 1, for a run without internal wrench, or with
-    stations that do not reach from nose to tail or are fewer than 4.
+    `ValueError` for a number below 1, for a run without internal wrench, or with fewer than 4 stations, or with
+    stations that do not reach from nose to tail.
     """
     if isinstance(joints, bool) or not isinstance(joints, (int, np.integer)) or not 1 <= joints <= MOST_JOINTS:
         raise ValueError(f"joints must be a whole number from 1 to {MOST_JOINTS}, got {shown(joints)}")
@@ -137,7 +137,7 @@ def actuators_of(run, joints: int) -> Actuators:
 
 
 def _motors(run, robot: Joints) -> list[Motors]:
-    """The motors in pitch and yaw of `robot`, with the peaks of a run of finer samples."""
+    """The motors in pitch and yaw of `robot`, with peaks from a run with finer samples."""
     finer = run.finely_sampled()
     here, fine = (
         (robot.angle(each.curvature), robot.angle(each.curvature_rate), robot.motor_torque(each.torque))

@@ -14,7 +14,7 @@ ANALYSIS, ESTIMATE = "analysis", "error estimate"  # parts of a run
 
 MEASURES: dict[
     str, tuple[str, str, Any]
-] = {  # name: (unit, description, where it is found: in the run, or as an attribute of one of its parts)
+] = {  # name: (unit, description, source: a function of the run, or the part with an attribute of this name)
     "head_x": ("m", "head at the end, world axes", lambda run: run.position[-1, 0]),
     "head_y": ("m", "head at the end, world axes", lambda run: run.position[-1, 1]),
     "head_z": ("m", "head at the end, world axes", lambda run: run.position[-1, 2]),
@@ -53,7 +53,7 @@ MEASURES: dict[
     "evaluations": ("", "evaluations of the head's dynamics", lambda run: run.evaluations),
 }
 OF_ESTIMATE = tuple(name for name, (_, _, where) in MEASURES.items() if where == ESTIMATE)
-# What a run must have, besides its motion:
+# Data that a run needs for a measure, besides its motion:
 OF_WRENCH = frozenset(("greatest_torque", "error_torque"))
 OF_LEDGER = frozenset(
     (
@@ -65,13 +65,13 @@ OF_LEDGER = frozenset(
         "ledger_residual",
     )
 )
-AT_END = frozenset(("head_x", "head_y", "head_z", "duration", "evaluations"))  # no more than the last sample
+AT_END = frozenset(("head_x", "head_y", "head_z", "duration", "evaluations"))  # need only the last sample
 
 
 def measures_of(run, names=tuple(MEASURES), periods: int | None = None) -> dict[str, float]:
-    """The measures `names` of `run`; NaN where one is undefined, or the run lacks the data for it.
+    """The measures `names` of `run`; NaN if undefined, or if the run lacks the data.
 
-    periods: whole periods at the run's end in place of its later half.
+    periods: whole periods at the run's end instead of its later half.
     """
 
     analysis: Any = None
@@ -93,7 +93,7 @@ def measures_of(run, names=tuple(MEASURES), periods: int | None = None) -> dict[
 
 
 def checked_measures(argument: str, names, estimate: bool = True) -> tuple[str, ...]:
-    """The `names` of measures as a tuple; None: all that a run with or without error estimate has.
+    """The `names` of measures as a tuple; None: all measures of a run with or without error estimate.
 
     `ValueError` that names the `argument` for an unknown measure, and for one of the error without an estimate.
     """

@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks a run against the limits of the model. Beyond a limit the simulation continues, but its results mean less.
+"""Checks a run against the limits of the model. Beyond a limit the simulation continues, but is less reliable.
 
 | limit | why |
 |---|---|
 | a section's edge at the centre of curvature, abs(K3) b + abs(K2) a >= 1 | sections would cut through each other |
 | the body touches itself | the model knows no contact |
 | slenderness l/(2 max(a, b)) < 5 | the water moves in planes across a slender body (section 4.1 of the paper) |
-| U l/nu < 1000 | added mass and a thin boundary layer need inertia to rule |
-| the tail leads, V1(l) > 0, for a good part of the time | the wake then feeds energy in (the last term of eq. 60) |
-| the flow's gradient changes by more than a tenth of itself across a section | it is taken as the same there |
+| U l/nu < 1000 | added mass and a thin boundary layer need inertia to dominate |
+| the tail leads, V1(l) > 0, for a good part of the time | the wake then supplies energy (the last term of eq. 60) |
+| the flow's gradient changes by more than a tenth of itself across a section | the model assumes it uniform there |
 | the hull's coefficients, or a tail that is not slender | `hull_limits` |
-| the energy ledger is open by more than its tolerance | no limit of the model: steps or points are too few |
+| the energy ledger is open by more than its tolerance | not a limit of the model: steps or points are too few |
 
-The tolerance of the ledger is ten times the target, within 1e-4 and 1e-2, of all energy that passed, or 1e-3 where
-settings were given one by one. A swim that ends before its first stroke may miss it: its energy is small beside that of
-the gait, for which the steps are chosen. Only a motion of round-off is not checked.
+The tolerance of the ledger is ten times the target, within 1e-4 and 1e-2, of all energy that passed; or 1e-3 for
+settings given one by one. A swim that ends before its first stroke may exceed it: its energy is small beside the
+gait's, for which the steps are chosen. Only a motion of round-off is not checked.
 
 b is the half-width along axis 2, a the half-height along axis 3. A point y E2 + z E3 of a section moves along the body
 by t1 (1 + K2 z - K3 y) per length, which must stay positive out to the skin.
@@ -30,15 +30,15 @@ from eel_dynamics.simulation.energy import WORKS
 
 LEAST_SLENDERNESS = 5.0
 LEAST_REYNOLDS = 1e3
-OPEN_BY_TARGET, LEAST_OPEN, MOST_OPEN = 10.0, 1e-4, 1e-2  # share of the energy: by the target, and its bounds
-OPEN_OF_SETTINGS = 1e-3  # the same where resolution and step were chosen by hand
-GRADIENT_CHANGES = 0.1  # across a section, of the greatest gradient along the body
-LOOKS, PLACES = 32, 13  # instants and stations at which that is looked at
+OPEN_BY_TARGET, LEAST_OPEN, MOST_OPEN = 10.0, 1e-4, 1e-2  # share of the energy: times the target, and bounds
+OPEN_OF_SETTINGS = 1e-3  # the same for resolution and step chosen by hand
+GRADIENT_CHANGES = 0.1  # change across a section, relative to the greatest gradient along the body
+LOOKS, PLACES = 32, 13  # instants and stations for that check
 TAIL_LEADS = 0.25  # share of the time
-APART = 4.0  # half-axes along the body, beyond which two sections are not neighbours
-COINCIDENT = 1e-9  # of the body's length: centres of sections at one place
+APART = 4.0  # half-axes along the body: sections further apart are not neighbours
+COINCIDENT = 1e-9  # of the body's length: closer centres of sections coincide
 TINY = float(np.finfo(float).tiny)
-AT_ONCE = 64  # instants whose pairs of sections are looked at together
+AT_ONCE = 64  # instants whose pairs of sections are checked together
 
 
 class ModelLimits:
@@ -82,7 +82,7 @@ class ModelLimits:
         """
         if not self._pairs.size:
             return ""
-        # A line that turns by less than 2 pi/3 in all ends farther away than half of its length.
+        # The ends of a line that turns by less than 2 pi/3 in all are farther apart than half of its length.
         bend = np.linalg.norm(curvature, axis=2)
         turned = 0.5 * (bend[:, 1:] + bend[:, :-1]) @ np.diff(self.x)
         suspects = np.flatnonzero(turned >= 2.0 * np.pi / 3.0)
@@ -92,7 +92,7 @@ class ModelLimits:
             apart = backbone[samples][:, second] - backbone[samples][:, first]
             side, up = cross_axes(section_orientation[samples])
             ahead = np.cross(side, up)[:, first]
-            between = np.sum(apart * ahead, axis=2)  # what a section between two stations makes up for
+            between = np.sum(apart * ahead, axis=2)  # compensation for sections between two stations
             apart -= np.clip(between, -self._half_spacing, self._half_spacing)[..., None] * ahead
             distance = np.linalg.norm(apart, axis=2)
             towards = apart / np.maximum(distance, TINY)[..., None]
@@ -123,7 +123,7 @@ class ModelLimits:
         return f"Reynolds number U l/nu is {reynolds:.3g}, below {LEAST_REYNOLDS:g}: viscosity rules, not inertia"
 
     def of_tail(self, wake_power, span: str = "") -> str:
-        """A warning if the tail leads for a good part of the time; wake_power (T,) [W] has the sign of V1(l).
+        """A warning if the tail leads for much of the time. wake_power (T,) [W] has the sign of V1(l).
 
         span: of the samples, for the text.
         """
@@ -136,7 +136,8 @@ class ModelLimits:
     def of_flow(self, flow, time, backbone, section_orientation) -> str:
         """A warning if the gradient of the `flow` changes much across a section at one of the times (T,) [s].
 
-        backbone (T, M, 3) [m] and section_orientation (T, M, 4) in the world. Some instants and stations are looked at.
+        backbone (T, M, 3) [m] and section_orientation (T, M, 4) in the world. A part of instants and stations is
+        checked.
         """
         stations = np.unique(np.linspace(0, len(self.x) - 1, PLACES).astype(int))
         samples = np.unique(np.linspace(0, len(time) - 1, LOOKS).astype(int))
@@ -146,7 +147,7 @@ class ModelLimits:
         places = np.stack([middle, *(middle + sign * arm for arm in arms for sign in (-1.0, 1.0))], axis=1)
         try:
             gradients = np.stack([flow.sample(*each).jacobian for each in zip(places, time[samples], strict=True)])
-        except ValueError:  # beside a grid, or of a function that a file does not hold
+        except ValueError:  # outside a grid, or a function that a file cannot hold
             return ""
         pairs = ((1, 2), (3, 4), (0, 1), (0, 2), (0, 3), (0, 4))  # of the centre and the edges
         changes = [np.linalg.norm(gradients[:, a] - gradients[:, b], axis=(-2, -1)) for a, b in pairs]
@@ -164,8 +165,8 @@ class ModelLimits:
     def of_ledger(self, energy, most: float, floor: float) -> str:
         """A warning if the residual of an `EnergyLedger` of (T,) arrays exceeds the share `most` of the energy.
 
-        floor: energy [J] that counts as none.
-        The energy is the greatest sum of energies and works at the samples; it misses what comes and goes
+        floor: energy [J] that counts as zero.
+        The energy is the greatest sum of energies and works at the samples. It misses energy that comes and goes
         between two samples, as in a sudden ramp.
         """
         signed = energy.potential, *(getattr(energy, f"{part}_work") for part in WORKS)
@@ -202,7 +203,7 @@ def warnings_of(run) -> tuple[str, ...]:
 
 
 def ledger_tolerance(target: float | None) -> float:
-    """The share of the energy by which the ledger of a run with this `target` may be open; None: of its settings."""
+    """The share of the energy by which the ledger of a run with this `target` may be open; None: of given settings."""
     return OPEN_OF_SETTINGS if target is None else min(max(OPEN_BY_TARGET * target, LEAST_OPEN), MOST_OPEN)
 
 

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The greatest values of a run between its samples.
 
-With 20 samples in a period the greatest sample of the torque lies below its peak by 2 % (median of all gaits; at most
-3 %). A spline of degree 5 misses it by 3e-4 (at most 4e-3: ramps and drag have kinks), with 100 samples by some 1e-5.
-So the greatest torque of all is that of a swim anew: from the state at a sample (where that does not tell how it goes
-on, from the start), through the three sample periods around the peak of the spline. The peaks of a window, of single
-stations, of joints and of power are those of splines through ten times the samples (`Run.finely_sampled`): to 4e-5 or
-better, as exact as the run. A run of more than a thousand samples has fewer than ten times as many, and one that was
-recorded elsewhere its own: those of power may then be 2 % off at 20 samples in a period.
+With 20 samples per period the greatest sample of the torque is 2 % below its peak (median of all gaits; at most 3 %). A
+spline of degree 5 misses it by 3e-4 (at most 4e-3: ramps and drag have kinks), with 100 samples by about 1e-5. So the
+overall greatest torque comes from a new swim, through the three sample periods around the spline's peak. It starts from
+the state at a sample, or from the start of the run if that state does not determine the rest. The peaks of a window, of
+single stations, of joints and of power come from splines through ten times the samples (`Run.finely_sampled`): to 4e-5
+or better, as exact as the run. A run of more than a thousand samples has fewer than ten times as many, and a run that
+was recorded elsewhere only its own: its peaks of power may then be wrong by 2 % at 20 samples per period.
 """
 
 from functools import lru_cache
@@ -17,14 +17,14 @@ import numpy as np
 from eel_dynamics.simulation.march import March
 
 DEGREE = 5
-BETWEEN = 8  # instants in a sample period, among which the greatest is looked for; a parabola then gives the peak
-FINER, MOST_SAMPLES = 10, 10_000  # samples in a sample period, and in all, of a run that is swum anew for its peaks
-AT_ONCE = 512  # of these instants that are looked at together
-FEW, EQUIDISTANT = 40, 1e-9  # so many values share a table of splines, where their distances differ by this part
-NEAR = 0.7  # of the greatest sample: stations and samples that stay below are not beside the peak between samples
-AROUND = 1  # sample periods, and distances of stations, to either side of the peak that are swum anew
+BETWEEN = 8  # instants per sample period for finding the greatest; a parabola then gives the peak
+FINER, MOST_SAMPLES = 10, 10_000  # samples per sample period, and in all, of a run that is swum again for its peaks
+AT_ONCE = 512  # number of these instants evaluated together
+FEW, EQUIDISTANT = 40, 1e-9  # values up to this number share a table of splines, if equidistant to this part
+NEAR = 0.7  # of the greatest sample: the peak between samples is not beside smaller ones
+AROUND = 1  # sample periods, and station distances, to either side of the peak that are swum again
 FINE = 12  # instants and stations in each of these
-BESIDE = 6  # of them, to either side of the greatest, through which splines give the peak
+BESIDE = 6  # number of them to either side of the greatest, for the spline of the peak
 
 
 def torque_size(torque: np.ndarray) -> np.ndarray:
@@ -35,15 +35,15 @@ def torque_size(torque: np.ndarray) -> np.ndarray:
 def peaks(
     x: np.ndarray, values: np.ndarray, size=np.abs, start=-np.inf, end=np.inf, near: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The greatest `size` of a spline through `values` (T, ...) at `x` (T,), and where: from `start` to `end`.
+    """The greatest `size` of a spline through `values` (T, ...) at `x` (T,), and its place: from `start` to `end`.
 
-    size: of values (n, ...); it may take away the last axis. Each other axis has a peak of its own.
-    near: (T,) bool, of the samples beside which they may lie; None: beside any.
+    size: of values (n, ...); it may remove the last axis. Each other axis has a peak of its own.
+    near: (T,) bool: samples beside which peaks may lie; None: beside any.
     """
     if len(x) < 2:
         return size(values)[0], np.broadcast_to(x[0], size(values)[0].shape)
     inside = np.unique(np.clip(x, start, end)) if np.isfinite([start, end]).any() else x
-    inside = inside[np.diff(inside, prepend=-np.inf) > EQUIDISTANT * (x[1] - x[0])]  # none that differ by round-off
+    inside = inside[np.diff(inside, prepend=-np.inf) > EQUIDISTANT * (x[1] - x[0])]  # without duplicates from round-off
     between = np.arange((len(inside) - 1) * BETWEEN + 1) / BETWEEN
     fine = np.interp(between, np.arange(len(inside)), inside)
     wanted = slice(None) if near is None else np.interp(between, np.arange(len(inside)), near) > 0.0
@@ -68,14 +68,14 @@ def _spline(x: np.ndarray, values: np.ndarray):
 
 @lru_cache(maxsize=FEW)
 def _table(count: int) -> np.ndarray:
-    """(n, count), of the splines through 1 at one of `count` equidistant places, with `BETWEEN` rows from each on."""
+    """(n, count): splines that are 1 at one of `count` equidistant places, with `BETWEEN` rows per interval."""
     return np.asarray(_spline(np.arange(count), np.eye(count))(np.arange((count - 1) * BETWEEN + 1) / BETWEEN))
 
 
 def greatest_torque_of(run) -> tuple[float, float, float]:
     """Greatest magnitude [N m] of the internal torque of `run`, with its X [m] and its time [s].
 
-    A run is not swum anew if it was recorded elsewhere, has a single sample, or is a later part of one that
+    A run is not swum again if it was recorded elsewhere, has a single sample, or is a later part of a run that
     `depends_on_its_start`.
     """
     size = torque_size(run.torque)
@@ -94,8 +94,8 @@ def greatest_torque_of(run) -> tuple[float, float, float]:
 
 
 def depends_on_its_start(run) -> bool:
-    """Whether the head's motion at an instant does not tell how `run` goes on: a flow has its own time, robots and fins
-    have a state of their own."""
+    """Whether the head's motion at an instant does not determine the rest of `run`: a flow has its own time, robots and
+    fins have states of their own."""
     return run.flow is not None or run.robot is not None or bool(run.fins)
 
 

@@ -16,7 +16,7 @@ from eel_dynamics.simulation.discretisation import discretise
 def power_density(run) -> np.ndarray:
     """Power of the actuators per length, -C . dK/dt (T, M) [W/m], at the stations of `run`.
 
-    `ValueError` where these do not reach from nose to tail.
+    `ValueError` unless the stations reach from nose to tail.
     """
     length = run.body.length
     if len(run.x) < 2 or run.x[0] > 1e-9 * length or run.x[-1] < (1.0 - 1e-9) * length:
@@ -25,7 +25,7 @@ def power_density(run) -> np.ndarray:
 
 
 def torque_of(run) -> np.ndarray:
-    """The internal torque (T, M, 3) [N m] of `run`. `ValueError` where it holds none."""
+    """The internal torque (T, M, 3) [N m] of `run`. `ValueError` without one."""
     if run.torque is None:
         raise ValueError("torque needs a run with scene internal_wrench on")
     return run.torque
@@ -40,7 +40,7 @@ def drag_powers(run) -> np.ndarray:
     run's settings; their sum is the ledger's `drag_power`.
     """
     run = run.in_axes(REP103)
-    setup = replace(run.setup_at(0, run.x[:1], run.accuracy.as_it_is()), fins=())  # whose drag is their own
+    setup = replace(run.setup_at(0, run.x[:1], run.accuracy.as_it_is()), fins=())  # fins have their own drag
     here = discretise(setup, setup.grid_for(setup.shape_needs(run.law)))
     instant, powers = eel_core.Instant(here.swimmer), np.zeros((len(run.time), 6))
     time, relative = np.ascontiguousarray(run.time), run.twist.copy()
@@ -63,5 +63,5 @@ def drag_powers(run) -> np.ndarray:
 
 
 def area(values: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Integral of `values` (..., n) by `x` (n,), by the trapezoidal rule."""
+    """Integral of `values` (..., n) over `x` (n,), by the trapezoidal rule."""
     return 0.5 * ((values[..., 1:] + values[..., :-1]) @ np.diff(x))

@@ -7,7 +7,7 @@ from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.trim import trim_of
 from eel_dynamics.model.robot.actuators import at_limit
 
-NOT_PROMISED = (  # errors that are measured, and that no target is for
+NOT_PROMISED = (  # errors that are measured, but not bounded by a target
     ("orientation", "orientation", " rad"),
     ("twist", "twist", ""),
     ("joint_angle", "joint angles", " rad"),
@@ -128,7 +128,7 @@ def _of_the_torque(a: Analysis) -> list[str]:
 
 def _of_the_cost(run) -> list[str]:
     lines = [f"cost                {run.steps} steps, {run.evaluations} evaluations of the head's dynamics"]
-    lines = lines if run.evaluations else []  # a bag does not tell
+    lines = lines if run.evaluations else []  # unknown for a bag
     error = run.error_estimate
     if error is not None:
         torque = "" if error.torque is None else f", of the torque {error.torque:.1e}"

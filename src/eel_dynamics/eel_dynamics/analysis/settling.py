@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether the mean over a period of the gait has settled: what it has changed by lately, and is still to change by."""
+"""Whether the mean over a period of the gait has settled: its recent change, and its change still to come."""
 
 import math
 import warnings
@@ -9,17 +9,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-SETTLED = 0.01  # relative: the most that a settled mean changes within the window, and the most that it goes on to
-STEADY = 1e-4  # relative: means of three periods that differ by less are as steady as their own error
-FEWEST = 3  # periods, that tell how the changes fall
+SETTLED = 0.01  # relative: most change of a settled mean within the window, and most change still to come
+STEADY = 1e-4  # relative: the error of the means themselves, for three periods
+FEWEST = 3  # periods needed to extrapolate the changes
 
 
 class Unsettled(UserWarning):
-    """A mean was read of a run whose gait has not settled."""
+    """A mean was taken over a gait that has not settled."""
 
 
 def tell_unsettled(settled: ArrayLike, what: str, stacklevel: int = 3) -> None:
-    """An `Unsettled` warning with how many of `settled` (n,) are 0, not 1 or NaN; `what` they are."""
+    """Give an `Unsettled` warning with the number of zeros in `settled` (n,), not of 1 or NaN. `what`: their name."""
     array = np.asarray(settled, dtype=float)
     if many := int(np.sum(array == 0.0)):
         warnings.warn(f"{many} of {array.size} {what} have not settled", Unsettled, stacklevel=stacklevel)
@@ -27,14 +27,14 @@ def tell_unsettled(settled: ArrayLike, what: str, stacklevel: int = 3) -> None:
 
 @dataclass(frozen=True)
 class Settling:
-    """How a mean over a period changes, relative to the last one: whether it has settled, and as text what tells so.
+    """The change of a mean over a period, relative to the last one: whether it has settled, and the reason as text.
 
-    It has where both changes are `SETTLED` at most. So a slow change is not taken for none.
+    It has settled if both changes are at most `SETTLED`. So a slow change does not count as none.
     """
 
-    periods: int  # that were looked at
+    periods: int  # number of periods
     within: float  # from the least of their means to the greatest
-    left: float  # still to come; infinite where nothing bounds it
+    left: float  # change still to come; infinite without a bound
 
     @property
     def change(self) -> float:
@@ -54,11 +54,11 @@ class Settling:
 
 
 def settling_of(means: Sequence[float] | np.ndarray) -> Settling:
-    """How the `means` (n,) over successive periods change.
+    """The changes of the `means` (n,) over successive periods.
 
-    What is left to come follows from the last two changes d1, d2. Where they fall geometrically it is d2^2 / (d1 - d2);
-    where they alternate it is d2; where they have one sign and do not fall it has no bound, unless both together are
-    within the means' own error (`STEADY`). Infinite for fewer than three means, and where the last is 0.
+    The change still to come follows from the last two changes d1, d2: d2^2 / (d1 - d2) if they fall geometrically; d2
+    if they alternate; without bound if they have one sign and do not fall, unless both together are within the means'
+    own error (`STEADY`). Infinite for fewer than three means, and if the last is 0.
     """
     values = [float(each) for each in means]
     scale = abs(values[-1]) if values else 0.0
@@ -74,7 +74,7 @@ def settling_of(means: Sequence[float] | np.ndarray) -> Settling:
 
 
 def _percent(change: float) -> str:
-    """A change as text, with as many digits as it takes to lie on its own side of `SETTLED`."""
+    """A change as text, with enough digits to show on which side of `SETTLED` it is."""
     if change < STEADY:
         return f"less than {STEADY:.2%}"
     texts = (f"{change:.{digits}%}" for digits in range(2, 18))

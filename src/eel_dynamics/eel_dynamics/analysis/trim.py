@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Weight, buoyancy and trim of a straight body, and the ballast that makes it float level.
 
-Weight acts at the centre of mass, buoyancy at the centre of the volume. A body floats where both are equal, and comes
-to rest with the one below the other: `trim_of`. One piece of ballast has two unknowns, its mass and its place along the
-body, for two conditions, no net weight and no moment: `ballast_for`.
+Weight acts at the centre of mass, buoyancy at the centre of volume. A body floats if both are equal, and comes to rest
+with one below the other: `trim_of`. One piece of ballast has two unknowns, its mass and its place along the body, for
+two conditions, no net weight and no moment: `ballast_for`.
 """
 
 from dataclasses import dataclass, replace
@@ -16,29 +16,29 @@ from eel_dynamics.model.body.body import Body, checked_body
 from eel_dynamics.model.scene import Scene, checked_scene
 from eel_dynamics.model.section_data import GRAVITY, NEUTRAL
 
-LEVEL = 1e-9  # of the length: centres of mass and buoyancy that are this close along the body
-PART = 0.1  # of the length, that a piece of ballast takes by default
+LEVEL = 1e-9  # of the length: a smaller distance of the centres of mass and buoyancy counts as none
+PART = 0.1  # of the length: default length of a piece of ballast
 
 
 @dataclass(frozen=True)
 class Trim:
-    """How a straight body lies in the water."""
+    """The attitude of a straight body in the water."""
 
     mass: float  #: kg
     displaced: float  #: kg, of the displaced water
     centre_of_mass: float  #: X [m], from the nose
     centre_of_buoyancy: float  #: X [m]
-    offset: float  #: m, of the centre of mass below the axis; below 0: above it
+    offset: float  #: m, depth of the centre of mass below the axis; negative: above it
 
     @property
     def net_weight(self) -> float:
-        """Weight less buoyancy [N]: above 0 the body sinks."""
+        """Weight minus buoyancy [N]; a body with more than 0 sinks."""
         return GRAVITY * (self.mass - self.displaced)
 
     @property
     def pitch(self) -> float:
-        """Nose up [rad] at rest: the centre of mass hangs below that of buoyancy. pi / 2 where only the nose can rise;
-        0 for a body that rests at any angle."""
+        """Pitch [rad] at rest, nose up: the centre of mass hangs below that of buoyancy. pi / 2 if only the nose can
+        rise; 0 for a body that rests at any angle."""
         behind = self.centre_of_mass - self.centre_of_buoyancy
         level = abs(behind) < LEVEL * self.centre_of_buoyancy
         return 0.0 if level else float(np.arctan2(behind, self.offset))
@@ -59,7 +59,7 @@ class Trim:
 
 @dataclass(frozen=True)
 class Lump:
-    """m(X) of a body with a piece of ballast around a station, thinner towards its ends."""
+    """m(X) of a body with a piece of ballast around a station. The ballast is thinner towards its ends."""
 
     base: Body
     density: float | None  # kg/m^3, of a scene
@@ -93,18 +93,18 @@ class Hung:
 
 @dataclass(frozen=True)
 class Ballast:
-    """A piece of ballast, and the body that has it."""
+    """A piece of ballast, and the body with it."""
 
     mass: float  #: kg
     station: float  #: X [m] of its middle
     length: float  #: m along the body
     offset: float  #: m below the axis
-    body: Body  #: with the ballast
+    body: Body  #: including the ballast
     trim: Trim  #: of that body
 
 
 def trim_of(body: Body | None = None, scene: Scene | None = None) -> Trim:
-    """Weight, buoyancy and trim of `body`, straight, in the water of `scene`. `ValueError` names what does not fit."""
+    """Weight, buoyancy and trim of a straight `body` in the water of `scene`. `ValueError` names a bad argument."""
     body, scene = checked_body(body), checked_scene(scene)
 
     def fields(x: np.ndarray) -> np.ndarray:
@@ -120,8 +120,8 @@ def ballast_for(
 ) -> Ballast:
     """The ballast with which `body` floats level in the water of `scene`.
 
-    length: [m] that the ballast takes along the body, by default a tenth of the body's. offset: [m], how far it lies
-    below the axis. `ValueError` for a body that is too heavy already, and where the ballast would not fit into it.
+    length: [m], of the ballast along the body, by default a tenth of the body's. offset: [m], depth of the ballast
+    below the axis. `ValueError` if the body is too heavy without it, and if the ballast does not fit into it.
     """
     body, scene = checked_body(body), checked_scene(scene)
     length = positive("ballast length", PART * body.length if length is None else length, "m")

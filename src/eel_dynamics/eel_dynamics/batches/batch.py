@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Many swimmers at once: what `simulate_batch` returns."""
+"""Many swimmers at once: the result of `simulate_batch`."""
 
 import os
 from dataclasses import dataclass, field, fields
@@ -48,10 +48,10 @@ ALONG = "backbone", "section_orientation", "curvature", "curvature_rate", "torqu
 class Batch(ObservedArrays):
     """B swimmers, T samples, M stations, in the axes and units of `Run`.
 
-    Values after the last valid sample of a swimmer that stopped are 0, see `valid`. Profiles are None without stations;
-    wrench and energy are None unless every scene has them, and fluid_force without `load`. `energy` has one (B, T)
-    array per field. The joints' arrays are None without a robot; J and N are the most of any, 0 fills the rest.
-    Two batches are equal where all their fields are. Arrays:
+    After the last valid sample of a swimmer that stopped, values are 0, see `valid`. Profiles are None without
+    stations. Wrench and energy are None unless every scene has them, fluid_force without `load`. `energy` has one (B,
+    T) array per field. The joints' arrays are None without a robot; J and N are the greatest of any, and the rest is
+    filled with 0. Two batches are equal if all their fields are. Arrays:
     """
 
     laws: tuple[Law | SampledLaw, ...]
@@ -59,19 +59,19 @@ class Batch(ObservedArrays):
     scenes: tuple[Scene, ...]
     accuracies: tuple[Accuracy, ...]
     samples: np.ndarray
-    error: tuple[SimulationStopped | None, ...]  #: why each swimmer stopped: time, quantity, value, hint
+    error: tuple[SimulationStopped | None, ...]  #: reason why each swimmer stopped: time, quantity, value, hint
     steps: np.ndarray
     evaluations: np.ndarray
     nodes: np.ndarray
-    error_estimates: tuple[ErrorEstimate | None, ...]  #: None where none was wanted, or the swimmer stopped
+    error_estimates: tuple[ErrorEstimate | None, ...]  #: None if not requested, or if the swimmer stopped
     backbone: np.ndarray | None
     section_orientation: np.ndarray | None
     curvature: np.ndarray | None
     curvature_rate: np.ndarray | None
     flows: tuple[Flow | None, ...] = ()
     robots: tuple[Robot | None, ...] = ()
-    fins: tuple[tuple[Fin, ...], ...] = ()  #: of each swimmer; fewer than F leave 0 in the arrays
-    _arrays: dict[str, np.ndarray] = field(default_factory=dict)  # all, as of `storage.variables.arrays_of`
+    fins: tuple[tuple[Fin, ...], ...] = ()  #: of each swimmer; arrays are padded with 0 up to F
+    _arrays: dict[str, np.ndarray] = field(default_factory=dict)  # all arrays, as from `storage.variables.arrays_of`
     _energy_at_start: np.ndarray | None = None  # (B,) J
 
     def __len__(self) -> int:
@@ -117,7 +117,7 @@ class Batch(ObservedArrays):
         return np.array([bool(error and error.over_target(each.target, float(self.time[-1]))) for error, each in pairs])
 
     def __getitem__(self, index: int) -> Run:
-        """Swimmer `index` as a `Run`, with the samples that it has."""
+        """Swimmer `index` as a `Run`, with its valid samples."""
         index = range(len(self))[index]
         done, x = int(self.samples[index]), self.x[index]
         own: dict[str, Any] = {one: getattr(self, several)[index] for one, several in OF_EACH.items()}
@@ -140,7 +140,7 @@ class Batch(ObservedArrays):
         return Run(**found, **own)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the whole batch to a netCDF file (.nc), as `Run.save` does a run."""
+        """Write the whole batch to a netCDF file (.nc), like `Run.save`."""
         write(self._contents(), path)
 
     @staticmethod
@@ -150,18 +150,18 @@ class Batch(ObservedArrays):
         return batch
 
     def to_xarray(self) -> Any:
-        """An `xarray.Dataset` as `Run.to_xarray` gives it, with a first dimension `swimmer`."""
+        """An `xarray.Dataset` like that of `Run.to_xarray`, with a first dimension `swimmer`."""
         return dataset_of(self._contents())
 
     def to_dataframe(self) -> Any:
-        """A `pandas.DataFrame` as `Run.to_dataframe` gives it, by swimmer and time; valid samples alone."""
+        """A `pandas.DataFrame` like that of `Run.to_dataframe`, by swimmer and time; only valid samples."""
         return frame_of_all(self[index] for index in range(len(self)))
 
     def analysis(self) -> Any:
         """A `pandas.DataFrame` with a row for each swimmer: its measures, and the `error` that stopped it, or "".
 
-        The measures are those of a sweep (`eel_dynamics.analysis.measures`): NaN where one is undefined, and for a
-        swimmer that stopped. An `Unsettled` warning tells how many gaits had not settled.
+        The measures are those of a sweep (`eel_dynamics.analysis.measures`): NaN if undefined, and for a swimmer that
+        stopped. An `Unsettled` warning counts the gaits that have not settled.
         """
         pandas = needed("pandas", "analysis")
         rows = [{} if error else measures_of(self[index]) for index, error in enumerate(self.error)]
@@ -171,7 +171,7 @@ class Batch(ObservedArrays):
 
 
 def coordinates_of(robot: Robot | None) -> dict[str, int]:
-    """How many joints and modes a `robot` has, as sizes of these dimensions."""
+    """The numbers of joints and modes of a `robot`, as sizes of these dimensions."""
     parts = () if robot is None else robot.parts
     modes = [part.modes for part in parts if not isinstance(part, Joint)]
     return {"joint": len(parts) - len(modes), "mode": sum(modes)}
@@ -186,9 +186,9 @@ def batch_of(
     start: np.ndarray,
     stations: bool,
 ) -> Batch:
-    """The batch of B swimmers: what each has of its `own`, by the names of fields, its `counts` and all `arrays`.
+    """The batch of B swimmers, from each one's `own` fields by name, its `counts`, and all `arrays`.
 
-    start (B,) [J]: the energies there. stations: whether there are profiles.
+    start (B,) [J]: energies at the start. stations: whether there are profiles.
     """
     wrench = all(each.internal_wrench for each in own["scenes"])
     none = [*(() if stations else ALONG), *(() if wrench else ("torque", "force"))]
@@ -203,9 +203,9 @@ def batch_of(
 
 
 def _batch_from(contents: Contents) -> Batch:
-    """The batch of these contents."""
+    """The batch with these contents."""
     arrays, own = contents.arrays, own_of_batch(contents)
-    there = {part: PARTS[part][0] in arrays for part in ("wrench", "load", "fins")}  # 0 in older files
+    there = {part: PARTS[part][0] in arrays for part in ("wrench", "load", "fins")}  # zeros in older files
     ours = {name: arrays[name] for name in names_with(**there) if name in arrays}
     counts = {name: arrays[name].astype(int) for name in ("samples", *COUNTS)}
     time, x, start = (arrays[name] for name in ("time", "x", "energy_at_start"))

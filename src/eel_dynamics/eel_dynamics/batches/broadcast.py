@@ -31,10 +31,10 @@ ONE = {several: one for one, several in OF_EACH.items()} | {name: name[:-1] for 
 
 
 def swimmers_of(stations: Any, most_evaluations: Any, accuracy: Any, fins: Any, **given: Any) -> list[Swimmer]:
-    """The B swimmers of these arguments of `simulate_batch`. given: the others of `KINDS` and `STATES`.
+    """The B swimmers from these arguments of `simulate_batch`. given: the others of `KINDS` and `STATES`.
 
-    One is for all, or a sequence of B (of `STATES` the rows of an array (B, .)); a sequence of length 1 counts as one
-    for all. `ValueError` names what does not fit, and the swimmer's number.
+    A value is for all swimmers, or a sequence of B values (for `STATES` the rows of an array (B, .)). A sequence of
+    length 1 counts as one for all. `ValueError` names a bad argument and the swimmer's number.
     """
     accuracy = accuracy.tolist() if isinstance(accuracy, np.ndarray) else accuracy
     rows = _broadcast(
@@ -54,7 +54,7 @@ def swimmers_of(stations: Any, most_evaluations: Any, accuracy: Any, fins: Any, 
 
 
 def numbered(index: int, law: Law | SampledLaw, arguments: dict[str, Any]) -> Swimmer:
-    """Swimmer `index`, with its law and these `arguments` of `Simulation`. `ValueError` has its number."""
+    """Swimmer `index`, with its law and these `arguments` of `Simulation`. A `ValueError` contains its number."""
     try:
         setup = SimulationSetup.of(**arguments)
         check_planar_law(law, setup.scene)
@@ -85,7 +85,7 @@ def _several(name: str, values, kind: type | tuple[type, ...]) -> list:
 
 
 def _lists(fins) -> list:
-    """The fins of each swimmer: where all items are lists, or None, each is one swimmer's; pairs are tuples."""
+    """The fins of each swimmer. If all items are lists or None, each is one swimmer's; pairs are tuples."""
     several = isinstance(fins, (list, tuple)) and fins and all(isinstance(each, (list, type(None))) for each in fins)
     return list(fins) if several else [fins]
 

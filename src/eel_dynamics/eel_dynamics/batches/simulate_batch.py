@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Simulates many swimmers in parallel: `simulate_batch`, each with the result of `simulate`.
+"""Simulates many swimmers in parallel: `simulate_batch`. Each has the result of `simulate`.
 
     batch = simulate_batch([straight(period=p) for p in periods], 10.0, accuracy=1e-3, stations=None)
     batch.position[:, -1]                 # (B, 3), head at the end
     batch.stopped, batch.error            # which swimmers stopped, and why; the others are not affected
     batch[7]                              # a Run, with the samples that it has
 
-The mechanics run in threads without the GIL, one per core. Bodies, scenes and stations that occur more than once are
+The mechanics run in threads without the GIL, one per core. Bodies, scenes and stations that occur several times are
 tabulated once.
 """
 
@@ -64,24 +64,23 @@ def simulate_batch(
 
     Each swimmer's result equals that of `simulate` with the same stations to the last bit. A swimmer that stops, or
     cannot start, keeps its samples until then, with a `SimulationStopped` in `error`; the others are not affected.
-    `ValueError` names an argument that does not fit, with the number of the swimmer.
+    `ValueError` names a bad argument and the number of the swimmer.
 
     Args:
         laws, bodies, scenes, accuracy: one for all, or a sequence of B. One of length 1 counts as one for all.
         duration: [s], or "settled" for the time until the slowest of them has settled.
-        sample_period: [s]; None for the default of `simulate` for the fastest of the laws.
-        stations: number per body, or their X [m], for the profiles along the body; None: no profiles, only motion and
-            energies.
+        sample_period: [s]; None for the default of `simulate` for the fastest law.
+        stations: number per body, or their X [m], for the profiles along the body; None: only motion and energies.
         positions, orientations, twists: (3,) [m], (4,), (6,) as in `simulate`, for all; or (B, .), a row for each.
         load: whether to compute the water's load along the body too.
-        estimate: whether to measure each swimmer's error, as in `simulate`; `Batch.above_target` tells those that stay
-            above their target.
+        estimate: whether to estimate each swimmer's error, as in `simulate`. `Batch.above_target` shows the swimmers
+            that remain above their target.
         threads: None for one per available core.
         progress: progress(done, B) is called after each swimmer.
-        most_evaluations: of each, as in `simulate`.
-        flows, robots: one for all, or a sequence of B, each a flow, or a robot, or None. A `FlowField` runs one swimmer
-            at a time.
-        fins: as in `simulate` for all; or a list of B lists, or None, one for each.
+        most_evaluations: for each swimmer, as in `simulate`.
+        flows, robots: one for all, or a sequence of B flows, robots, or None. With a `FlowField` swimmers run one at a
+            time.
+        fins: as in `simulate` for all; or a list of B entries, each a list or None.
     """
     swimmers = swimmers_of(
         [0.0] if stations is None else stations,
@@ -110,7 +109,8 @@ def swum(
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Batch:
-    """The batch of these `swimmers`. profiles: whether it has those along the body; others as of `simulate_batch`."""
+    """The batch of these `swimmers`. profiles: whether it has profiles along the body; others as in
+    `simulate_batch`."""
     seconds = duration_of(duration, swimmers)
     if sample_period is None:
         sample_period = default_sample_period({law for law, _ in swimmers}, seconds)
@@ -163,7 +163,7 @@ def swum(
 
 
 def swim_of(request: SwimRequest[Run]) -> SwimResult[Run]:
-    """The swim of a `request`, which may have stopped. `SimulationStopped` where it cannot start."""
+    """The swim of a `request`, which may have stopped early. `SimulationStopped` if it cannot start."""
     try:
         return request.outcome()
     except ValueError as error:
@@ -171,7 +171,7 @@ def swim_of(request: SwimRequest[Run]) -> SwimResult[Run]:
 
 
 def available_cores() -> int:
-    """The number of cores that this process may use."""
+    """The number of cores available to this process."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -181,7 +181,7 @@ def in_threads(
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> list[Result]:
-    """`task(item)` of each of the `items`, in their order. threads: None for one per core. An error ends it."""
+    """`task(item)` for each of the `items`, in their order. threads: None for one per core. An error ends it."""
     threads = available_cores() if threads is None else threads
     if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or not 1 <= threads <= MOST_THREADS:
         raise ValueError(f"threads must be a whole number from 1 to {MOST_THREADS}, got {shown(threads)}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Swimmers by the mean beat of a film: the options of commands, the body, and what smoothing does to the speed."""
+"""Swimmers with the mean beat of a film: options of commands, the body, and the effect of smoothing on the speed."""
 
 import argparse
 from collections.abc import Sequence
@@ -15,13 +15,13 @@ from eel_dynamics.model.body.text import body_of
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED
 
-FITTING = 0.05  # part of the length by which body and film may differ
-ACCURACY = 1e-2  # of the swims that tell what smoothing does
+FITTING = 0.05  # allowed relative difference of the body's and the film's length
+ACCURACY = 1e-2  # of the swims for the effect of smoothing
 EEL = "kern2006"
 
 
 def add_film_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options that say how a film is read: all have to do with files of midlines."""
+    """Add the options for reading a film; all concern files of midlines."""
     parser.add_argument(
         "--units",
         metavar="UNIT",
@@ -41,7 +41,7 @@ def add_film_options(parser: argparse.ArgumentParser) -> None:
 
 
 def film_of(path: str, options: argparse.Namespace) -> Film:
-    """The film in the file at `path`, read as the `options` say."""
+    """The film in the file at `path`, read with these `options`."""
     scale = None if options.scale == 1.0 else options.scale
     points = None if options.points is None else [name.strip() for name in options.points.split(",")]
     return read_film(
@@ -51,12 +51,12 @@ def film_of(path: str, options: argparse.Namespace) -> Film:
 
 
 def beat_from(path: str, options: argparse.Namespace) -> Beat:
-    """The mean beat in the file at `path`, as the `options` say."""
+    """The mean beat in the file at `path`, with these `options`."""
     return beat_of(film_of(path, options), harmonics=options.harmonics, rigid=options.rigid)
 
 
 def body_for(text: str | None, film: Film) -> Body:
-    """The body that --body gives; None or kern2006: that of an eel, as long as the `film`'s swimmer."""
+    """The body of --body; None or kern2006: an eel's, as long as the `film`'s swimmer."""
     if text in (None, EEL):
         return Body.kern2006(film.length)
     body = body_of(str(text))
@@ -69,14 +69,14 @@ def body_for(text: str | None, film: Film) -> Body:
 
 
 def speeds_of(beats: Sequence[Beat], body: Body, scene: Scene) -> np.ndarray:
-    """Mean speed [m/s] of each of the `beats` once it has settled; NaN for a swim that stops."""
+    """Mean speed [m/s] of each of the `beats` in the settled state; NaN for a swim that stops."""
     laws = [beat.law(body.length) for beat in beats]
     batch = simulate_batch(laws, UNTIL_SETTLED, bodies=body, scenes=scene, accuracy=ACCURACY, estimate=False)
     return np.array([np.nan if batch.stopped[i] else batch[i].mean_speed for i in range(len(laws))])
 
 
 def effect_of_fit(beat: Beat, body: Body, scene: Scene) -> list[tuple[str, str]]:
-    """What the choice of the fit does to the speed, as names and sentences."""
+    """The effect of the choice of the fit on the speed, as names and sentences."""
     others = [beat_of(beat.film, harmonics=count, rigid=beat.rigid) for count in range(1, beat.most_harmonics + 1)]
     speeds = speeds_of([beat, *others, *beat.others], body, scene)
     mean, by_count, without = speeds[0], speeds[1 : len(others) + 1], speeds[len(others) + 1 :]

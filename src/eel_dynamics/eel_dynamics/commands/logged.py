@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A robot by the log of its joints: the options of commands, its links, its body and its motion."""
+"""A robot from the log of its joints: options of commands, its links, its body and its motion."""
 
 import argparse
 from dataclasses import dataclass
@@ -21,11 +21,11 @@ from eel_dynamics.runs.exchange.eel_viz_functions import function_of_eel_viz
 from eel_dynamics.runs.run import Run
 
 BAGS = ".mcap", ".db3"
-FITTING = 1e-6  # part of the length by which the links' sum may miss the body's
+FITTING = 1e-6  # allowed relative difference of the links' total length and the body's
 
 
 def add_joint_options(parser: Parser) -> None:
-    """Add the options that say how a log of joints is read, and what the robot is."""
+    """Add the options for reading a log of joints, and for the robot."""
     parser.add_argument("--columns", default="", metavar="WHICH", help='joints of a table: "8-13", names, "*Fbck*"')
     parser.add_argument("--topic", metavar="TOPIC", help="of a bag with several of sensor_msgs/JointState")
     parser.add_argument("--tail-first", action="store_true", help="the first joint is that at the tail")
@@ -40,7 +40,7 @@ def add_joint_options(parser: Parser) -> None:
 
 @dataclass(frozen=True)
 class LoggedRobot:
-    """A robot of n joints and the motion in its log."""
+    """A robot of n joints, and the motion in its log."""
 
     joints: np.ndarray  # (n,) m, their places from the nose
     body: Body
@@ -48,7 +48,7 @@ class LoggedRobot:
     notes: tuple[str, ...]  # of the log
 
     def about(self) -> list[str]:
-        """What was read, and the robot, a line each."""
+        """The data read and the robot, one line each."""
         body = self.body
         robot = f"{len(self.joints) + 1} links, {body.length:.4g} m, {body.mass:.4g} kg, {body.volume * 1e3:.4g} l"
         return [self.law.about, *self.notes, robot]
@@ -62,7 +62,7 @@ class LoggedRobot:
 
 
 def logged_robot(path: str, options: argparse.Namespace) -> LoggedRobot:
-    """The robot of the log at `path`, a table or a bag, as the `options` say. `ValueError` for what does not fit."""
+    """The robot of the log at `path`, a table or a bag, with these `options`. `ValueError` for bad input."""
     log = _log(Path(path), options)
     links = _links(options.links, log.angles.shape[1])
     body = _body(options, float(links.sum()), len(links))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The options that commands share: each stands here once, with its words. Their values, checked, and the scene of them.
+"""The options shared by commands, each defined once with its help; their checked values, and the scene made from them.
 
 A value of NAME=VALUE is a number, true or false (on or off), or a word.
 """
@@ -26,14 +26,14 @@ from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, until_settled
 from eel_dynamics.runs.swim import Swim
 
 CHANGES = "--scene", "--body", "--flow", "--robot", "--fins", "--duration", "--accuracy", "--sample-period"
-FIELDS = "body", "flow", "robot", "fins", "duration", "accuracy", "sample_period", "stations"  # words of a file
+FIELDS = "body", "flow", "robot", "fins", "duration", "accuracy", "sample_period", "stations"  # keys of a scene file
 
 
 def add_options(parser: Parser, *options: str, **defaults: Any) -> None:
     """Add shared `options` to the `parser` of a command.
 
-    defaults: of options by name, shown in their help; a text in place of a default that the command finds out itself
-    is given as a pair (None, text).
+    defaults: of options by name, shown in their help. A pair (None, text) describes a default that the command itself
+    determines.
     """
     for option in options:
         about = OPTIONS[option]
@@ -51,7 +51,7 @@ def add_options(parser: Parser, *options: str, **defaults: Any) -> None:
 def add_repeated(
     parser: argparse.ArgumentParser, option: str, metavar: str, about: str, required: bool = False
 ) -> None:
-    """Add an `option` that may be repeated to the `parser` of a command; its value is a list."""
+    """Add an `option` that may be repeated to the `parser` of a command. Its value is a list."""
     parser.add_argument(option, **_repeated(metavar, about), required=required)
 
 
@@ -60,7 +60,7 @@ def _repeated(metavar: str, about: str) -> dict[str, Any]:
 
 
 class _Help(argparse.Action):
-    """Prints the help of the command, or with a gait that of the gait."""
+    """Prints the help of the command, or of a gait if one is named."""
 
     def __call__(self, parser: Any, namespace: Any, values: Any, option_string: str | None = None) -> None:
         given = getattr(namespace, "gait", None)
@@ -73,7 +73,7 @@ class _Help(argparse.Action):
 
 
 def named_texts(option: str, texts: list[str]) -> list[tuple[str, str]]:
-    """The names and values of an `option`. `ValueError` for what is not NAME=VALUE."""
+    """The names and values of an `option`. `ValueError` for anything but NAME=VALUE."""
     pairs = [text.partition("=") for text in texts]
     for (name, _, value), text in zip(pairs, texts, strict=True):
         if not name or not value:
@@ -83,14 +83,14 @@ def named_texts(option: str, texts: list[str]) -> list[tuple[str, str]]:
 
 
 def check_names(names: list[str]) -> None:
-    """`ValueError` where a name is given twice."""
+    """`ValueError` if a name is given twice."""
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f"{name} must be given once, got it {names.count(name)} times")
 
 
 def set_numbers(texts: list[str], option: str = "--set") -> dict[str, float]:
-    """The numbers that an `option` gives, by name: those of a gait, of --set."""
+    """The numbers of an `option`, by name, such as those of a gait in --set."""
     found = {}
     for name, text in named_texts(option, texts):
         found[name] = value_of(text)
@@ -110,12 +110,12 @@ def duration_option(text: str) -> float | str:
 
 
 def scene_of(texts: list[str], base: Scene | None = None) -> Scene:
-    """The scene `base`, or the default one, with what --scene gives. `ValueError` names a field that there is not."""
+    """The scene `base`, or the default one, changed by --scene. `ValueError` names an unknown field."""
     return (base or Scene()).changed(scene_fields(texts))
 
 
 def scene_fields(texts: list[str]) -> dict[str, Any]:
-    """What --scene gives by name; the names are not checked."""
+    """The fields of --scene by name; the names are not checked."""
     known = {item.name: item for item in fields(Scene)}
     found: dict[str, Any] = {}
     for name, text in named_texts("--scene", texts):
@@ -130,7 +130,7 @@ def scene_fields(texts: list[str]) -> dict[str, Any]:
 
 
 def varied_values(text: str, check_count: Callable[[int], None]) -> list[Any]:
-    """The values of --vary: a,b,c or start:end:count. `ValueError` where it is neither.
+    """The values of --vary: a,b,c or start:end:count. `ValueError` for anything else.
 
     check_count(count) may refuse the count before the values are made."""
     bounds = text.split(":")
@@ -148,7 +148,7 @@ def varied_values(text: str, check_count: Callable[[int], None]) -> list[Any]:
 
 
 def add_changes(parser: Parser, *left_out: str, **defaults: Any) -> None:
-    """Add the options that `swim_from` takes to the `parser` of a command, but those `left_out`.
+    """Add the options that `swim_from` reads to the `parser` of a command, except those `left_out`.
 
     defaults: as in `add_options`.
     """
@@ -157,9 +157,9 @@ def add_changes(parser: Parser, *left_out: str, **defaults: Any) -> None:
 
 
 def swim_from(name: str, options: argparse.Namespace, **words: Any) -> Swim:
-    """The swim of the file called `name`, or of the gait, with what the `options` of `add_changes` change.
+    """The swim of the file or gait called `name`, changed by the `options` of `add_changes`.
 
-    words: further ones of a file, before those of the options.
+    words: further keys of a file, overridden by those of the options.
     """
     swim = load_scene(name) if name.endswith(SUFFIXES) else swim_of({"gait": name})
     given = {field: getattr(options, field, None) for field in FIELDS}
@@ -167,7 +167,7 @@ def swim_from(name: str, options: argparse.Namespace, **words: Any) -> Swim:
     return swim_of({**words, "scene": {**words.get("scene", {}), **scene_fields(options.scene)}}, swim)
 
 
-OPTIONS = {  # what argparse takes
+OPTIONS = {  # the arguments for argparse
     "gait": {"nargs": "?", "help": f"one of {', '.join(sorted(GAITS))}"},
     "gaits": {"nargs": "*", "metavar": "GAIT", "help": f"of {', '.join(sorted(GAITS))}"},
     "--gait": {"metavar": "GAIT", "help": f"one of {', '.join(sorted(GAITS))}"},

@@ -47,7 +47,7 @@ from eel_dynamics.runs.swim import Swim
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 NAME = "eel simulate"
-DURATION, STATIONS = 10.0, 51  # s, and points along the body, by default
+DURATION, STATIONS = 10.0, 51  # defaults: s, points along the body
 SUFFIXES = (".nc", ".npz", ".csv", ".rrd")
 
 
@@ -118,7 +118,7 @@ def _add_options(parser: Parser) -> None:
     add_options=_add_options,
 )
 def main(options: argparse.Namespace) -> int:
-    """Simulate, print the summary and write the run; returns the exit status: 0, or 3 for a run that stopped."""
+    """Simulate, print the summary and write the run. Returns the exit status: 0, or 3 for a run that stopped."""
     out = _checked_out(options.out)
     beat = None if options.midlines is None else beat_from(options.midlines, options)
     robot = None if options.joints is None else logged_robot(options.joints, options)
@@ -164,7 +164,7 @@ def main(options: argparse.Namespace) -> int:
 
 
 def _swim_of(options: argparse.Namespace, beat: Beat | None, robot: LoggedRobot | None) -> Swim:
-    """The swim that the options tell: of a gait, a file of a motion, the `beat` of a film, or the log of a `robot`."""
+    """The swim of the options: of a gait, a file of a motion, the `beat` of a film, or the log of a `robot`."""
     swim, duration = swim_from("falling", options), options.duration
     if robot is not None:
         swim = swim._replace(body=robot.body)
@@ -179,7 +179,7 @@ def _swim_of(options: argparse.Namespace, beat: Beat | None, robot: LoggedRobot 
 
 
 def _scene_of_file(options: argparse.Namespace) -> Swim:
-    """The swim of a scene's file, with what the options change."""
+    """The swim of a scene's file, changed by the options."""
     for given in filter(None, (options.file, options.midlines, options.joints, options.sequence)):
         raise ValueError(f"{options.gait} has a gait of its own, got {shown(given)} too")
     swim, numbers = swim_from(options.gait, options), set_numbers(options.set)
@@ -187,7 +187,7 @@ def _scene_of_file(options: argparse.Namespace) -> Swim:
 
 
 def _law(options: argparse.Namespace, body: Body, beat: Beat | None, robot: LoggedRobot | None) -> Law | SampledLaw:
-    """The law of the gait, of the sequence, of the motion in a file, of the `beat` of a film, or of a `robot`'s log."""
+    """The law of the gait, the sequence, the motion in a file, the `beat` of a film, or a `robot`'s log."""
     if options.file is None and (options.unsmoothed or (options.scale != 1.0 and beat is None)):
         raise ValueError("--unsmoothed and --scale belong to --file, which is not given")
     of_film = options.rate, options.animal, options.points, options.rigid, options.harmonics, options.likely is not None
@@ -225,7 +225,7 @@ def _print_lines(lines: list[tuple[str, str]]) -> None:
 
 
 def _print_smoothing(run: Run) -> None:
-    """Print what the run would be without the smoothing of its motion."""
+    """Print the difference that smoothing of its motion makes to the run."""
     try:
         effect: object = run.smoothing
     except (ValueError, SimulationStopped) as error:
@@ -235,7 +235,7 @@ def _print_smoothing(run: Run) -> None:
 
 
 def _check_actuators(options: argparse.Namespace, scene: Scene) -> None:
-    """`ValueError` for what `Run.actuators` would refuse, before the swim."""
+    """`ValueError` before the swim for anything that `Run.actuators` would refuse."""
     if not 1 <= options.actuators <= MOST_JOINTS:
         raise ValueError(f"--actuators must be 1 to {MOST_JOINTS}, got {shown(options.actuators)}")
     if not scene.internal_wrench:

@@ -16,30 +16,30 @@ from eel_gaits.sources.sampled_law import SampledLaw
 from eel_dynamics.accuracy.law_waves import MOST_WAVES, waves_of_rows
 
 POINTS_PER_WAVE = 8
-MOST_POINTS = int(POINTS_PER_WAVE * MOST_WAVES) + 1  # of one sample
-MOST_AHEAD, MOST_POINTS_AHEAD = 10_000, 1_000_000  # of the simulation: 50 MB of samples
-SAMPLES_OF_A_GRID = 100  # ahead, for which a grid is chosen, so that it does not change with every one
-MOST_TURNS = MOST_WAVES, 1e3 * MOST_WAVES, 1e6 * MOST_WAVES  # of the body, and by s, s^2: as from rest within 1 ms
-GENTLE = 1e5  # of the sum of squares [1/m, by s and s^2] by length: nothing in it exceeds that
+MOST_POINTS = int(POINTS_PER_WAVE * MOST_WAVES) + 1  # of one sample of a controller
+MOST_AHEAD, MOST_POINTS_AHEAD = 10_000, 1_000_000  # samples and points ahead of the simulation: 50 MB
+SAMPLES_OF_A_GRID = 100  # samples ahead for which a grid is chosen, so that it does not change with each one
+MOST_TURNS = MOST_WAVES, 1e3 * MOST_WAVES, 1e6 * MOST_WAVES  # turns, per s, s^2: a start within 1 ms
+GENTLE = 1e5  # bound of the sum of squares [1/m, per s and s^2] over the length: no value exceeds it
 QUANTITIES = "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"
 TIME_OF = attrgetter("time")
 
 
 def check_points(count: int) -> None:
-    """`ValueError` for a sample with more points along the body than any grid carries."""
+    """`ValueError` for a sample with more points along the body than any grid can resolve."""
     if count > MOST_POINTS:
         raise ValueError(f"curvature samples x must have at most {MOST_POINTS} points, got {count}")
 
 
 class LateSample(ValueError):
-    """A sample that comes when the motion that it belongs to has begun already."""
+    """A sample whose motion has already begun when it comes."""
 
 
 class CurvatureSample(NamedTuple):
     """The curvature at `time` [s] at the points x (n,) [m].
 
-    values (2, 3, n): pitch and yaw; of each the value [rad/m], the rate [rad/m/s] and the acceleration [rad/m/s^2].
-    waves: the number of waves on the body that a grid must carry.
+    values (2, 3, n): pitch and yaw, each with value [rad/m], rate [rad/m/s] and acceleration [rad/m/s^2].
+    waves: the number of waves on the body that a grid must resolve.
     """
 
     time: float
@@ -51,11 +51,11 @@ class CurvatureSample(NamedTuple):
     def checked(
         time: Any, x: Any, rows: Any, *, waves: float | None, length: float, planar: bool, now: float, begun: bool
     ) -> "CurvatureSample":
-        """A sample from its arguments. `ValueError` names the one that does not fit; `LateSample` if it is the time.
+        """A sample from its arguments. `ValueError` names a bad one; `LateSample` for its time.
 
-        time [s]; x (n,) [m]; rows (6, n): as in `QUANTITIES`. waves: on the body; None: what the points can carry.
+        time [s]; x (n,) [m]; rows (6, n): as in `QUANTITIES`. waves: on the body; None: as many as the points resolve.
         length [m]: of the body. planar: of the scene. now [s]: the present time. begun: whether the march has begun;
-        before, a sample may lie at the present.
+        before that, a sample may be at the present time.
         """
         if not (type(x) is np.ndarray and x.dtype == float and x.ndim == 1):
             x = checked_row("curvature samples x", x, None)
@@ -67,7 +67,7 @@ class CurvatureSample(NamedTuple):
             raise ValueError(f"curvature samples time must be finite, got {shown(time)} s")
         if time < now or (time == now and begun):
             raise LateSample(f"curvature samples time must lie ahead of the simulation ({now:.9g} s), got {time:.9g} s")
-        if waves is None:  # a power of 2, so that there are few different grids
+        if waves is None:  # a power of 2, for few different grids
             waves = 2.0 ** math.ceil(math.log2(max(1.0, (len(x) - 1) / POINTS_PER_WAVE)))
         elif not (is_finite(waves) and 0.0 < waves <= MOST_WAVES):
             raise ValueError(f"curvature samples waves must be > 0 and at most {MOST_WAVES:g}, got {shown(waves)}")
@@ -76,7 +76,7 @@ class CurvatureSample(NamedTuple):
 
 @lru_cache(maxsize=64)
 def _checked_x(content: bytes, length: float) -> np.ndarray:
-    """The points (n,) [m] of a sample, from their bytes. Equal ones are one array, which never changes."""
+    """The points (n,) [m] of a sample, from their bytes. Equal points share one constant array."""
     x = checked_row("curvature samples x", np.frombuffer(content), None)
     if len(x) < 2:
         raise ValueError(f"curvature samples x must have 2 points or more, got {len(x)}")
@@ -90,9 +90,9 @@ def _checked_x(content: bytes, length: float) -> np.ndarray:
 
 
 def _checked_values(rows: Any, points: int, length: float) -> np.ndarray:
-    """The six rows of a sample as an array (2, 3, points) of floats that a body of this `length` [m] can have.
+    """The six rows of a sample as an array (2, 3, points) of floats, bounded for a body of this `length` [m].
 
-    Rows of floats are checked all at once.
+    Rows of floats are checked together.
     """
     if all(type(row) is np.ndarray and row.dtype == float and row.shape == (points,) for row in rows):
         values = np.concatenate(rows)
@@ -109,9 +109,9 @@ def _checked_values(rows: Any, points: int, length: float) -> np.ndarray:
 
 
 class SampleQueue:
-    """Samples in the order of their time. While they drive the shape, the first two bracket the present.
+    """Samples ordered by time. While they drive the shape, the first two bracket the present.
 
-    samples: the first ones, in their order. law_name: of the law whose rows they are; no other sample can join them.
+    samples: the first ones, ordered. law_name: of a law whose rows they are; no other sample can join them.
     """
 
     def __init__(self, samples: list[CurvatureSample] | None = None, law_name: str | None = None):
@@ -121,7 +121,7 @@ class SampleQueue:
 
     @staticmethod
     def of_law(law: SampledLaw, origin: float) -> "SampleQueue":
-        """The rows of a `law`, whose own t = 0 lies at `origin` [s]."""
+        """The rows of a `law` whose own t = 0 is at `origin` [s]."""
         rows = zip((origin + law.time).tolist(), repeat(law.x), law.values, repeat(waves_of_rows(law)), strict=False)
         return SampleQueue([CurvatureSample(*row) for row in rows], law.name)
 
@@ -132,7 +132,7 @@ class SampleQueue:
         return len(self._samples)
 
     def check_space(self, points: int) -> None:
-        """`ValueError` where the queue has no space for a sample of so many `points`."""
+        """`ValueError` if the queue has no space for a sample of so many `points`."""
         if len(self._samples) >= MOST_AHEAD or self._points + points > MOST_POINTS_AHEAD:
             raise ValueError(
                 f"curvature samples ahead of the simulation must be at most {MOST_AHEAD}, of {MOST_POINTS_AHEAD} "
@@ -140,10 +140,10 @@ class SampleQueue:
             )
 
     def add(self, sample: CurvatureSample, driving: bool) -> None:
-        """Add a sample. The same one once more changes nothing.
+        """Add a sample. Adding the same one again changes nothing.
 
-        `LateSample` for one that comes too late while the samples are `driving`, `ValueError` for another one of the
-        same time.
+        `LateSample` for one that comes too late while the samples are `driving`, `ValueError` for a different one of
+        the same time.
         """
         if self._law_name is not None:
             raise ValueError(f"curvature samples cannot join the rows of law {shown(self._law_name)}")
@@ -164,12 +164,12 @@ class SampleQueue:
         self._points -= len(self._samples.pop(0).x)
 
     def drop_until(self, now: float) -> None:
-        """Remove all samples before the last one that is not later than `now` [s]."""
+        """Remove all samples before the last one that is at or before `now` [s]."""
         while len(self._samples) > 1 and self._samples[1].time <= now:
             self.drop_first()
 
     def begun(self, now: float) -> bool:
-        """Whether two samples bracket `now` [s]. Call `drop_until` for it first."""
+        """Whether two samples bracket `now` [s]. Call `drop_until` first."""
         return len(self._samples) > 1 and self._samples[0].time <= now
 
     @property
@@ -179,15 +179,15 @@ class SampleQueue:
 
     @property
     def waves(self) -> float:
-        """The most waves on the body of the samples for which a grid is chosen."""
+        """The greatest number of waves on the body in the samples for which a grid is chosen."""
         return max(sample.waves for sample in self._samples[:SAMPLES_OF_A_GRID])
 
     @property
     def end(self) -> float | None:
-        """Time [s] of the last sample; None where there is none."""
+        """Time [s] of the last sample; None without one."""
         return self._samples[-1].time if self._samples else None
 
     def next_bracket(self, now: float) -> float:
-        """Time [s] after `now` from which two samples bracket the present; inf where there is none."""
+        """Time [s] after `now` from which two samples bracket the present; inf without such a time."""
         later = bisect_right(self._samples, now, key=TIME_OF)
         return self._samples[later].time if later + 1 < len(self._samples) else np.inf

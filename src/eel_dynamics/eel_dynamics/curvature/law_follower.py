@@ -25,8 +25,8 @@ DEFAULT_TRANSITION = 1.0  # s
 class Blend(NamedTuple):
     """The difference (6, width) between two motions at `start` [s]: value, rate and acceleration for each axis.
 
-    It dies out until `end` [s]. Its factors in time are `Quintic::set_blend` in eel_core/law.hpp. Swimmers marched
-    together (`SampledMarch` in eel_core/march/sampled_march.hpp) have their one blend, into the first sample, in C++.
+    It decays to 0 until `end` [s]. Its factors in time are `Quintic::set_blend` in eel_core/law.hpp. Swimmers marched
+    together (`SampledMarch` in eel_core/march/sampled_march.hpp) have a single blend, into the first sample, in C++.
     """
 
     difference: np.ndarray
@@ -35,10 +35,10 @@ class Blend(NamedTuple):
 
 
 class LawFollower:
-    """The present source of curvature and its blend. `law_on_grid` holds both for the compiled mechanics.
+    """The present source of curvature and its blend. `law_on_grid` holds both for the core.
 
-    default_transition [s]: of blends to samples and to rest. law: the first law, whose own t = 0 lies at `origin` [s].
-    Without a law the body is straight. The rows of a `SampledLaw` are samples that are all there from the beginning.
+    default_transition: [s], of blends to samples and to rest. law: the first law, whose own t = 0 is at `origin` [s].
+    Without a law the body is straight. The rows of a `SampledLaw` are samples that are all present from the beginning.
     """
 
     def __init__(
@@ -51,36 +51,36 @@ class LawFollower:
         self._tabulation, self._default_transition = tabulation, default_transition
         self.law = law
         self.samples = SampleQueue()
-        self.sampled = False  # samples drive the shape
-        self.resting = False  # they have run out
+        self.sampled = False  # whether samples drive the shape
+        self.resting = False  # whether they have run out
         self._blend: Blend | None = None
         self._spline: tuple[np.ndarray, np.ndarray] | None = None  # x of a sample, and its splines on the grid
-        self._last: tuple[CurvatureSample, np.ndarray] | None = None  # the last sample that was tabulated, and its rows
+        self._last: tuple[CurvatureSample, np.ndarray] | None = None  # the last tabulated sample, and its rows
         self._source = self._begun(law, origin, 0.0)
         self.law_on_grid = self._with_blend()
 
     def __copy__(self) -> "LawFollower":
-        """What never changes is shared."""
+        """Constant data are shared."""
         copied = object.__new__(type(self))
         copied.__dict__.update(self.__dict__)
         copied.samples = copy(self.samples)
         return copied
 
     def __getstate__(self) -> dict[str, Any]:
-        """Without the tables of the compiled mechanics: `tabulate` comes next."""
+        """Without the core's tables: `tabulate` must follow."""
         left_out = "_tabulation", "law_on_grid", "_spline"
         kept = {name: value for name, value in self.__dict__.items() if name not in left_out}
         return kept | {"_source": self._source._replace(tables=None)}
 
     def tabulate(self, tabulation: Tabulation) -> None:
-        """Make what a pickle left out, on its grid, which had this `tabulation`."""
+        """Restore the data that a pickle leaves out, on a grid with this `tabulation`."""
         self._tabulation, self._spline = tabulation, None
         self._follow(self._source)
 
     def move(self, tabulation: Tabulation, values_at_nodes: Callable[[np.ndarray], np.ndarray]) -> None:
         """Change to the grid of another `tabulation`.
 
-        A law is tabulated anew. Samples and blends remain as values at the old nodes: `values_at_nodes(rows)` takes
+        A law is tabulated again. Samples and blends are kept as values at the old nodes: `values_at_nodes(rows)` takes
         fields at the old nodes (..., n) to the new points.
         """
         nodes = self._tabulation.nodes
@@ -116,15 +116,15 @@ class LawFollower:
     # -- samples of a controller
 
     def add(self, sample: CurvatureSample) -> None:
-        """Add a sample. `ValueError` for one that comes too late, or twice."""
+        """Add a sample. `ValueError` for a late or repeated one."""
         self.samples.add(sample, self.sampled)
 
     def next_event(self, now: float) -> float:
-        """The next time [s] at which the source changes by itself; inf where there is none."""
+        """The next time [s] at which the source changes by itself; inf without one."""
         return self.samples.first_two[1].time if self.sampled else self.samples.next_bracket(now)
 
     def pass_event(self, now: float, prepare: Callable[[float], None]) -> None:
-        """Change the source where that is due at `now` [s].
+        """Change the source if that is due at `now` [s].
 
         The new source is the samples that bracket the time, their next interval, or rest. prepare(waves on the body) is
         called before samples drive the shape, for them and the next ones. It may call `move`.
@@ -147,7 +147,8 @@ class LawFollower:
                 self.sampled, self.resting = True, False
 
     def pass_events(self, now: float, time: float) -> None:
-        """Change the source at each event from `now` to `time` [s], for who reads the law and does not march."""
+        """Change the source at each event from `now` to `time` [s], for a caller that reads the law without
+        marching."""
         while (event := self.next_event(now)) < time:
             now = event
             self.pass_event(now, lambda waves: None)
@@ -155,7 +156,7 @@ class LawFollower:
     def _forget_samples(self) -> None:
         self.samples, self.sampled, self.resting = SampleQueue(), False, False
 
-    # -- what the steps in time depend on
+    # -- data for the steps in time
 
     @property
     def breakpoints(self) -> list[float]:
@@ -170,14 +171,14 @@ class LawFollower:
 
     @property
     def time_scale(self) -> float:
-        """Shortest period [s] of the law; inf where it has none.
+        """Shortest period [s] of the law; inf without one.
 
         Ramps, blends and samples do not count, because they begin and end on steps.
         """
         return min((period for period, *_ in self._source.waves if period > 0.0), default=np.inf)
 
     def speed(self, length: float) -> float:
-        """Order of magnitude of the speed [m/s] that the law gives to a body of `length` [m].
+        """Order of magnitude of the speed [m/s] of a body of `length` [m] under the law.
 
         It is 0 for samples and at rest.
         """
@@ -187,11 +188,11 @@ class LawFollower:
 
     @property
     def blending(self) -> bool:
-        """Whether the last motion dies out or has come to rest. Its finer waves are then still there."""
+        """Whether the last motion is still decaying, or has come to rest. Its finer waves are then still present."""
         return self._blend is not None or self.resting
 
     def end_blend(self, now: float) -> None:
-        """Remove a blend that is over at `now` [s], so that it costs nothing."""
+        """Remove a blend that has ended at `now` [s], so that it costs nothing."""
         if self._blend is not None and now >= self._blend.end:
             self._blend = None
             self._follow(self._source)
@@ -243,7 +244,7 @@ class LawFollower:
         return self.on_tables(self._tabulation.law_tables(*self.rows()) if shared is None else shared)
 
     def on_tables(self, tables: eel_core.LawTables) -> eel_core.LawOnGrid:
-        """Source and blend with other `tables`, whose first rows stand for those of `rows`."""
+        """Source and blend with other `tables`, whose first rows replace those of `rows`."""
         source, blend = self._source, self._blend
         segment = source.segment and (0, *source.segment)
         dying = blend and (len(source.rows), blend.start, blend.end)

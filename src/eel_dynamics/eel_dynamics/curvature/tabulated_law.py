@@ -7,8 +7,8 @@ Every law is a sum of fields of X times functions of time alone,
 
 since sin(kX + phase - wt) = sin(kX + phase) cos wt - cos(kX + phase) sin wt. The rows are tabulated once: at the nodes,
 at the stations, and as the Magnus moments of the intervals that lead to both. An instant needs only the factors c_m.
-The difference between a motion and the law that takes over, and the quintic between two samples of a controller, are of
-the same form. `eel_core.LawOnGrid` holds both and evaluates them.
+The difference between a motion and its successor, and the quintic between two samples of a controller, have the same
+form. `eel_core.LawOnGrid` holds both and evaluates them.
 """
 
 from functools import lru_cache
@@ -24,7 +24,7 @@ import eel_core
 from eel_dynamics.accuracy.law_waves import groups_of
 
 SEGMENT_AXES = np.repeat((0, 1), 6)  # of the rows of a quintic between two samples
-POINTS, WEIGHTS = np.polynomial.legendre.leggauss(10)  # of Gauss, per interval, for the Magnus moments
+POINTS, WEIGHTS = np.polynomial.legendre.leggauss(10)  # Gauss points per interval, for the Magnus moments
 
 
 class Tabulation:
@@ -76,7 +76,7 @@ class Tabulation:
         return np.ascontiguousarray(self.columns(natural_spline(points, np.eye(len(points)), self.x)))
 
     def law_tables(self, rows: np.ndarray, axis: Any) -> eel_core.LawTables:
-        """Tabulated `rows` (m, width) of the axes `axis` (m,) (0 pitch, 1 yaw), for the compiled mechanics."""
+        """Tabulated `rows` (m, width) of the axes `axis` (m,) (0 pitch, 1 yaw), for the core."""
         rows = np.ascontiguousarray(rows[:, : self.width - self.further])
         return eel_core.LawTables(np.asarray(axis).tolist(), rows, self.nodes, self.stations)
 
@@ -84,23 +84,23 @@ class Tabulation:
 class TabulatedLaw(NamedTuple):
     """A source of curvature: m rows on the grid, and the data of their factors. It never changes."""
 
-    rows: np.ndarray  # (m, width), as `Tabulation.columns` has them
-    axis: np.ndarray  # (m,) of the rows, 0 pitch, 1 yaw
-    tables: eel_core.LawTables | None = None  # the rows for the compiled mechanics, where several runs share them
-    waves: tuple[Any, ...] = ()  # as `eel_core.LawOnGrid` takes them: period [s], envelope, rows of sine and cosine
+    rows: np.ndarray  # (m, width), as from `Tabulation.columns`
+    axis: np.ndarray  # (m,) axis of each row, 0 pitch, 1 yaw
+    tables: eel_core.LawTables | None = None  # the rows for the core, if several runs share them
+    waves: tuple[Any, ...] = ()  # as for `eel_core.LawOnGrid`: period [s], envelope, rows of sine and cosine
     origin: float = 0.0  # s, simulation time of the law's own t = 0
     segment: tuple[float, float] | None = None  # s, of the quintic between two samples of a controller
-    law: Law | None = None  # that was tabulated
-    ramp_ends: tuple[float, ...] = ()  # s of the law's own time, where ramps begin and end
+    law: Law | None = None  # the tabulated law
+    ramp_ends: tuple[float, ...] = ()  # s of the law's own time: beginnings and ends of ramps
 
     @staticmethod
     def of_law(law: Law | None, origin: float, tabulation: Tabulation) -> "TabulatedLaw":
-        """Tabulate `law`, whose own t = 0 lies at `origin` [s]."""
+        """Tabulate `law`, whose own t = 0 is at `origin` [s]."""
         return _tabulated(law, tabulation)._replace(origin=origin)
 
     @staticmethod
     def constant(value: np.ndarray) -> "TabulatedLaw":
-        """A shape that does not move. value (2, width): its rows in pitch and yaw."""
+        """A constant shape. value (2, width): its rows in pitch and yaw."""
         return TabulatedLaw(np.array(value), np.arange(2), waves=tuple((0.0, (), row, row) for row in range(2)))
 
     @property
@@ -111,8 +111,8 @@ class TabulatedLaw(NamedTuple):
 
 @lru_cache(maxsize=1024)
 def _tabulated(law: Law | None, tabulation: Tabulation) -> TabulatedLaw:
-    """`law`, or the straight shape where there is none. Terms of equal axis, period and envelope share their rows; laws
-    that differ in periods and envelopes alone share their tables."""
+    """`law`, or the straight shape without one. Terms of equal axis, period and envelope share their rows. Laws that
+    differ only in periods and envelopes share their tables."""
     groups = groups_of(law) if law is not None else {}
     if not groups:
         straight = TabulatedLaw.constant(np.zeros((2, tabulation.width)))

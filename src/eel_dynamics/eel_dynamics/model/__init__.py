@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a run is told: body, fins, robot, scene and flow. Set-up in NumPy; `eel_dynamics` marches it in time."""
+"""Inputs of a run: body, fins, robot, scene and flow. They are set up in NumPy; the core marches them in time."""
 
 from eel_dynamics.model.body.appendages import Appendage
 from eel_dynamics.model.body.body import Body

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Converts axes: those of the library, of the sections and of the paper, and the half turn between them.
+"""Converts between axes: the library's, the sections', the paper's, and the half turn between them.
 
 World and head have REP-103 axes: the eel swims towards +x, y is left, z up. Section quantities (curvature, internal
 wrench, loads) have the paper's section axes: 1 along the body towards the tail, 2 to the right, 3 up. These are -x, -y
-and +z of the section turned as the head. In the paper's world the eel swims towards -x. `eel_core` turns what goes in
-and out, by `half_turn` in eel_core/march/axes.hpp.
+and +z of the section turned as the head. In the paper's world the eel swims towards -x. `eel_core` turns its inputs and
+outputs by `half_turn` in eel_core/march/axes.hpp.
 """
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-REP103, PAPER = CONVENTIONS = ("rep103", "paper")  # of world and head; the first are the library's
+REP103, PAPER = CONVENTIONS = ("rep103", "paper")  # axes of world and head; the first are the library's
 VECTOR, QUATERNION = np.array([-1.0, -1.0, 1.0]), np.array([-1.0, -1.0, 1.0, 1.0])
-SIGNS = {  # of the components of what is observed, under the half turn
+SIGNS = {  # signs of the components of observations under the half turn
     **dict.fromkeys(("position", "center_of_mass", "backbone"), VECTOR),
     **dict.fromkeys(("orientation", "section_orientation"), QUATERNION),
     **dict.fromkeys(("twist", "head_acceleration"), np.tile(VECTOR, 2)),
@@ -30,11 +30,11 @@ def turn_quaternion(quaternion: ArrayLike) -> np.ndarray:
 
 
 def with_section_axes(orientation: np.ndarray) -> np.ndarray:
-    """World from the paper's section axes, for an `orientation` (..., 4) x y z w of a section turned as the head."""
+    """World from the paper's section axes. orientation (..., 4) x y z w: of a section turned as the head."""
     x, y, z, w = np.moveaxis(np.asarray(orientation, dtype=float), -1, 0)
     return np.stack([y, -x, w, -z], axis=-1)
 
 
 def turned(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Those of the `arrays`, by their names in a run, that have axes of world or head, in the other axes."""
+    """The `arrays`, by their names in a run, converted to the other axes if they have axes of world or head."""
     return {name: values * SIGNS[name] + 0.0 for name, values in arrays.items() if name in SIGNS}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Equality of objects that hold arrays: every number the same to the last bit, NaN equal to NaN."""
+"""Equality of objects with arrays: every number the same to the last bit, NaN equal to NaN."""
 
 from dataclasses import fields
 from typing import Any
@@ -32,7 +32,7 @@ def same_fields(one: Any, other: Any) -> bool:
 
 
 class EqualByFields:
-    """Base of dataclasses that hold arrays: two are equal where all their fields are, and none can be hashed."""
+    """Base of dataclasses with arrays: two are equal if all their fields are, and none can be hashed."""
 
     def __eq__(self, other: object) -> bool:
         return same_fields(self, other)

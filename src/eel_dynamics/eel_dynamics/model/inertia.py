@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Inertia (6, 6) of the straight body with its water, and the refusal of bodies for which it is singular.
+"""Inertia (6, 6) of the straight body with its water, and the refusal of bodies with a singular inertia.
 
 Rotations are scaled by the body's length, so that all entries are masses [kg] and the condition number has no unit. The
-straight shape has the least inertia in roll: a bent shape turns its own arms. A condition number above `MOST` leaves
+straight shape has the least inertia in roll, as a bent shape has lever arms. A condition number above `MOST` leaves
 less than four digits of an acceleration in double precision, and counts as singular.
 """
 
@@ -12,7 +12,7 @@ from eel_dynamics.model.body.grid import Grid
 from eel_dynamics.model.section_data import SectionData
 
 MOST = 1e12
-PART = 0.25  # of a singular direction, from which a degree of freedom is named
+PART = 0.25  # of a singular direction: a degree of freedom with a larger part is named
 FREEDOMS = "roll", "pitch", "yaw", "surge", "sway", "heave"
 PLANE = 2, 3, 4
 
@@ -22,10 +22,10 @@ def straight_inertia(
 ) -> np.ndarray:
     """Inertia (6, 6) [kg] of a straight body about the head, rotation first.
 
-    sections: `SectionData` at the nodes of `grid`. nose_mass: m_o [kg]. length [m]: of the body. offset: its centre of
-    mass lies off the axis.
+    sections: `SectionData` at the nodes of `grid`. nose_mass: m_o [kg]. length: [m], of the body. offset: whether its
+    centre of mass is off the axis.
     """
-    x, weight, square = grid.x / length, grid.weight, length * length  # infinite where a power would overflow
+    x, weight, square = grid.x / length, grid.weight, length * length  # infinite if a power overflows
     roll, pitch, yaw = (
         float(weight @ each) / square for each in (sections.inertia1, sections.inertia2, sections.inertia3)
     )
@@ -50,7 +50,7 @@ def straight_inertia(
 
 
 def condition_of(matrix: np.ndarray) -> float:
-    """The greatest eigenvalue of a symmetric positive `matrix` over the least; infinite where it is singular."""
+    """The greatest eigenvalue of a symmetric positive `matrix` divided by the least; infinite if it is singular."""
     value = np.linalg.eigvalsh(matrix)
     return float(value[-1] / value[0]) if value[0] > 0.0 else np.inf
 

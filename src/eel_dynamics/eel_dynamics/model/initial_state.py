@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The initial state of the head, and what follows from its velocity."""
+"""The initial state of the head, and quantities that follow from its velocity."""
 
 import math
 from typing import NamedTuple
@@ -20,11 +20,12 @@ class InitialState(NamedTuple):
     twist: np.ndarray  # (6,) (Omega, V) rad/s, m/s, head's axes
 
     def in_water(self, current: np.ndarray) -> np.ndarray:
-        """Twist (6,) of the head relative to water that flows with the `current` (3,) [m/s]."""
+        """Twist (6,) of the head relative to water with the velocity `current` (3,) [m/s]."""
         return self.against_water(-current).twist.copy()
 
     def against_water(self, current: np.ndarray) -> "InitialState":
-        """The same in the world, of a state whose twist is relative to water that flows with the `current` (3,)."""
+        """The state relative to the world, from one whose twist is relative to water with the velocity `current`
+        (3,)."""
         if not current.any():
             return self
         twist = self.twist.copy()
@@ -33,7 +34,7 @@ class InitialState(NamedTuple):
 
 
 def head_motion_of(head: InitialState) -> HeadMotion:
-    """The motion of a simulation's `head`, as on the topic `odom`: a controller that works here drives the node too."""
+    """The motion of a simulation's `head`, as on the topic `odom`: so a controller for it can also drive the node."""
     return HeadMotion(head.position, head.orientation, head.twist[:3], head.twist[3:])
 
 
@@ -43,14 +44,14 @@ def level_orientation(heading: float) -> tuple[float, float, float, float]:
 
 
 def time_scale(twist: np.ndarray, length: float) -> float:
-    """The shorter time [s] in which a `twist` (6,) moves a body by its `length` [m] or turns it by 1 rad."""
+    """The shorter of the times [s] in which a `twist` (6,) moves a body by its `length` [m] or turns it by 1 rad."""
     a, b, c, u, v, w = twist.tolist()
     speed, spin = math.hypot(u, v, w), math.hypot(a, b, c)
     return min(length / speed if speed else np.inf, 1.0 / spin if spin else np.inf)
 
 
 def checked_state(planar: bool, position: ArrayLike, orientation: ArrayLike, twist: ArrayLike) -> InitialState:
-    """The state of these arguments of `Simulation`. `ValueError` where a `planar` scene does not allow it."""
+    """The state from these arguments of `Simulation`. `ValueError` if a `planar` scene does not allow it."""
     place, turn = checked_row("position", position, 3), checked_row("orientation", orientation, 4).tolist()
     quaternion, motion = unit_quaternion("orientation", turn), checked_row("twist", twist, 6)
     if planar:

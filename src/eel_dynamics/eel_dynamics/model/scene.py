@@ -4,23 +4,23 @@
 The switches name the parts of the model of Boyer, Porez and Leroyer (2010): reactive (added mass, wake: eq. 36-37, 60),
 resistive (section 7.2.1), nose (section 7.2.1), and the readings of its printed formulae.
 
-`metacentric_height` is ours: each section's weight acts that far below its buoyancy, along its own axis 3. Weight and
-buoyancy are equal, so they are a torque alone, m g h (e3 x up) per length, with the potential energy
-m g h (1 - e3 . up). It rights the body in roll and in pitch; in a planar scene it does nothing. Only this moment is
-modelled: the mass stays on the backbone. A mass that hangs low would also lag behind a sideways acceleration a, and
-roll the section by m h a per length; the moment of inertia in roll would have m h^2 more.
-Without both, the square of the roll's frequency is 7 % too high at h = 10 mm on the robot and 28 % at 20 mm, and the
-falling gait at 10 mm is 14 mm elsewhere after 4 s. It is fit where m h^2 << J1 + J_f1 and a << g roll.
+`metacentric_height` is our own: each section's weight acts that far below its buoyancy, along its own axis 3. Weight
+and buoyancy are equal, so they are only a torque, m g h (e3 x up) per length, with the potential energy m g h (1 - e3 .
+up). It rights the body in roll and in pitch; in a planar scene it has no effect. Only this moment is
+modelled: the mass stays on the backbone. A mass below it would also lag behind a sideways acceleration a, and roll the
+section by m h a per length; the moment of inertia in roll would be m h^2 larger. Without these two effects, the square
+of the roll's frequency is 7 % too high at h = 10 mm on the robot and 28 % at 20 mm, and the path of the falling gait at
+10 mm differs by 14 mm after 4 s. The term is valid for m h^2 << J1 + J_f1 and a << g roll.
 
-`weight` is the model of that, and of more: gravity acts on the body's own mass per length, at its
+`weight` includes these effects, and more: gravity acts on the body's own mass per length, at its
 `centre_of_mass_offset` below each section's centre, and buoyancy on the volume (eel_core/loads/weight.hpp). Such bodies
-sink, trim, and come to rest. Without it, `density` and `mass_per_length` are inertia alone.
+sink, trim, and come to rest. Without it, `density` and `mass_per_length` are only inertia.
 
-Without `wake` each section keeps its own water. The balance of the strips (50) then leaves out the terms d/dX of
-V1 sigma_f and of V1 p_f - T_f t1. It also leaves out their sum at the tail: the momentum flux and the pressure of eq.
-(51) and (60). The model is then a chain of bodies in a perfect fluid (Kirchhoff), which sheds nothing. Only drag, and
-the printed load of the nose, change the momentum of body and water, and the thrust of Lighthill's theory is gone. Such
-a run shows how much of a motion is due to the wake. It is no model of a fish.
+Without `wake` each section keeps its own water. The balance of the strips (50) then lacks the terms d/dX of V1 sigma_f
+and of V1 p_f - T_f t1, and their sum at the tail: the momentum flux and the pressure of eq. (51) and (60). The model is
+then a chain of bodies in a perfect fluid (Kirchhoff), which sheds nothing. Only drag, and the printed load of the nose,
+change the momentum of body and water, and the thrust of Lighthill's theory is gone. Such a run shows how much of a
+motion is due to the wake. It is not a model of a fish.
 """
 
 from collections.abc import Mapping
@@ -33,7 +33,7 @@ from eel_common.wording import did_you_mean, shown
 import eel_core
 
 FRICTION = (*eel_core.FRICTION_LAWS, "none")
-ROUGH_FRICTION = ("blended", "taylor")  # laws that are not analytic along the body: their grids have more points
+ROUGH_FRICTION = ("blended", "taylor")  # laws that are not analytic along the body, and need more points
 PERIMETER = ("ellipse", "printed")
 ADDED_MASS = ("corrected", "printed")
 TAIL_PRESSURE = ("lumped", "distributed")
@@ -42,7 +42,7 @@ TAIL_PRESSURE = ("lumped", "distributed")
 @documented
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Scene(Quantities):
-    """Physics of a run. Immutable; every field has a default. `ValueError` names a field that does not fit."""
+    """Physics of a run. Immutable; every field has a default. `ValueError` names a bad field."""
 
     what: ClassVar[str] = "scene"
 
@@ -99,7 +99,7 @@ class Scene(Quantities):
     viscosity: float = quantity(1e-6, "m^2/s", "kinematic viscosity of the water", 0.0)
 
     def changed(self, values: Mapping[str, Any]) -> Self:
-        """The same with these `values` of fields by name. `ValueError` names one that there is not."""
+        """The same with these `values` of fields by name. `ValueError` names an unknown one."""
         known = [item.name for item in fields(self)]
         for name in values:
             if name not in known:
@@ -118,10 +118,10 @@ class Scene(Quantities):
             raise ValueError(f"scene current must lie in the plane z = 0 of a planar scene, got {shown(self.current)}")
 
 
-OF_PAPER = Scene()  # where none is given
+OF_PAPER = Scene()  # the default scene
 
 
 def checked_scene(scene: Any) -> Scene:
-    """`scene`, if it is a `Scene`; for None that of the paper. `ValueError` for anything else."""
+    """`scene`, if it is a `Scene`; for None the paper's. `ValueError` for anything else."""
     found: Scene = OF_PAPER if scene is None else checked_instance("scene", scene, Scene)
     return found

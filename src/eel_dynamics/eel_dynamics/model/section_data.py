@@ -4,7 +4,7 @@
 The half-axis a lies along E3, b along E2.
 
 Body: m_b = rho_b pi a b, J2 = rho_b pi a^3 b/4, J3 = rho_b pi a b^3/4, J1 = J2 + J3.
-Water: J_f1 = rho_f pi/8 (a^2 - b^2)^2, M_f = rho_f pi diag(0, a^2, b^2), times what separated flow leaves of it.
+Water: J_f1 = rho_f pi/8 (a^2 - b^2)^2, M_f = rho_f pi diag(0, a^2, b^2), times the factors of separated flow.
 
 The printed eq. (37) exchanges the half-axes a and b in M_f. This is corrected here: the added mass of an ellipse that
 moves along one axis is proportional to the square of the other half-axis (Lamb; section 4.3 of the paper). The scene's
@@ -29,17 +29,17 @@ from eel_dynamics.model.scene import Scene
 WATCHED = {"all": 1, "jumps": 4, "none": 5}  # first of the speeds (V1, V2, V3, Omega1, Re/8e4 - 1) whose changes of
 # sign within a panel are integrated exactly
 GRAVITY = 9.80665  # m/s^2, standard
-NEUTRAL = 1e-9  # of the mass: greater differences from the displaced water are a net weight
-LEAST = 1e-9  # of the greatest drag by length: no drag at a node is smaller
-PLACES = 8  # by node of the largest panel, at which integrals up to a kink are tabulated
-TAYLOR = 5.4  # of the friction along a cylinder in oblique flow: eel_core/model/friction.hpp
+NEUTRAL = 1e-9  # of the mass: a greater difference from the displaced water is a net weight
+LEAST = 1e-9  # of the greatest drag per length: lower bound of the drag at a node
+PLACES = 8  # per node of the largest panel: places at which integrals up to a kink are tabulated
+TAYLOR = 5.4  # coefficient of the friction along a cylinder in oblique flow: eel_core/model/friction.hpp
 CRITICAL_REYNOLDS = 8.0e4  # Reynolds number at which the printed friction law jumps from laminar to turbulent
 
 
 def swept_water(body: Body, scene: Scene, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Added masses (n,) of the sections at `x` (n,) [m]: M_f along E2 and E3 [kg/m], and J_f1 [kg m] (eq. 37).
 
-    They are of the water that is swept past the sections, and zero where the scene is not reactive.
+    They are those of the water swept past the sections, and zero if the scene is not reactive.
     """
     rho = scene.fluid_density if scene.reactive else 0.0
     a_squared, b_squared = body.half_height(x) ** 2, body.half_width(x) ** 2
@@ -55,8 +55,8 @@ class SectionData(NamedTuple):
     mass: np.ndarray  # kg/m, of the body
     added2: np.ndarray  # kg/m, added mass along E2
     added3: np.ndarray  # kg/m, along E3
-    lever: np.ndarray  # kg, m h of the weight: h below the axis
-    net: np.ndarray  # kg/m, of the displaced water less the body, where bodies weigh
+    lever: np.ndarray  # kg, m h of the weight, at the depth h below the axis
+    net: np.ndarray  # kg/m, mass of displaced water minus body, if bodies have weight
     inertia1: np.ndarray  # kg m, of body and water about E1
     inertia2: np.ndarray  # kg m, about E2
     inertia3: np.ndarray  # kg m, about E3
@@ -76,11 +76,11 @@ class SectionData(NamedTuple):
         return self._replace(mass=none, lever=none, net=none, inertia1=self.added_roll, inertia2=none, inertia3=none)
 
     def rows(self, names: tuple[str, ...]) -> np.ndarray:
-        """Those with these `names`, one behind the other."""
+        """The fields with these `names`, concatenated."""
         return np.array([getattr(self, name) for name in names])
 
 
-# In which a section's inertial wrench, its weight, a flow's pressure and its drag are linear; the order is that of the
+# Fields in which a section's inertial wrench, weight, flow pressure and drag are linear, in the order of the
 # core's `SectionPart`.
 PARTS = tuple(name for name in SectionData._fields if name not in ("added_roll", "by_critical_speed"))
 DRAG_PARTS = "drag2", "drag3", "drag_roll"
@@ -91,11 +91,11 @@ class StationData(NamedTuple):
 
     sections: SectionData
     points: PanelPoints
-    nodes_before: np.ndarray  # (M,) unsigned, how many nodes lie at or before the station
+    nodes_before: np.ndarray  # (M,) unsigned, number of nodes at or before the station
     added2_slope: np.ndarray  # (M,) kg/m^2, derivative of `added2` by X
     added3_slope: np.ndarray  # (M,) kg/m^2
     added_roll_slope: np.ndarray  # (M,) kg
-    missed: np.ndarray | tuple[()]  # (15, M, p_max), of `PARTS`: what the rows of `points` miss, times m; or none
+    missed: np.ndarray | tuple[()]  # (15, M, p_max), by `PARTS`: corrections of the rows of `points`, times m; or none
 
 
 def nose_of(body: Body, scene: Scene) -> tuple[float, float]:
@@ -116,8 +116,8 @@ def core_swimmer(
     fins: tuple[Fin, ...] = (),
     sensors: np.ndarray | tuple[()] = (),
 ) -> eel_core.Swimmer:
-    """`body` in `scene` for the compiled mechanics: the `sections` at the nodes of `grid`, stations at `x` (M,) [m],
-    and `sensors` at X (S,) [m] that rise; `kinks`: which of the drag's are integrated exactly (`Accuracy`)."""
+    """`body` in `scene` for the core: the `sections` at the nodes of `grid`, stations at `x` (M,) [m], and `sensors` at
+    rising X (S,) [m]. kinks: which kinks of the drag are integrated exactly (`Accuracy`)."""
     nose_mass, nose_drag = nose_of(body, scene)
     of_fins, servos = core_fins(body, scene, grid, x, fins)
     stations = stations_of(body, scene, grid, sections, with_sensors(x, sensors))
@@ -155,7 +155,7 @@ def with_sensors(x: np.ndarray, sensors: np.ndarray | tuple[()]) -> np.ndarray:
 
 
 def missed_drag_of(body: Body, scene: Scene, grid: Grid, sections: SectionData) -> np.ndarray | tuple[()]:
-    """What the integrals of the drag up to a kink miss: (3, K, n), or nothing for a body that is smooth."""
+    """Corrections of the integrals of the drag up to a kink: (3, K, n), or empty for a smooth body."""
     if not (len(body.breaks) and scene.resistive):
         return ()
     angle = np.linspace(0.0, np.pi, 1 + PLACES * grid.matrix.shape[1])
@@ -165,10 +165,10 @@ def missed_drag_of(body: Body, scene: Scene, grid: Grid, sections: SectionData) 
 
 
 def weight_time(scene: Scene, sections: SectionData, weight: np.ndarray, length: float) -> float:
-    """The shorter time [s] in which the straight body's weight rolls it (the inverse angular frequency), or moves it by
-    its `length` [m]; infinite where it does not weigh.
+    """The shorter of the times [s] in which the straight body's weight rolls it (the inverse angular frequency), or
+    moves it by its `length` [m]; infinite without weight.
 
-    sections: at the nodes, whose integration weights are weight (n,) [m].
+    sections: at the nodes. weight (n,) [m]: integration weights of the nodes.
     """
     moment = GRAVITY * abs(scene.metacentric_height or scene.weight) * abs(float(weight @ sections.lever))
     force, time = GRAVITY * float(weight @ np.abs(sections.net)), np.inf
@@ -178,8 +178,8 @@ def weight_time(scene: Scene, sections: SectionData, weight: np.ndarray, length:
 
 
 def check_weight(body: Body, scene: Scene, sections: SectionData, weight: np.ndarray) -> None:
-    """`ValueError` for a planar `scene` in which weight is not buoyancy, or one with a metacentric height for a `body`
-    that has its own; other arguments as in `weight_time`."""
+    """`ValueError` for a planar `scene` with a net weight, or a metacentric height for a `body` with its own offset.
+    Other arguments as in `weight_time`."""
     net = float(weight @ np.abs(sections.net))
     if scene.metacentric_height and body.offset:
         raise ValueError(
@@ -193,7 +193,7 @@ def check_weight(body: Body, scene: Scene, sections: SectionData, weight: np.nda
 
 
 def stations_of(body: Body, scene: Scene, grid: Grid, nodes: SectionData, x: np.ndarray) -> StationData:
-    """Tabulate `body` in `scene` at the stations `x` (M,) [m]; `nodes`: the sections at the nodes of `grid`."""
+    """Tabulate `body` in `scene` at the stations `x` (M,) [m]. nodes: the sections at the nodes of `grid`."""
     missed: np.ndarray | tuple[()] = ()
     if len(body.breaks):
         given = nodes.rows(PARTS)
@@ -215,17 +215,17 @@ def stations_of(body: Body, scene: Scene, grid: Grid, nodes: SectionData, x: np.
 
 @lru_cache(maxsize=64)
 def _squares_at(body: Body, x: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """`Body.squares` at the stations, which all runs and companions of a body share."""
+    """`Body.squares` at the stations, shared by all runs and companions of a body."""
     return body.squares(np.frombuffer(x))
 
 
 def sections_on(body: Body, scene: Scene, grid: Grid) -> SectionData:
-    """Section data of `body` in `scene` at the nodes of `grid`; those of a body from data with its moments."""
+    """Section data of `body` in `scene` at the nodes of `grid`; for a body from data, values with its moments."""
     sections = sections_of(body, scene, grid.x)
     if not len(body.breaks):
         return sections
     table = SectionData(*with_moments(lambda x: np.array(sections_of(body, scene, x)), grid, body.breaks))
-    # without a zero, such as at a pointed tail: a weight of a drag can then stand for any load there
+    # no zeros, such as at a pointed tail: a weight of a drag can then represent any load there
     drags = table.rows(DRAG_PARTS)
     least = LEAST * np.max(np.abs(drags), axis=1, keepdims=True)
     drags = np.where(np.abs(drags) < least, least, drags)
@@ -246,7 +246,7 @@ def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionData:
     elif scene.metacentric_height:
         lever = mass  # times g h: `core_swimmer`
     half_rho = 0.5 * scene.fluid_density if scene.resistive else 0.0
-    # at the nose c_f P has a limit, as c_f grows like X^-1/2 and P like X^1/2
+    # at the nose c_f P has a limit, as c_f behaves like X^-1/2 and P like X^1/2
     behind = np.maximum(x, 1e-9 * body.length)
     c, d = (a, b) if np.array_equal(behind, x) else (body.half_height(behind), body.half_width(behind))
     perimeter = np.pi * (1.5 * (c + d) - np.sqrt(c * d)) * (0.5 if scene.perimeter == "printed" else 1.0)

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whole runs: `simulate`, `simulate_batch`, and the command `simulate`."""
+"""Whole runs: `simulate`, the class `Run`, its error, its files and its messages."""

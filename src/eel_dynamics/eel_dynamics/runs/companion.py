@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Judges the error of a run: its distance from a companion, a run of the same swimmer with coarser settings.
+"""Estimates the error of a run: its distance from a companion, a run of the same swimmer with coarser settings.
 
-For a swimmer that goes on, as in the node, `ErrorMeter` does so (eel_dynamics/simulation/error_meter.py), and
-`ErrorMonitor` tells what misses the target (eel_dynamics/ros/loop/error_monitor.py).
+For a swimmer without an end, as in the node, `ErrorMeter` does this (eel_dynamics/simulation/error_meter.py), and
+`ErrorMonitor` reports an error above the target (eel_dynamics/ros/loop/error_monitor.py).
 
-Where the estimate exceeds the target, the run becomes the next companion of a finer one, up to `MOST_REFINEMENTS`
-times. A warning names what is then still above the target.
+If the estimate exceeds the target, the run becomes the companion of a finer one, up to `MOST_REFINEMENTS` times. A
+warning names an error that then still exceeds the target.
 """
 
 from dataclasses import replace
@@ -31,23 +31,22 @@ from eel_dynamics.simulation.bending.joint_motion import bends, stops_met, torqu
 from eel_dynamics.simulation.error_meter import on_another_grid
 from eel_dynamics.simulation.stopping import SimulationStopped
 
-ACCEPTED = 1.5  # factor of the target by which an estimate must lie below it
-MOST_REFINEMENTS = 4  # of a run whose error is above its target
-BLENDED_ORDER = 3.0  # at most, at which the error of the grid falls where friction changes its law along the body
+ACCEPTED = 1.5  # an estimate must be below the target / this factor
+MOST_REFINEMENTS = 4  # refinements of a run whose error exceeds its target
+BLENDED_ORDER = 3.0  # greatest order of the grid's error if the friction law changes along the body
 RESAMPLING = 1.0 / 3.0  # 1 / (2^p - 1) of the order p = 2 of an interpolation
-# The companion has every third of the samples, where they are many. A period has 20 of them by default, so that three
-# periods show as many phases of it as before.
+# The companion has every third sample, if there are many. A period has 20 of them by default, so that three
+# periods together show the same phases.
 COMPARED_EVERY, MANY_SAMPLES = 3, 100
-HALVINGS = 8  # of an unstable step, at most, in the search for a stable one
+HALVINGS = 8  # most halvings of an unstable step in the search for a stable one
 
 
 def relative_errors(run, reference) -> ErrorEstimate:
     """Distance of `run` from `reference`, a run of the same swimmer with the same stations, at the reference's samples.
 
-    Of the head's position: the greatest over the later half of the samples, relative to the length of the path, or of
-    the body if that is longer. Of the torque: the greatest over samples and stations, relative to its own maximum.
-    The others as `ErrorEstimate` tells. Sizes count for no less than `Floors`. growth_rate: of the distance of the
-    heads.
+    Position of the head: the greatest over the later half of the samples, relative to the length of the path, or of the
+    body if that is longer. Torque: the greatest over samples and stations, relative to its own maximum. Others: see
+    `ErrorEstimate`. Denominators are at least `Floors`. growth_rate: of the distance of the heads.
     """
     time, here = reference.time, np.searchsorted(run.time, reference.time)
     distance = np.linalg.norm(run.position[here] - reference.position, axis=1)
@@ -73,7 +72,7 @@ def relative_errors(run, reference) -> ErrorEstimate:
 
 
 def error_at_stops(run, reference) -> float:
-    """The torque that `torque_at_stops` tells of two runs, by the greatest of the `reference`."""
+    """The difference of two runs in `torque_at_stops`, relative to the greatest of the `reference`."""
     if run.robot is None or run.torque is None or reference.torque is None:
         return 0.0
     apart = np.abs(run.joint_angle[np.searchsorted(run.time, reference.time)] - reference.joint_angle).max(axis=0)
@@ -83,10 +82,10 @@ def error_at_stops(run, reference) -> float:
 
 
 def with_error_estimate(swim: Any, request: Any) -> Any:
-    """The `swim` of a `request` (`SwimRequest`) with the `error_estimate` of its run; or a finer one, for the target.
+    """The `swim` of a `request` (`SwimRequest`) with the `error_estimate` of its run; or a finer swim, for the target.
 
-    Nothing is estimated for a run that stopped before its end. Without a target nothing is made finer, nor where motors
-    are far too slow: that would take minutes.
+    A run that stopped early has no estimate. A run is not refined without a target, nor if motors are far too slow, as
+    that would take minutes.
     """
     others = []
     target = request.setup.accuracy.target
@@ -99,7 +98,7 @@ def with_error_estimate(swim: Any, request: Any) -> Any:
         if companion is not None:
             error = relative_errors(swim.compared, companion.compared)
             error = error.with_torque(error_at_stops(swim.compared, companion.compared))
-        if refinement and companion is not None:  # it falls no faster than this: else the two agree by chance
+        if refinement and companion is not None:  # a faster fall is agreement by chance
             share = swim.run.accuracy.tolerance / companion.run.accuracy.tolerance
             if request.setup.scene.friction in ROUGH_FRICTION:
                 share = max(share, (companion.run.nodes / swim.run.nodes) ** BLENDED_ORDER)
@@ -112,7 +111,7 @@ def with_error_estimate(swim: Any, request: Any) -> Any:
             break
         if refinement == 0 and (slow := request.slow_motors) is not None and slow.far:
             break
-        if refinement and error.hopeless(target, float(swim.run.time[-1])):  # the first pair may be far apart
+        if refinement and error.hopeless(target, float(swim.run.time[-1])):  # the first two may be far apart
             break
         tightened = swim.run.accuracy.tightened(target / ACCEPTED / error.worst)
         finer = _finished(request, tightened, swim.run.nodes)
@@ -124,10 +123,10 @@ def with_error_estimate(swim: Any, request: Any) -> Any:
 
 
 def _with_resampling(run, request, others: list):
-    """The `run` with the error of the rows between which its law is interpolated, where that is a `SampledLaw`.
+    """The `run` with the interpolation error of its law's rows, if that is a `SampledLaw`.
 
-    Two companions, one with every second row and point of the law, are apart by `1 / RESAMPLING` of this error or more
-    where the law is smooth, as the interpolation is at least of second order.
+    Two companions, one with every second row and point of the law, differ by at least `1 / RESAMPLING` of this error
+    for a smooth law, as the interpolation is at least of second order.
     """
     law, error = run.law, run.error_estimate
     if not isinstance(law, SampledLaw) or error is None or not others:
@@ -148,9 +147,9 @@ def _with_resampling(run, request, others: list):
 
 
 def _for_comparison(request):
-    """The `request` for what is compared: motion and torque, at some of the instants, the last one among them.
+    """The `request` reduced for comparison: motion and torque, at some of the instants, with the last.
 
-    Adams' method is the cheaper one without a ledger.
+    Without a ledger Adams' method is cheaper.
     """
     times = request.instants
     if len(times) > MANY_SAMPLES:
@@ -165,10 +164,10 @@ def _without_ledger(scene: Scene) -> Scene:
 
 
 def _finished(request, accuracy: Accuracy, nodes: int | None = None):
-    """The swim with these settings, on a grid of other than `nodes`; None where it does not come to its end."""
+    """The swim with these settings, on a grid that does not have `nodes`; None if it stops early."""
     try:
         march = on_another_grid(request.march, accuracy, nodes)
-    except (SimulationStopped, ValueError):  # a law that cannot be begun
+    except (SimulationStopped, ValueError):  # a law that cannot be started
         return None
     try:
         swim = request.swim(march)
@@ -178,7 +177,7 @@ def _finished(request, accuracy: Accuracy, nodes: int | None = None):
 
 
 def stable_step(request, accuracy: Accuracy) -> float | None:
-    """The longest step [s], by halving that of `accuracy`, with which the swim of `request` comes to its end.
+    """The longest step [s], found by halving that of `accuracy`, with which the swim of `request` reaches its end.
 
     None if `HALVINGS` give none.
     """

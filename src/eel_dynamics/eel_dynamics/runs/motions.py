@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whatever tells a motion, as a law: a law itself, a function K(t, X), or a file. And what smoothing did to it."""
+"""A law from any description of a motion: a law, a function K(t, X), or a file; and the effect of smoothing on it."""
 
 import inspect
 import os
@@ -24,7 +24,7 @@ Motion = Law | SampledLaw | Callable[..., Any] | str | os.PathLike[str]
 
 
 def law_from(motion: Motion, duration: float, length: float) -> Law | SampledLaw:
-    """The law of a `motion` for `duration` [s] and a body of `length` [m]. `ValueError` for what does not fit."""
+    """The law of a `motion` for `duration` [s] and a body of `length` [m]. `ValueError` for an unsuitable one."""
     if isinstance(motion, LAWS):
         law = motion
     elif isinstance(motion, (str, os.PathLike)) and is_table(motion, ARCHIVE):
@@ -46,7 +46,7 @@ def _no_motion(motion: object, hint: str) -> ValueError:
 
 
 def _takes(function: Callable[..., Any], *arguments: Any) -> bool:
-    """Whether `function` can be called with these arguments; true where it does not tell."""
+    """Whether `function` can be called with these arguments; True if that is unknown."""
     try:
         inspect.signature(function).bind(*arguments)
     except TypeError:
@@ -57,7 +57,7 @@ def _takes(function: Callable[..., Any], *arguments: Any) -> bool:
 
 
 def check_duration(law: Law | SampledLaw, duration: float) -> None:
-    """`ValueError` where the motion of `law` is known for less than `duration` [s]."""
+    """`ValueError` if the motion of `law` is shorter than `duration` [s]."""
     if isinstance(law, SampledLaw) and is_finite(duration) and duration > law.duration * (1.0 + 1e-9):
         raise ValueError(
             f"duration must be at most {law.duration:g} s, that of the motion {shown(law.name)}, got {duration:g} s"
@@ -65,7 +65,7 @@ def check_duration(law: Law | SampledLaw, duration: float) -> None:
 
 
 class SmoothingEffect(NamedTuple):
-    """What a run would be without the smoothing of its measured motion, relative to the run; None: undefined."""
+    """A run without the smoothing of its measured motion, relative to the run; None: undefined."""
 
     speed: float | None  # mean speed
     torque: float | None  # root mean square of the internal torque
@@ -78,7 +78,7 @@ class SmoothingEffect(NamedTuple):
 
 
 def effect_of_smoothing(run: RunData, without: RunData) -> SmoothingEffect:
-    """The effect on a `run` of a smoothed motion: `without` is the run of the same motion without smoothing."""
+    """The effect of smoothing the motion of `run`. without: the run of the same motion without smoothing."""
     before, after = _mean_speed(without), _mean_speed(run)
     speed = before / after if before is not None and after is not None and after > 0.0 else None
     torque = None

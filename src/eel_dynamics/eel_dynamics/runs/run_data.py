@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a run holds, and what follows from it alone. `Run` adds what is asked of a run."""
+"""The data of a run, and what follows from them alone. `Run` adds the analysis."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
@@ -32,7 +32,7 @@ ANY = float(np.finfo(float).max)  # evaluations: no limit
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class ObservedArrays:
-    """The arrays that a run and a batch have in common; what was not asked for is None."""
+    """The arrays that a run and a batch have in common; None if not requested."""
 
     time: np.ndarray
     position: np.ndarray
@@ -59,7 +59,7 @@ class ObservedArrays:
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class RunData(ObservedArrays):
-    """What a run holds; `Run` documents it."""
+    """The data of a run; `Run` documents them."""
 
     law: Law | SampledLaw
     body: Body
@@ -78,17 +78,17 @@ class RunData(ObservedArrays):
     steps: int
     evaluations: int
     nodes: int
-    error_estimate: ErrorEstimate | None = None  #: None where none was wanted, or for fewer than two samples
-    flow: Flow | None = None  #: of the water; its own numbers are in REP-103 axes always
+    error_estimate: ErrorEstimate | None = None  #: None if not requested, or for fewer than two samples
+    flow: Flow | None = None  #: of the water; always in REP-103 axes
     fins: tuple[Fin, ...] = ()
-    robot: Robot | None = None  #: what bends by itself; the joints' arrays are None without one
-    axes: str = REP103  #: of world and head: "rep103" (x forward, y left, z up), or "paper"
+    robot: Robot | None = None  #: the joints' arrays are None without one
+    axes: str = REP103  #: axes of world and head: "rep103" (x forward, y left, z up), or "paper"
 
     @classmethod
     def of(cls, setup: Any, time: np.ndarray, arrays: dict[str, np.ndarray], **others: Any) -> Self:
         """The run with these `arrays` (`storage.variables.arrays_of`) at `time` (T,) [s].
 
-        setup: has the body, the scene and the stations x, and may have a flow, a robot, fins. others: further fields.
+        setup: has the body, the scene and the stations x, and perhaps a flow, a robot, fins. others: further fields.
         """
         own = {"body": setup.body, "scene": setup.scene, "flow": None, "robot": None, "fins": ()}
         own |= {name: getattr(setup, name, none) for name, none in own.items()}
@@ -96,9 +96,9 @@ class RunData(ObservedArrays):
 
     @classmethod
     def of_snapshots(cls, snapshots: Sequence[Snapshot], swimmer: Any, law: Law, **others: Any) -> Self:
-        """The run that the `snapshots` of a `swimmer` hold: of a `Simulation`, or of another object with `observe`.
+        """The run in the `snapshots` of a `swimmer`: a `Simulation`, or another object with `observe`.
 
-        law: the one that the swimmer follows. others: further fields of the run. Its numbers of steps are 0.
+        law: the swimmer's. others: further fields of the run. Its numbers of steps are 0.
         """
         first = snapshots[0]
         names = [name for name in OWN if name != "x" and getattr(first, name, None) is not None]
@@ -115,7 +115,7 @@ class RunData(ObservedArrays):
     def __hash__(self) -> int:
         return hash((self.law, self.body, self.scene, self.steps, self.evaluations, self.nodes))
 
-    def __getstate__(self) -> dict[str, Any]:  # without what can be computed again
+    def __getstate__(self) -> dict[str, Any]:  # without cached properties
         return {item.name: getattr(self, item.name) for item in fields(self)}
 
     def __repr__(self) -> str:
@@ -142,19 +142,19 @@ class RunData(ObservedArrays):
 
     @property
     def torque_world(self) -> np.ndarray:
-        """(T, M, 3) N m: the internal torque in the axes of the world. `ValueError` where there is none."""
+        """(T, M, 3) N m: the internal torque in the axes of the world. `ValueError` without one."""
         return self._in_world("torque")
 
     @property
     def force_world(self) -> np.ndarray:
-        """(T, M, 3) N: the internal force in the axes of the world. `ValueError` where there is none."""
+        """(T, M, 3) N: the internal force in the axes of the world. `ValueError` without one."""
         return self._in_world("force")
 
     def in_axes(self, axes: str) -> Self:
         """This run with world and head in these `axes`: "rep103" (x forward, y left, z up), or "paper".
 
-        In the paper's axes the eel swims towards -x. What has section axes is the same in both. `ValueError` for other
-        axes.
+        In the paper's axes the eel swims towards -x. Quantities in section axes are the same in both. `ValueError` for
+        other axes.
         """
         if axes not in CONVENTIONS:
             raise ValueError(f"axes must be {' or '.join(CONVENTIONS)}, got {shown(axes)}")
@@ -178,15 +178,15 @@ class RunData(ObservedArrays):
 
     @property
     def swimmer(self) -> dict[str, Any]:
-        """What `Simulation` and `simulate` take of the run: body, scene, flow, robot and fins."""
+        """The arguments of `Simulation` and `simulate` from the run: body, scene, flow, robot and fins."""
         return {name: getattr(self, name) for name in ("body", "scene", "flow", "robot", "fins")}
 
     def setup_at(
         self, sample: int, x: np.ndarray, accuracy: Accuracy, most_evaluations: float = ANY
     ) -> SimulationSetup:
-        """The set-up of the swimmer, in REP-103 axes, with the head's motion of a `sample`.
+        """The set-up of the swimmer, in REP-103 axes, with the head's motion at a `sample`.
 
-        x (M,) [m]: its stations. The others are as of `Simulation`.
+        x (M,) [m]: its stations. The other arguments are as in `Simulation`.
         """
         run = self.in_axes(REP103)
         orientation = run.orientation[sample] / np.linalg.norm(run.orientation[sample])

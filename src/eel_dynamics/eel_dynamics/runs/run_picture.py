@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The picture of a run: where it swam, how fast, and its torque; and of a batch: all paths."""
+"""The picture of a run: path, speed and torque; and of a batch: all paths."""
 
 from typing import Any
 
@@ -25,7 +25,7 @@ def picture_of_run(run: Any) -> Any:
     speed.set(title="speed of the head [m/s]", xlabel="time [s]", ylim=(0.0, None))
     if run.torque is not None:
         torque, axes = run.torque[:, :, 2], panels_of_row[2]
-        limit = float(np.abs(torque[len(torque) // 3 :]).max()) or 1.0  # of the swim, not of its start
+        limit = float(np.abs(torque[len(torque) // 3 :]).max()) or 1.0  # without the start
         drawn = axes.pcolormesh(run.time, run.x, torque.T, cmap="RdBu_r", vmin=-limit, vmax=limit, shading="auto")
         axes.set(title="yaw torque C3 [N m]", xlabel="time [s]", ylabel="X from the nose [m]")
         axes.invert_yaxis()
@@ -34,7 +34,8 @@ def picture_of_run(run: Any) -> Any:
 
 
 def picture_of_batch(batch: Any) -> Any:
-    """A matplotlib figure: the paths of all heads from above, of a large batch evenly chosen ones; and their speeds."""
+    """A matplotlib figure: the paths of all heads from above, or evenly chosen ones of a large batch; and their
+    speeds."""
     made, ((above, speed),) = figure(6.8, 2.5, (1, 2))
     chosen = np.unique(np.linspace(0, len(batch) - 1, min(len(batch), MOST_PATHS)).astype(int))
     for k in chosen:
@@ -49,7 +50,7 @@ def picture_of_batch(batch: Any) -> Any:
 
 
 def lines_of_batch(batch: Any) -> str:
-    """A table of the first swimmers: law, body, end of the path, greatest sampled torque, what stopped it."""
+    """A table of the first swimmers: law, body, end of the path, greatest sampled torque, reason for a stop."""
     lines = [repr(batch), f"{'':>4}  {'law':<16} {'body':<12} {'x, y, z at the end [m]':>26}  {'C at most [N m]':>15}"]
     for k in range(min(len(batch), MOST_ROWS)):
         last = max(int(batch.samples[k]) - 1, 0)

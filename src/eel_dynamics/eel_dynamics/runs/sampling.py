@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The samples of a run: when they are taken, and whether they fit into memory."""
+"""The samples of a run: their times, and whether they fit into memory."""
 
 import math
 import os
@@ -14,18 +14,17 @@ from eel_gaits.sources.sampled_law import SampledLaw
 from eel_dynamics.simulation.observations import places_of
 
 MOST_SAMPLES = 10_000_000  # of a run: the motion alone takes gigabytes
-SAMPLE_PERIOD = 0.05  # s, where the gait is no faster than a period of 1 s
-SAMPLES_OF_PERIOD = 20  # by default, of the law's shortest period
-ALIKE = 0.99  # a period that is found from rows is not exact
+SAMPLE_PERIOD = 0.05  # s, for gaits with a period of 1 s or more
+SAMPLES_OF_PERIOD = 20  # default number per shortest period of the law
+ALIKE = 0.99  # tolerance, as a period found from rows is not exact
 MOST_DEFAULT_SAMPLES = 20_000  # of a run whose sample period follows from the law
 MOST_MEMORY = 0.8  # share of the machine's memory for the samples
 
 
 def default_sample_period(laws: Iterable[Law | SampledLaw], duration: Any) -> float:
-    """The sample period [s] where none is given: `SAMPLE_PERIOD`, or fine enough to analyse the fastest of `laws`.
+    """The default sample period [s]: `SAMPLE_PERIOD`, or fine enough to analyse the fastest of `laws`.
 
-    The finer ones divide the `duration`; none is longer than it. A run of more than `MOST_DEFAULT_SAMPLES` is
-    not made by default.
+    Finer ones divide the `duration`, and none is longer than it. By default a run has at most `MOST_DEFAULT_SAMPLES`.
     """
     shortest = min((term.period for law in laws for term in law.waves), default=np.inf)
     fine = shortest / SAMPLES_OF_PERIOD

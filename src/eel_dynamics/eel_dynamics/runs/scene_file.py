@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A swim in a file: `load_scene` and `save_scene`. Nodes take the same file (`--params-file`).
+"""A swim in a file: `load_scene` and `save_scene`. Nodes read the same file (`--params-file`).
 
-Its words are the names of the nodes' parameters, below `/**: ros__parameters:` or alone:
+Its keys are the names of the nodes' parameters, below `/**: ros__parameters:` or at the top level:
 
-    gait: straight            # as of the node gait_generator; its numbers stand beside it, and file: of a sequence
+    gait: straight            # as in the node gait_generator; its numbers follow, and file: for a sequence
     period: 0.8
     body: boyer2010           # or a file
     scene: {planar: true}     # fields of `Scene`
     accuracy: 1e-4
-    duration: 10.0            # s; of the library "settled" too
+    duration: 10.0            # s; in the library also "settled"
     initial_linear_velocity: [0.3, 0, 0]
     flow: shear velocity=0.1,0,0 width=0.5    # several are joined by " + "
     fins: pair station=0.5 area=0.0015 aspect_ratio=2.5   # likewise
-    robot: eight_servos       # or a file, whose body is that of the scene unless there is another
+    robot: eight_servos       # or a file; its body is the scene's unless another is given
 
-A further word is a line of `WORDS`.
+A new key is a line of `WORDS`.
 """
 
 import os
@@ -42,26 +42,26 @@ from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.settled_duration import until_settled
 from eel_dynamics.runs.swim import AT_REST, Swim
 
-SUFFIXES = SEQUENCES  # of such files; one with steps is a sequence
+SUFFIXES = SEQUENCES  # of such files; a file with steps is a sequence
 FOR_ALL, PARAMETERS = "/**", "ros__parameters"
 ABOUT = "# A scene for eel simulate, terms, tradeoff and stability, and for --params-file of the nodes.\n"
 
 
 class Word(NamedTuple):
-    """A word of a file. given(swim, value): the fields of `Swim` that it sets. plain(swim): its value, or None."""
+    """A key of a file. given(swim, value): the fields of `Swim` that it sets. plain(swim): its value, or None."""
 
     given: Callable[[Swim, Any], dict[str, Any]]
     plain: Callable[[Swim], Any]
 
 
 def load_scene(path: str | os.PathLike[str]) -> Swim:
-    """The swim of a file. `ValueError` in one line names the file, the word, and what it got."""
+    """The swim of a file. `ValueError` in one line names the file, the key, and its value."""
     with reading(f"scene {shown(str(path))}"):
         return swim_of(read_yaml(path))
 
 
 def save_scene(swim: Swim, path: str | os.PathLike[str]) -> None:
-    """Write `swim` to a file. `ValueError` for what none can hold; `NotWritten`: it cannot be completed."""
+    """Write `swim` to a file. `ValueError` for anything a file cannot hold; `NotWritten`: it cannot be completed."""
     words = words_of(checked_instance("swim", swim, Swim))
     text = yaml.safe_dump({FOR_ALL: {PARAMETERS: words}}, sort_keys=False, default_flow_style=None)
     with replacing(checked_path("path", path)) as draft:
@@ -69,7 +69,7 @@ def save_scene(swim: Swim, path: str | os.PathLike[str]) -> None:
 
 
 def swim_of(words: Any, base: Swim | None = None) -> Swim:
-    """The swim of these `words`, or `base` with what they change. `ValueError` names the one that does not fit."""
+    """The swim of these `words`, or `base` changed by them. `ValueError` names a bad key."""
     words = checked_instance("its content", words, Mapping)
     for level in (FOR_ALL, PARAMETERS):
         words = checked_instance(level, words.get(level, words), Mapping)
@@ -88,7 +88,7 @@ def swim_of(words: Any, base: Swim | None = None) -> Swim:
 
 
 def words_of(swim: Swim) -> dict[str, Any]:
-    """The words of a file of this `swim`; what has its default is left out. `ValueError` for what no file can hold."""
+    """The keys of a file for this `swim`, without defaults. `ValueError` for anything a file cannot hold."""
     if not isinstance(swim.gait, Settings) or swim.gait.law() != swim.law:
         name = getattr(swim.law, "name", swim.law)
         raise ValueError(f"law {shown(name)} cannot be written: no gait by name gave it")
@@ -108,7 +108,7 @@ def _plain_body(swim: Swim) -> str:
 
 
 def _name_of(swim: Swim, word: str, held: str) -> str:
-    """The name or file of a body or robot. `ValueError` where what it `held` has changed."""
+    """The name or file of a body or robot. `ValueError` if the content that it `held` has changed."""
     own = getattr(swim, word)
     name: str = getattr(swim, f"{word}_file") or own.name
     if WORDS[word].given(swim, name)[word] != own:
@@ -145,7 +145,7 @@ def _robot(swim: Swim, value: Any) -> dict[str, Any]:
 
 
 def _of_start(field: str, part: slice = slice(None)) -> Word:
-    """A word for a `part` of a row of the initial state."""
+    """A key for a `part` of a row of the initial state."""
 
     def given(swim: Swim, value: Any) -> dict[str, Any]:
         row = getattr(swim.start, field).copy()
@@ -160,13 +160,13 @@ def _of_start(field: str, part: slice = slice(None)) -> Word:
 
 
 def _number(name: str, default: Any) -> Word:
-    """A word that is a field of its own."""
+    """A key with a field of its own."""
     return Word(
         lambda swim, value: {name: value}, lambda swim: None if getattr(swim, name) == default else getattr(swim, name)
     )
 
 
-WORDS: dict[str, Word] = {  # robot before body, which replaces that of its file
+WORDS: dict[str, Word] = {  # robot before body, as a given body replaces the robot file's
     "robot": Word(_robot, lambda swim: swim.robot and _name_of(swim, "robot", "parts")),
     "body": Word(_body, _plain_body),
     "scene": Word(_scene, _plain_scene),

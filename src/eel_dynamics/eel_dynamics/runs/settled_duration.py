@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How long a swimmer swims until its gait has settled: what the duration "settled" stands for."""
+"""The time until a swimmer's gait has settled: the meaning of the duration "settled"."""
 
 import math
 from dataclasses import replace
@@ -19,9 +19,9 @@ from eel_dynamics.simulation.observations import Observations
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 
 UNTIL_SETTLED = "settled"  # as a duration
-MOST_PERIODS = 100  # of a swim that does not settle
-MARGIN = 0.8  # of the change that counts as settled, for the difference between this swim and a more exact one
-NO_WORK = 1e-6  # of the kinetic energy: the net work of a period that counts as none
+MOST_PERIODS = 100  # longest swim if it does not settle
+MARGIN = 0.8  # of the change that counts as settled, as a more exact swim may differ
+NO_WORK = 1e-6  # of the kinetic energy: a smaller net work per period counts as none
 
 
 def until_settled(duration: object) -> bool:
@@ -30,7 +30,7 @@ def until_settled(duration: object) -> bool:
 
 
 def duration_of(duration: Any, swimmers: Any) -> Any:
-    """The `duration`, or where that is "settled" the time [s] until the slowest of the `swimmers` has settled.
+    """The `duration`; for "settled" the time [s] until the slowest of the `swimmers` has settled.
 
     swimmers: (law, set-up) of each.
     """
@@ -40,18 +40,18 @@ def duration_of(duration: Any, swimmers: Any) -> Any:
 def settling_time(law: Any, setup: SimulationSetup) -> float:
     """Time [s], in whole periods, after which the gait of a swimmer by `law` has settled.
 
-    The later half of that time lies after the law's last ramp. Over its periods the mean speed and the mean power of
-    the actuators change by `SETTLED` at most, and as much at most is left to come (`analysis.settling.settling_of`).
-    Both are exact means of a swim whose error is that of the preset draft, or the swimmer's own if that is greater.
-    A body at rest has settled. `MOST_PERIODS` where the gait does not settle within them, or the swim stops.
-    `ValueError` for a law without a period.
+    The later half of that time is after the law's last ramp. Over its periods the mean speed and the mean power of the
+    actuators change by at most `SETTLED`, and at most as much is still to come (`analysis.settling.settling_of`). Both
+    are exact means of a swim with the error of the preset draft, or the swimmer's own if that is greater. A body at
+    rest has settled. `MOST_PERIODS` if the gait does not settle within them, or if the swim stops. `ValueError` for a
+    law without a period.
     """
     period, last_ramp = period_of(law, setup.body.length), _last_ramp(law)
     coarse = replace(setup, accuracy=_coarse(setup.accuracy), x=setup.x[:1])
     drift = setup.current * period  # m
 
     def settled(seen: Observations, done: np.ndarray) -> bool:
-        """Whether the gait has after the `done` (n, 7) [J] works, n - 1 periods."""
+        """Whether the gait has settled after the `done` (n, 7) [J] works of n - 1 periods."""
         count = len(done) - 1
         window = (count + 1) // 2
         if window < FEWEST or (count - window) * period < last_ramp * (1.0 - 1e-9):
@@ -72,7 +72,7 @@ def settling_time(law: Any, setup: SimulationSetup) -> float:
 
 
 def period_of(law: Any, length: float) -> float:
-    """The period [s] of `law` after its last ramp, on a body of `length` [m]. `ValueError` where there is none."""
+    """The period [s] of `law` after its last ramp, on a body of `length` [m]. `ValueError` without one."""
     if not isinstance(law, Law):
         raise ValueError(f"duration {UNTIL_SETTLED!r} needs a Law, whose terms tell its period, got {shown(law)}")
     try:
@@ -92,6 +92,6 @@ def _last_ramp(law: Law) -> float:
 
 
 def _coarse(accuracy: Accuracy) -> Accuracy:
-    """The preset draft in place of a finer target; other settings as they are."""
+    """The preset draft instead of a finer target; other settings are unchanged."""
     target = accuracy.target
     return Accuracy.of("draft") if target is not None and target < PRESETS["draft"] else accuracy

@@ -22,7 +22,7 @@ from eel_dynamics.runs.swim_request import SwimRequest
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 
 REPORT_PERIOD = 1.0  # s of wall time between two reports, and before the first
-LONG = 60.0  # s of wall time: a longer run gives a warning
+LONG = 60.0  # s of wall time: a longer run causes a warning
 
 
 def simulate(
@@ -47,30 +47,30 @@ def simulate(
 ) -> Run:
     """Simulate `law` for `duration` [s], with samples every `sample_period` [s] from t = 0 on.
 
-    The steps in time do not depend on the sampling. `ValueError` names what does not fit. `SimulationStopped` carries
-    the samples so far as `run`.
+    The steps in time do not depend on the sampling. `ValueError` names a bad argument. `SimulationStopped` carries the
+    samples so far as `run`.
 
     Args:
         law: a `Law`, a `SampledLaw`, a function K(t, X) (`eel_gaits.sampled`), or a file (`eel_gaits.read_motion`).
         duration: [s], or "settled": a whole number of periods until the gait has settled (`runs.settled_duration`), at
             most 100.
         body, scene, accuracy: as in `Simulation`.
-        sample_period: [s]; None for 0.05 s, or a 20th of the law's shortest period where that is less. The last sample
-            is at the last whole multiple of it: at 0.9 s for a duration of 1 s and a sample period of 0.3 s.
+        sample_period: [s]; None for 0.05 s, or a 20th of the law's shortest period if that is less. The last sample is
+            at its last whole multiple: at 0.9 s for a duration of 1 s and a sample period of 0.3 s.
         stations: number of equidistant stations, or their X (M,) [m].
         position: (3,) [m], of the head at the start.
         orientation: (4,) x y z w, at the start.
         twist: (6,) (Omega, V) [rad/s, m/s], in the head's axes, at the start.
         load: whether to compute the water's load along the body too.
-        estimate: whether to measure the error (`Run.error_estimate`). Where it exceeds the target, a finer run is
+        estimate: whether to estimate the error (`Run.error_estimate`). If it exceeds the target, a finer run is
             returned, or a warning given if none is fine enough.
         most_evaluations: of the head's dynamics per simulated second. A law that needs more is refused, or stopped.
         progress: progress(time, left) is called once a second with the simulation time reached [s] and the remaining
-            wall time [s], by the rate of the last seconds; NaN until that is good to a factor of 2. Without it, a run
-            longer than a minute gives a warning.
-        flow: how the water moves by itself, beside the scene's current (`Gust`, `Wave` ...); None: not at all.
-        robot: joints, tails or muscles that bend by themselves. The law then is what its servos are asked to follow,
-            and `Run.joint_angle` and the like are what they do; None: the law is imposed.
+            wall time [s], from the rate of the last seconds; NaN until that is good to a factor of 2. Without it, a run
+            longer than a minute causes a warning.
+        flow: the water's own motion, added to the scene's current (`Gust`, `Wave` ...); None: none.
+        robot: joints, tails or muscles that move dynamically. The law is then the reference of its servos, and
+            `Run.joint_angle` and the like are their motion; None: the law is imposed.
         fins: a list of `Fin`, and of pairs of them (`Fin.pair`); None: none.
     """
     setup = SimulationSetup.of(
@@ -97,9 +97,9 @@ def simulate(
 
 
 class ProgressMonitor:
-    """Tells how far a run of `duration` [s] has come, once a second, and the wall time that is left (`Forecast`).
+    """Reports once a second how far a run of `duration` [s] has come, and the remaining wall time (`Forecast`).
 
-    progress: as in `simulate`; without it, a run longer than `LONG` gives one warning.
+    progress: as in `simulate`; without it, a run longer than `LONG` causes one warning.
     """
 
     def __init__(self, duration: float, progress: Callable[[float, float], None] | None):

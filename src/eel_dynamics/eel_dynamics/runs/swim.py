@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A swim as a value: what swims, by which law, in which scene and water, and for how long."""
+"""A swim as one value: swimmer, law, scene, water, and duration."""
 
 from typing import Any, NamedTuple, Self
 
@@ -18,13 +18,13 @@ from eel_dynamics.runs.simulate import simulate
 from eel_dynamics.simulation.simulation import Simulation
 
 AT_REST = InitialState(np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), np.zeros(6))
-OF_SWIMMER = "body", "scene", "accuracy", "stations", "flow", "robot", "fins"  # fields that are its arguments
+OF_SWIMMER = "body", "scene", "accuracy", "stations", "flow", "robot", "fins"  # arguments of `Simulation`
 
 
 class Swim(NamedTuple):
-    """What `simulate` takes, as one value. Every field but the first four has a default."""
+    """The arguments of `simulate` as one value. Every field but the first four has a default."""
 
-    law: Any  # Law or SampledLaw; None in what several swims share
+    law: Any  # Law or SampledLaw; None in settings shared by several swims
     body: Body
     scene: Scene
     accuracy: Any  # as in `simulate`
@@ -34,22 +34,22 @@ class Swim(NamedTuple):
     fins: tuple[Fin, ...] = ()
     duration: float | str = 10.0  # s, or "settled"
     sample_period: float | None = None  # s
-    stations: Any = 51  # how many, or their X [m]
-    gait: Settings | None = None  # what gave the law, where a gait did
-    body_file: str = ""  # where the body is from, if from a file
-    robot_file: str = ""  # where the robot is from, if from a file
+    stations: Any = 51  # number, or their X [m]
+    gait: Settings | None = None  # the settings of the gait that gave the law, if one did
+    body_file: str = ""  # the body's file, if any
+    robot_file: str = ""  # the robot's file, if any
 
     def run(self, **how: Any) -> Run:
-        """The run. how: further arguments of `simulate`, or other ones. `SimulationStopped`: it cannot go on."""
+        """The run. how: further or changed arguments of `simulate`. `SimulationStopped` if it cannot go on."""
         own = {"duration": self.duration, "sample_period": self.sample_period} | self.swimmer
         return simulate(self.law, **own | how)
 
     def simulation(self, **how: Any) -> Simulation:
-        """The swimmer at its start. how: further arguments of `Simulation`, or other ones."""
+        """The swimmer at its start. how: further or changed arguments of `Simulation`."""
         return Simulation(**self.swimmer | {"law": self.law} | how)
 
     def with_gait(self, **numbers: Any) -> Self:
-        """The same with other `numbers` of the gait. `ValueError` for a law that no gait gave."""
+        """The same with changed `numbers` of the gait. `ValueError` if no gait gave the law."""
         if self.gait is None:
             raise ValueError(f"law {shown(getattr(self.law, 'name', None))} has no numbers: no gait gave it")
         gait = self.gait.changed(numbers)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A swimmer that is to swim, as a value: `simulate`, batches, companions and repetitions of a run all make one."""
+"""A requested swim as a value: `simulate`, batches, companions and repetitions of a run all make one."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -23,13 +23,13 @@ from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
 
-LEAST_COMPARED = 40  # gaps between the instants at which a robot's torque is compared
+LEAST_COMPARED = 40  # least number of intervals between instants at which a robot's torque is compared
 
 Kind = TypeVar("Kind", bound=RunData)
 
 
 class SwimResult(NamedTuple, Generic[Kind]):
-    """A run, and why it stopped before its end, if it did."""
+    """A run, and the reason if it stopped before its end."""
 
     run: Kind
     compared: Kind  # the run at all instants of the request, for the estimate of its error
@@ -38,10 +38,10 @@ class SwimResult(NamedTuple, Generic[Kind]):
 
 
 class SwimRequest(NamedTuple, Generic[Kind]):
-    """A swimmer that swims by `law`, the times (T,) [s] of its samples, and whether to record wrench and load.
+    """A swimmer with its `law`, the times (T,) [s] of its samples, and whether to record wrench and load.
 
-    kind: class of the run. estimate: whether to measure its error, and to make it finer where it misses its target;
-    every: so many instants are then observed for each sample.
+    kind: class of the run. estimate: whether to estimate its error, and to refine it if that exceeds its target. every:
+    number of instants observed per sample in that case.
     """
 
     kind: type[Kind]
@@ -63,7 +63,7 @@ class SwimRequest(NamedTuple, Generic[Kind]):
         load: bool = False,
         estimate: bool = False,
     ) -> "SwimRequest[Kind]":
-        """The request of these arguments of `simulate`. `ValueError` as there."""
+        """The request from these arguments of `simulate`. `ValueError` as there."""
         seconds: Any = duration_of(duration, [(motion, setup)])  # a text is refused below
         law = law_from(motion, seconds, setup.body.length)
         period = default_sample_period([law], seconds) if sample_period is None else sample_period
@@ -74,14 +74,14 @@ class SwimRequest(NamedTuple, Generic[Kind]):
         return request.to_refine() if estimate else request
 
     def changed(self, **changes: Any) -> "SwimRequest[Kind]":
-        """The same with other fields of its `setup`."""
+        """The same with changed fields of its `setup`."""
         return self._replace(setup=replace(self.setup, **changes))
 
     def to_refine(self) -> "SwimRequest[Kind]":
-        """The same for a run whose error is measured.
+        """The same for a run whose error is estimated.
 
-        The torque of a robot jumps where motors and stops reach their limits: an error there is seen only by instants
-        that lie close together.
+        The torque of a robot jumps when motors and stops reach their limits. Only instants that are close together show
+        an error there.
         """
         gaps, accuracy = len(self.times) - 1, self.setup.accuracy
         every = -(-LEAST_COMPARED // gaps) if self.setup.robot is not None and self.wrench and gaps else 1
@@ -91,24 +91,24 @@ class SwimRequest(NamedTuple, Generic[Kind]):
 
     @property
     def slow_motors(self) -> SlowMotors | None:
-        """Motors that cannot follow the law, if there are any."""
+        """Motors that cannot follow the law, if any."""
         return slow_motors(self.setup.modes, self.law, float(self.times[-1]))
 
     @property
     def instants(self) -> np.ndarray:
-        """(N,) [s], at which the swimmer is observed: the samples, and those between them."""
+        """(N,) [s], at which the swimmer is observed: the samples, and instants between them."""
         if self.every == 1:
             return self.times
         between = np.arange(self.every) / self.every
         return np.append(self.times[:-1, None] + np.diff(self.times)[:, None] * between, self.times[-1])
 
     def march(self, accuracy: Accuracy | None = None) -> March:
-        """Its march at the start, with other settings if `accuracy` is given."""
+        """Its march at the start, with the settings `accuracy` if given."""
         setup = self.setup if accuracy is None else replace(self.setup, accuracy=accuracy)
         return March(replace(setup, until=float(self.times[-1])), self.law)
 
     def swim(self, march: March, look: Callable[[float], None] | None = None) -> SwimResult[Kind]:
-        """Swim it by a `march` of its own, at its start. look: as in `Simulation.record`."""
+        """Swim with this `march`, which must be at its start. look: as in `Simulation.record`."""
         instants, setup, start = self.instants, self.setup, march.energy_at_start
         out, works, done, stopped = march.record(instants, self.wrench, self.load, look)
         steps, _, evaluations = march.core.counts
@@ -122,13 +122,13 @@ class SwimRequest(NamedTuple, Generic[Kind]):
         return SwimResult(run, compared, start, stopped)
 
     def outcome(self, look: Callable[[float], None] | None = None) -> SwimResult[Kind]:
-        """Swim it, and again for the estimate of its error where that is wanted."""
+        """Swim, and swim again for the error estimate if that is wanted."""
         swim = self.swim(self.march(), look)
         found: SwimResult[Kind] = with_error_estimate(swim, self) if self.estimate else swim
         return found
 
     def swim_to_end(self, look: Callable[[float], None] | None = None) -> Kind:
-        """The run. `SimulationStopped`, with the samples so far as its `run`, where it does not come to its end."""
+        """The run. `SimulationStopped`, with the samples so far as its `run`, if it stops early."""
         swim = self.outcome(look)
         if (stopped := swim.stopped) is None:
             return swim.run
@@ -151,9 +151,9 @@ def simulated_again(
     finer: int = 1,
     load: bool = False,
 ) -> Kind:
-    """The swim of `run` with another law or accuracy, `finer` samples, or its `load`; its error is not estimated.
+    """The swim of `run` with another law or accuracy, `finer` samples, or its `load`; without an error estimate.
 
-    `ValueError` if it began later.
+    `ValueError` if the run begins after t = 0.
     """
     request = request_again(run, law, accuracy, most_evaluations, finer, load)
     return request.swim_to_end().in_axes(run.axes)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a body is given along X: its half-axes, and numbers such as its mass per length.
+"""Data of a body along X: its half-axes, and numbers such as its mass per length.
 
-A half-axis grows like sqrt(X) at a rounded nose. Only its square is smooth there.
+At a rounded nose a half-axis grows like sqrt(X), and only its square is smooth.
 """
 
 from collections.abc import Sequence
@@ -16,14 +16,14 @@ from numpy.typing import ArrayLike
 
 from eel_dynamics.model.body.shapes import piecewise, series_through, values_along, warn_of_details
 
-ROUND_OFF = 1e-12  # of the greatest value, by which one may be below a minimum
+ROUND_OFF = 1e-12  # of the greatest value: tolerance below a minimum
 Bounds = Sequence[float]  # m: 0, kinks, length; between two of them a field is smooth
 
 
 class AlongBody:
     """Values along X [m], smooth between the `bounds`.
 
-    given: a number, a function of X, or an array at the points `x` (M,) [m], between which monotone cubics go.
+    given: a number, a function of X, or an array at the points `x` (M,) [m], interpolated by monotone cubics.
     `ValueError` for values that are not finite, or below `minimum`.
     """
 
@@ -51,7 +51,7 @@ class AlongBody:
             raise ValueError(f"{name} must be {wanted}, got {values[first]:.6g} at X = {at[first]:.6g} m")
 
     def slope(self, x: np.ndarray) -> np.ndarray:
-        """Derivative by X at `x` [m]; of a function, from the polynomial through it on each panel."""
+        """Derivative with respect to X at `x` [m]; of a function, from the polynomial through it on each panel."""
         if self._cubics is None and not callable(self.given):
             return np.zeros(np.shape(x))
         return piecewise(*self._slopes, np.clip(x, 0.0, self._length))
@@ -71,8 +71,8 @@ class AlongBody:
 class HalfAxis:
     """A half-axis along X [m]: a function that returns m, or an array [m] at the points `x` (M,) [m].
 
-    Monotone cubics (Fritsch and Butland) go through the squares of an array. `ValueError` for a half-axis that is not 0
-    at a nose that is not `blunt`, or not positive inside.
+    The squares of an array are interpolated by monotone cubics (Fritsch and Butland). `ValueError` unless the half-axis
+    is 0 at a nose that is not `blunt`, and positive inside.
 
     Attributes:
         given: the function, or X and values (2, M).
@@ -101,7 +101,7 @@ class HalfAxis:
         return np.asarray(np.maximum(0.0, piecewise(*self._cubics, x)))
 
     def slope(self, x: np.ndarray) -> np.ndarray:
-        """Derivative of the square by X [m] at `x` [m]; of a function, from the polynomial through it on each panel."""
+        """Derivative of the square by X [m] at `x` [m]; of a function, from its polynomial on each panel."""
         return piecewise(*self._slopes, np.clip(x, 0.0, self._bounds[-1]))
 
     @cached_property
@@ -110,7 +110,7 @@ class HalfAxis:
 
 
 def _slopes_of(function: Any, cubics: Any, bounds: Bounds) -> tuple[list[Any], Any]:
-    """Derivatives of the `cubics`, or of the polynomials through a `function` of X, and where they start."""
+    """Derivatives of the `cubics`, or of the polynomials through a `function` of X, and their starting points."""
     if cubics is not None:
         return [piece.derivative() for piece in cubics[0]], cubics[1]
     return [each.deriv() for each in series_through(function, bounds)], bounds
@@ -129,7 +129,7 @@ def _checked_values(name: str, given: Any, x: np.ndarray) -> np.ndarray:
 
 
 def _cubics(x: np.ndarray, values: np.ndarray, bounds: Bounds) -> tuple[list[Any], np.ndarray]:
-    """Monotone cubics (Fritsch and Butland), one between two kinks that are points, and where they start."""
+    """Monotone cubics (Fritsch and Butland), one between two kinks that are data points, and their starting points."""
     from scipy.interpolate import PchipInterpolator
 
     near = [int(np.argmin(np.abs(x - kink))) for kink in bounds[1:-1] if np.min(np.abs(x - kink)) < 1e-9 * x[-1]]

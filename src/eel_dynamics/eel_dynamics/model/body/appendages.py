@@ -7,9 +7,9 @@ axes, its force is
     law "axis":  F_i = -1/2 rho_f drag_i |w_i| w_i     bars across the flow: each component by itself
     law "speed": F_i = -1/2 rho_f drag_i |w| w_i       blunt blocks
 
-(eel_core/loads/appendages.hpp). It has drag alone: its mass and volume belong to the body's mass per length, offset and
-trim. No row stands for a face that is a section's own, which `lateral_drag` has, for a nose that has `nose_drag`, or
-for a base that has `base_drag`. In a planar scene z counts as 0.
+(eel_core/loads/appendages.hpp). It has only drag: its mass and volume belong to the body's mass per length, offset and
+trim. Do not add one for a face that is a section's own (`lateral_drag` contains it), for a nose with `nose_drag`, or
+for a base with `base_drag`. In a planar scene z counts as 0.
 """
 
 from collections.abc import Iterable
@@ -24,14 +24,14 @@ from eel_dynamics.model.body.grid import Grid
 from eel_dynamics.model.scene import Scene
 
 LAWS = "axis", "speed"
-MOST_APPENDAGES = 1000  # of a body
-APART = 1e-9  # of the body's length: places that are closer count as one
+MOST_APPENDAGES = 1000  # per body
+APART = 1e-9  # of the body's length: closer places count as one
 
 
 @documented
 @dataclass(frozen=True)
 class Appendage(Quantities):
-    """A drag area fixed to a section. Immutable; `ValueError` names what does not fit."""
+    """A drag area fixed to a section. Immutable; `ValueError` names a bad field."""
 
     what: ClassVar[str] = "appendage"
 
@@ -75,7 +75,7 @@ def checked_appendages(given: Any, length: float) -> tuple[Appendage, ...]:
 
 
 def core_appendages(body: Any, scene: Scene, grid: Grid, x: np.ndarray) -> list[Any]:
-    """The appendages and the tail's base of `body` for the compiled mechanics; stations at `x` (M,) [m]."""
+    """The appendages and the tail's base of `body` for the core. x (M,) [m]: stations."""
     if not scene.resistive:
         return []
     near, half_rho, rows = 10.0 * APART * body.length, 0.5 * scene.fluid_density, []

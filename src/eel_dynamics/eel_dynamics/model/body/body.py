@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The body: elliptic sections along a straight reference line (sections 3.3 and 7.2.1), homogeneous unless its mass is
-given.
+"""The body: elliptic sections along a straight reference line (sections 3.3 and 7.2.1). It is homogeneous unless its
+mass is given.
 
 A section at X has the half-height a(X) along E3 (its major axis on the paper's robot) and the half-width b(X) along E2.
 X runs from 0 at the nose to the length at the tail. The nose is pointed, a(0) = b(0) = 0, or blunt; neither sheds a
@@ -33,61 +33,61 @@ from eel_dynamics.model.body.panels import panels_of
 from eel_dynamics.model.body.shapes import KINKS, NamedHalfAxis
 from eel_dynamics.model.equality import same
 
-PANEL_OF_NOSE = 0.05  # of the length, where a body names no kinks
-LONGEST = 100.0  # m, of a body from a file; one that is longer may be in mm
-PROFILES = ("lateral_drag", "vertical_drag", "lateral_added_mass")  # coefficients that may go along the body
+PANEL_OF_NOSE = 0.05  # of the length, for a body without named kinks
+LONGEST = 100.0  # m: a longer body in a file may be in mm
+PROFILES = ("lateral_drag", "vertical_drag", "lateral_added_mass")  # coefficients that may vary along the body
 DRAGS = ("roll_drag", "friction_factor", "round_added_mass", "joint_drag", "base_drag", "appendage_factor")
 NUMBERS = ("density", "nose_added_mass", "nose_drag", *DRAGS, *PROFILES)
-COLUMNS, WHAT = ("x", "half_width", "half_height"), "body file "  # of a body in a file; WHAT begins an error
-MASSES = "mass_per_length", "centre_of_mass_offset"  # columns that it may have besides
+COLUMNS, WHAT = ("x", "half_width", "half_height"), "body file "  # columns of a body file; WHAT begins an error
+MASSES = "mass_per_length", "centre_of_mass_offset"  # its optional columns
 UNITS = {**dict.fromkeys((*COLUMNS, MASSES[1]), "m"), MASSES[0]: "kg/m"}
-WATER = 1000.0  # kg/m^3, density of a body that gives none
-THICK = 0.25  # of the greatest area: in thinner sections, which weigh little, the centre of mass may lie outside
-LARGEST = 1e6  # m, of a number in it
-POINTED_NOSE, BLUNT_NOSE = (0.32, 0.036), (4.0 / (3.0 * np.pi), 0.4)  # k and c_p: as printed; of a disc on one side
-# (Lamb, Hydrodynamics, art. 102), and of a blunt cylinder along the flow less friction and base (Hoerner)
-SHARP = 1e-3  # of the body's greatest half-axis: a half-axis at the tail that counts as none
+WATER = 1000.0  # kg/m^3, default density of a body
+THICK = 0.25  # of the greatest area: in thinner sections, which weigh little, the centre of mass may be outside
+LARGEST = 1e6  # m, of a number in a file
+POINTED_NOSE, BLUNT_NOSE = (0.32, 0.036), (4.0 / (3.0 * np.pi), 0.4)  # k and c_p: as printed; for one side of a disc
+# (Lamb, Hydrodynamics, art. 102), and for a blunt cylinder along the flow without friction and base (Hoerner)
+SHARP = 1e-3  # of the body's greatest half-axis: a smaller half-axis at the tail counts as 0
 
 
 class Body:
     """Geometry and mass of a swimmer, and the coefficients of its drag. Immutable.
 
-    `ValueError` names the argument that does not fit, and its value.
+    `ValueError` names the bad argument and its value.
 
     Args:
-        half_width, half_height: functions of X [m] that return m, or arrays [m] at `x`. A monotone cubic between the
-            kinks interpolates the squares of arrays.
+        half_width, half_height: functions of X [m] that return m, or arrays [m] at `x`. The squares of arrays are
+            interpolated by a monotone cubic between the kinks.
         length: [m]; with arrays it is the last `x`.
         x: [m], shape (M,), M >= 4, rising from 0 to the length; with arrays only.
         kinks: X [m] inside (0, length) where a half-axis or one of its derivatives jumps.
         nose: half-axes and length (a_o, b_o, c_o) [m] of the cap in m_o = rho_f pi k a_o b_o c_o and
-            k_o = pi c_p a_o b_o; by default the half-axes at the end of the first panel, and its length. Of a blunt
-            nose those at X = 0, and sqrt(a_o b_o).
-        blunt_nose: the section at X = 0 need not be 0. It sheds no wake: the water before it has no momentum, so the
-            face takes the force - V1 M_f V of the water that it sets in motion, and the internal force at X = 0 is
-            that less the nose's load.
+            k_o = pi c_p a_o b_o; by default the half-axes at the end of the first panel, and its length. For a blunt
+            nose the half-axes at X = 0, and sqrt(a_o b_o).
+        blunt_nose: the section at X = 0 may be larger than 0. It sheds no wake: the water ahead has no momentum, so the
+            face takes the force - V1 M_f V of the water that it sets in motion. The internal force at X = 0 is that
+            force minus the nose's load.
         density: [kg/m^3], of a homogeneous body; by default that of water, 1000.
-        mass_per_length: m(X) [kg/m] in place of a density: a number, a function of X that is smooth between the kinks,
-            or an array at `x`. Each section's mass lies as that of a homogeneous one.
-        centre_of_mass_offset: h(X) [m], how far the centre of mass lies below the section's centre, along its axis 3;
-            likewise. Gravity acts on it in a `Scene(weight=True)`; what it means for the inertia holds always.
-        nose_added_mass: k; by default 0.32, of a blunt nose 4/(3 pi), that of a disc on one side.
-        nose_drag: c_p; by default 0.036, of a blunt nose 0.4.
-        roll_drag, lateral_drag, vertical_drag: c_1, c_2, c_3. The last two may go along the body as a mass per length
-            may, or be "by shape": by the roundness of each section (eel_dynamics/model/body/hull.py).
-        friction_factor: times the friction of a smooth plate at rest: a body that beats has a thinner boundary layer
+        mass_per_length: m(X) [kg/m] instead of a density: a number, a function of X that is smooth between the kinks,
+            or an array at `x`. Each section's mass is distributed as in a homogeneous one.
+        centre_of_mass_offset: h(X) [m], depth of the centre of mass below the section's centre, along its axis 3;
+            given likewise. Gravity acts on it in a `Scene(weight=True)`; its effect on the inertia is always included.
+        nose_added_mass: k; by default 0.32, for a blunt nose 4/(3 pi), one side of a disc.
+        nose_drag: c_p; by default 0.036, for a blunt nose 0.4.
+        roll_drag, lateral_drag, vertical_drag: c_1, c_2, c_3. The last two may vary along the body like a mass per
+            length, or be "by shape": by the roundness of each section (eel_dynamics/model/body/hull.py).
+        friction_factor: times the friction of a smooth plate at rest: a beating body has a thinner boundary layer
             (Lighthill, Proc. R. Soc. B 179 (1971): up to 4), and joints and gaps are rough.
         lateral_added_mass: times that of the ellipse, along axis 2: below 1 for gaps between links and round ends, 1.51
-            for a square section in place of the circle within it (Newman, Marine Hydrodynamics, 1977, table 4.3). It
-            may go along the body.
-        round_added_mass: C_a, of a circular section by that of potential flow, along axes 2 and 3; a section between
-            plate and circle has 1 - (1 - C_a) s^2 with its roundness s. 1 where the flow is attached; 0.2 in separated
+            for a square section instead of its inscribed circle (Newman, Marine Hydrodynamics, 1977, table 4.3). It may
+            vary along the body.
+        round_added_mass: C_a, added mass of a circular section / that of potential flow, along axes 2 and 3; a section
+            between plate and circle has 1 - (1 - C_a) s^2 with its roundness s. 1 for attached flow; 0.2 for separated
             cross flow.
         joint_drag, link_length: c_s and p [m] of the drag of links, -1/2 rho_f c_s (A / p) abs(V) V1 per length: 0 for
-            one smooth body, 0.87 where each link is a blunt cylinder alone.
-        base_drag: c_b, of the area at the tail's end, -1/2 rho_f c_b A(l) V1 abs(V1) there.
-        appendages: drag areas fixed to sections, each an `Appendage`. appendage_factor: times all of these areas.
-        name: what messages call the body.
+            a smooth body, 0.87 if each link is an isolated blunt cylinder.
+        base_drag: c_b, for the area at the tail's end, -1/2 rho_f c_b A(l) V1 abs(V1) there.
+        appendages: `Appendage`s, drag areas fixed to sections. appendage_factor: times all of these areas.
+        name: of the body in messages.
     """
 
     def __init__(
@@ -190,17 +190,17 @@ class Body:
 
     @property
     def lateral_drag(self) -> Any:
-        """c_2 as it was given."""
+        """c_2 as given."""
         return self._given("lateral_drag")
 
     @property
     def vertical_drag(self) -> Any:
-        """c_3 as it was given."""
+        """c_3 as given."""
         return self._given("vertical_drag")
 
     @property
     def lateral_added_mass(self) -> Any:
-        """The factor on the added mass along axis 2, as it was given."""
+        """The factor on the added mass along axis 2, as given."""
         return self._given("lateral_added_mass")
 
     def _given(self, name: str) -> Any:
@@ -216,7 +216,7 @@ class Body:
         return by_shape[0] if lateral is None else lateral(x), by_shape[1] if vertical is None else vertical(x)
 
     def added_mass_factors(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """By how much the added mass along axes 2 and 3 differs from the ellipse's, (n,) each, at `x` (n,) [m]."""
+        """Factors (n,) of the added mass along axes 2 and 3, relative to the ellipse's, at `x` (n,) [m]."""
         beta = (
             attached(self.round_added_mass, *self._squares_behind(x))
             if self.round_added_mass != 1.0
@@ -231,8 +231,8 @@ class Body:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives by X of squares of half-axes times `added_mass_factors`, (n,) each [m], at `x` (n,) [m].
 
-        The square of the half-height goes with axis 2, and that of the half-width with axis 3; the other way round
-        where they are `swapped`. squares: those of `squares`, at `x`.
+        The square of the half-height belongs to axis 2, and that of the half-width to axis 3; the other way round if
+        they are `swapped`. squares: those of `squares`, at `x`.
         """
         a, b, a_slope, b_slope = squares
         along2, along3 = ((b, b_slope), (a, a_slope)) if swapped else ((a, a_slope), (b, b_slope))
@@ -253,12 +253,12 @@ class Body:
         return factor(x) * slopes2 + factor.slope(x) * along2[0] * beta, slopes3
 
     def _squares_behind(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """a^2 and b^2 [m^2] at `x` (n,) [m], or right behind the nose, whose ratio has a limit there."""
+        """a^2 and b^2 [m^2] at `x` (n,) [m], or just behind the nose, where their ratio has a limit."""
         behind = np.maximum(x, 1e-9 * self.length)
         return self._half_height.square(behind), self._half_width.square(behind)
 
     def mass_per_length(self, x: ArrayLike, density: float | None = None) -> np.ndarray:
-        """m(X) [kg/m] at `x` [m]; `density` [kg/m^3]: of a scene, in place of a homogeneous body's own."""
+        """m(X) [kg/m] at `x` [m]. density [kg/m^3]: of a scene, instead of a homogeneous body's own."""
         if self._mass is None:
             density = self._density if density is None else density
             return np.asarray(density * (np.pi * self.half_height(x) * self.half_width(x)))
@@ -267,12 +267,12 @@ class Body:
         return self._mass(x)
 
     def centre_of_mass_offset(self, x: ArrayLike) -> np.ndarray:
-        """h(X) [m] at `x` [m]: how far the centre of mass lies below the section's centre."""
+        """h(X) [m] at `x` [m]: depth of the centre of mass below the section's centre."""
         return self._offset(x)
 
     @property
     def half_axes(self) -> dict[str, Any]:
-        """The half-axes as they were given: functions of X, or arrays (2, M) of X and half-axis [m]."""
+        """The half-axes as given: functions of X, or arrays (2, M) of X and half-axis [m]."""
         return {"half_width": self._half_width.given, "half_height": self._half_height.given}
 
     @property
@@ -281,13 +281,14 @@ class Body:
         return self._half_width.breaks
 
     def squares(self, x: ArrayLike) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """a^2, b^2 [m^2] and their derivatives by X [m] at `x` (M,) [m]. A kink has the derivative ahead of it."""
+        """a^2, b^2 [m^2] and their derivatives by X [m] at `x` (M,) [m]. At a kink, the derivative ahead of it."""
         at, height, width = np.asarray(x, dtype=float), self._half_height, self._half_width
         return height.square(at), width.square(at), height.slope(at), width.slope(at)
 
     @cached_property
     def pointed_tail(self) -> bool:
-        """Whether the tail ends in an edge or a point. A half-axis is zero there; the perimeter goes like its root."""
+        """Whether the tail ends in an edge or a point: there a half-axis is 0, and the perimeter behaves like its
+        root."""
         squares = np.array(self.squares(np.array([0.5 * self.length, self.length]))[:2])
         return bool(np.min(squares[:, 1]) <= SHARP**2 * np.max(squares))
 
@@ -300,7 +301,7 @@ class Body:
         return self.integral(lambda x: np.pi * self.half_width(x)[None] * self.half_height(x))[0]
 
     def integral(self, fields: Callable[[np.ndarray], np.ndarray]) -> list[float]:
-        """Integrals of `fields`, from X (n,) [m] to (m, n), over the body; smooth between its kinks and data points."""
+        """Integrals of `fields`, from X (n,) [m] to (m, n), over the body; fields are smooth between kinks and data."""
         grid = Grid.of(panels_of(self, resolution=40))
         values = with_moments(fields, grid, self.breaks) if len(self.breaks) else fields(grid.x)
         return list(map(float, values @ grid.weight))
@@ -311,14 +312,14 @@ class Body:
         return self.mass_in(None)
 
     def mass_in(self, density: float | None) -> float:
-        """Mass [kg] where a scene has this `density` [kg/m^3] of the body; None: its own."""
+        """Mass [kg] with the `density` [kg/m^3] that a scene sets; None: the body's own."""
         if self._mass is None:
             return self.volume * (self._density if density is None else density)
         return self.integral(lambda x: self.mass_per_length(x, density)[None])[0]
 
     @property
     def density(self) -> float:
-        """Density [kg/m^3]; the mean one of a body with its own mass per length."""
+        """Density [kg/m^3]; the mean density of a body with its own mass per length."""
         return self._density if self._mass is None else self.mass / self.volume
 
     @property
@@ -334,7 +335,7 @@ class Body:
         return shape | own | masses
 
     def changed(self, **changes: Any) -> "Body":
-        """The same body with other `arguments`."""
+        """The same body with changed `arguments`."""
         own = self.arguments
         if unknown := [name for name in changes if name not in own]:
             raise ValueError(f"body has no {shown(unknown[0])}, it has: {', '.join(own)}")
@@ -342,7 +343,7 @@ class Body:
             own["density"] = None
         return Body(**own | changes)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> "Body":  # it never changes
+    def __deepcopy__(self, memo: dict[int, Any]) -> "Body":  # immutable
         return self
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -375,7 +376,7 @@ class Body:
 
     @staticmethod
     def spindle(length: float, slenderness: float) -> "Body":
-        """A body with a round nose and a blunt tail of half the height, twice as high as wide.
+        """A body with a round nose and a blunt tail of half the height. It is twice as high as wide.
 
         length: [m]. slenderness: length / (2 x greatest half-height).
         """
@@ -403,13 +404,13 @@ class Body:
         mass: float | None = None,
         **others: Any,
     ) -> "Body":
-        """A body of `number` links of one section, `length` [m] long in all, with the hull numbers of such a robot.
+        """A body of `number` links of one section, `length` [m] long in all, with the hull coefficients of such robots.
 
-        half_width, half_height: along axes 2 and 3 [m]. joints: "flush", or the drag coefficient c_s of a link by
-        itself, 0 to 0.87; there is no default, as nothing but a test tells it (`eel identify`). nose: "blunt", or the
+        half_width, half_height: along axes 2 and 3 [m]. joints: "flush", or the drag coefficient c_s of an isolated
+        link, 0 to 0.87; there is no default, as only a test determines it (`eel identify`). nose: "blunt", or the
         length [m] of a quarter ellipse. tail: "blunt", or the length [m] over which its width falls to an edge. mass:
-        [kg]; None: that of the water in its place. others: further arguments of `Body`, which take the place of its
-        own. `ValueError` names what does not fit.
+        [kg]; None: that of the displaced water. others: further arguments of `Body`, which override these. `ValueError`
+        names a bad argument.
         """
         own = arguments_of_links(length, number, half_width, half_height, joints, nose, tail)
         body = Body(**own | others)
@@ -424,10 +425,10 @@ class Body:
 
     @staticmethod
     def from_file(path: str | os.PathLike[str]) -> "Body":
-        """A body from columns x, half_width, half_height of a table with a header, or an .npz file, in m or as their
-        names say: half_width_mm.
+        """A body from columns x, half_width, half_height of a table with a header, or an .npz file, in m or in the
+        units of their names: half_width_mm.
 
-        It may have the columns mass_per_length [kg/m] and centre_of_mass_offset [m] too.
+        It may also have the columns mass_per_length [kg/m] and centre_of_mass_offset [m].
         """
         if not isinstance(path, (str, os.PathLike)):
             raise ValueError(f"body file must be a path, got {shown(path)}")
@@ -452,7 +453,7 @@ class Body:
         return tuple(values.tolist())
 
     def _checked_offset(self) -> bool:
-        """Whether the centre of mass lies off the axis. `ValueError` where it lies outside the section."""
+        """Whether the centre of mass is off the axis. `ValueError` if it is outside the section."""
         x = np.linspace(0.0, self.length, 257)
         a, h = self.half_height(x), self._offset(x)
         area = a * self.half_width(x)
@@ -466,7 +467,7 @@ class Body:
         return bool(h.any())
 
     def _panel_ends(self, bounds: tuple[float, ...]) -> tuple[float, ...]:
-        """The kinks; where appendages lie; and where sections by shape change from high to wide."""
+        """The kinks, the places of appendages, and the places where sections by shape change from high to wide."""
         ends = list(bounds[1:])
         by_shape = self.round_added_mass != 1.0 or None in self._profiles.values()
         for place in (
@@ -490,7 +491,7 @@ class Body:
 
 
 def checked_body(body: Any) -> Body:
-    """`body`, if it is a `Body`; for None that of Boyer, Porez and Leroyer 2010. `ValueError` for anything else."""
+    """`body`, if it is a `Body`; for None the body of Boyer, Porez and Leroyer 2010. `ValueError` for anything else."""
     if isinstance(body, (str, os.PathLike)):
         raise ValueError(
             f"body must be a Body, got {shown(body)}: Body.from_file(...) reads a file, and names are class methods "

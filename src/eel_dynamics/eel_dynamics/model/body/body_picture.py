@@ -10,7 +10,7 @@ POINTS = 400
 
 
 def picture_of_body(body: Any) -> Any:
-    """A matplotlib figure of the outlines from the side and from above, one over the other, in one scale."""
+    """A matplotlib figure of the outlines from the side and from above, one above the other, to the same scale."""
     x = body.length * np.sin(np.linspace(0.0, np.pi / 2, POINTS)) ** 2  # dense at the ends
     made, ((axes,),) = figure(6.4, 1.9)
     for half, name, colour in (

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Nodes along the body, and the matrices that integrate from the nose to each of them.
 
-The body is cut into panels at its kinks, so that every field is smooth inside a panel. A panel carries `p` right Radau
-points. The last one is the panel's end. So the tail is a node, and each panel starts where the one before ended. The
+The body is cut into panels at its kinks, so that every field is smooth inside a panel. A panel has `p` right Radau
+points. The last one is the panel's end. So the tail is a node, and each panel starts where the previous one ends. The
 integral of the polynomial through the points (collocation; Hairer and Wanner, Solving Ordinary Differential Equations
 II, section IV.5) is exact to degree 2p - 2 over a panel, and to degree p - 1 up to a point inside it.
 
@@ -35,7 +35,7 @@ class Panel:
     graded: str = ""
 
     def locate(self, fraction: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-        """X [m] at the panel's variable `fraction` in (0, 1), and the derivative [m] of X by it."""
+        """X [m] at the panel's variable `fraction` in (0, 1), and the derivative [m] of X with respect to it."""
         fraction = np.asarray(fraction, dtype=float)
         length = self.end - self.start
         if self.graded == "start":
@@ -53,7 +53,7 @@ class Panel:
 
 
 class PanelPoints(NamedTuple):
-    """M points along the body, and for each the row that integrates over its panel up to it."""
+    """M points along the body, each with the row that integrates over its panel up to the point."""
 
     matrix: np.ndarray  # (M, p_max) m: the integral from the panel's start is sum_j matrix[i, j] f[first[i] + j]
     first: np.ndarray  # (M,) unsigned, first node of the panel
@@ -123,7 +123,7 @@ class Grid:
         return np.asarray(np.minimum(np.searchsorted(ends, x, side="left"), len(ends) - 1))
 
     def points_at(self, x: np.ndarray, kind: str = "integral") -> PanelPoints:
-        """The points at X = `x` (M,) [m], ascending, with rows that turn nodal values into values there.
+        """The points at X = `x` (M,) [m], ascending, with rows that convert nodal values to values there.
 
         kind "integral": the integral from the start of the panel to X [m]. kind "value": the interpolating polynomial.
         """

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bodies made of links, such as robots are: one elliptic section, joints that drag, blunt ends unless they have a cap.
+"""Bodies of links, like those of robots: one elliptic section, joints with drag, blunt ends unless they have a cap.
 
-Their hull numbers (hull.py): cross flow and added mass by the section's shape, drag of the links, and of the ends. Of
-the ends c_p + c_b is 0.6: a blunt cylinder along the flow has 0.81 and 0.99 (Hoerner), less friction 0.2 to 0.3; a
-robot's coasting gave 0.61 above laminar friction and 0.40 above turbulent (docs/explanation/life.md). That it is split
-2 to 1 is ours.
+Their hull coefficients (hull.py): cross flow and added mass by the section's shape, drag of the links and of the ends.
+For the ends c_p + c_b is 0.6: a blunt cylinder along the flow has 0.81 and 0.99 (Hoerner), minus friction of 0.2 to
+0.3. A coasting robot gave 0.61 above laminar friction and 0.40 above turbulent (docs/explanation/life.md). The split of
+2 to 1 is our own.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from eel_dynamics.model.body.hull import BY_SHAPE, SEPARATED
 
-FLUSH, ALONE = "flush", 0.87  # joints between which no link drags by itself; c_s of blunt cylinders alone
+FLUSH, ALONE = "flush", 0.87  # joints that add no drag of links; c_s of isolated blunt cylinders
 BASE = 0.2  # c_b
 BLUNT = "blunt"
 MOST_LINKS = 64
@@ -26,8 +26,8 @@ OF_LINKS: dict[str, Any] = {"lateral_drag": BY_SHAPE, "vertical_drag": BY_SHAPE,
 
 @dataclass(frozen=True)
 class LinkHalfAxis:
-    """A half-axis of one `size` [m] along a `length` [m]; 0 at X = 0 where a quarter ellipse of `cap` [m] begins it,
-    and at the tail where a straight edge of `edge` [m] ends it."""
+    """A half-axis of one `size` [m] along a `length` [m]. At X = 0 it begins with a quarter ellipse of `cap` [m], and
+    at the tail it ends with a straight edge of `edge` [m]; 0 for none."""
 
     size: float
     length: float
@@ -64,7 +64,7 @@ def arguments_of_links(
     nose: Any = BLUNT,
     tail: Any = BLUNT,
 ) -> dict[str, Any]:
-    """The arguments of a `Body` of links, those of `Body.of_links`. `ValueError` names what does not fit."""
+    """The arguments of a `Body` of links; the parameters are those of `Body.of_links`. `ValueError` names a bad one."""
     length, half_width = positive("body length", length, "m"), positive("body half_width", half_width, "m")
     half_height = positive("body half_height", half_height, "m")
     if not is_finite(number) or number != int(number) or not 1 <= number <= MOST_LINKS:
@@ -85,7 +85,7 @@ def arguments_of_links(
 
 
 def _end(what: str, given: Any, length: float) -> float:
-    """The length [m] of a cap or an edge; 0 of a blunt end."""
+    """The length [m] of a cap or an edge; 0 for a blunt end."""
     if isinstance(given, str) and given == BLUNT:
         return 0.0
     try:

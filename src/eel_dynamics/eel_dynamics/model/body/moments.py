@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Nodal values of a field that is smooth only between the data points of a body.
 
-The derivatives of a spline jump at its data points, which lie inside the panels. A panel's polynomial through values at
-its nodes then misses the integrals of the field. So the nodal values f_j of a panel with p nodes are chosen such that
+The derivatives of a spline jump at its data points, which lie inside the panels. The polynomial through the nodes of a
+panel then does not integrate the field exactly. So the nodal values f_j of a panel with p nodes are chosen so that
 their polynomial has the field's moments, and its value at the panel's end:
 
     sum_j w_j f_j P_k(u_j) = integral of f P_k dX,  k = 0 ... p - 2,    f_p = f(end)
 
 P_k: Legendre polynomials of the panel's variable u; w_j: weights of the panel's Radau points. The integral over the
-panel of the field times a smooth function, such as the motion of the body, is then as exact as that of a smooth field.
-Up to a place within the panel, each node's part in the integral lacks what `missed_before` and `missed_within` give.
+panel of the field times a smooth function, such as the motion of the body, is then as exact as for a smooth field. For
+an integral up to a place inside the panel, `missed_before` and `missed_within` give the correction of each node's part.
 """
 
 from collections.abc import Callable, Sequence
@@ -28,29 +28,29 @@ from eel_dynamics.model.body.grid import (
     radau_points,
 )
 
-# Points of Gauss' rule in each part between two breaks, and how many equal parts of a panel are short enough for them
-# beside the waves of its polynomials.
+# Points of Gauss' rule in each part between two breaks, and number of equal parts of a panel that are short enough
+# for the waves of its polynomials.
 RULES = (8, 8), (4, 64), (3, 256)
 _gauss_rule = cache(legendre.leggauss)
 
 
-Field = Callable[[np.ndarray], np.ndarray]  # of X (M,) [m] to values (m, M)
+Field = Callable[[np.ndarray], np.ndarray]  # from X (M,) [m] to values (m, M)
 
 
 class Part(NamedTuple):
-    """A panel with p nodes and E ends of parts of it, in each of which the field is smooth."""
+    """A panel with p nodes, divided at E ends into parts in which the field is smooth."""
 
     panel: Panel
-    nodes: slice  # of the grid
+    nodes: slice  # indices of the nodes in the grid
     ends: np.ndarray  # (E,), fractions of the panel
     at: np.ndarray  # (M,), Gauss points in each part, fractions
-    field: np.ndarray  # (m, M) there, times the weights of Gauss' rule [m]
+    field: np.ndarray  # (m, M) at these points, times the weights of Gauss' rule [m]
 
 
 def with_moments(field: Field, grid: Grid, breaks: np.ndarray) -> np.ndarray:
     """Values (m, n) at the nodes of `grid` with the moments of `field` over each panel.
 
-    field: of X (M,) [m] to values (m, M); it is smooth between the `breaks` [m], which rise.
+    field: from X (M,) [m] to values (m, M); it is smooth between the `breaks` [m], which rise.
     """
     values = field(grid.x)
     inner = [_inside(panel, breaks) for panel in grid.panels]
@@ -60,10 +60,10 @@ def with_moments(field: Field, grid: Grid, breaks: np.ndarray) -> np.ndarray:
 
 
 def missed_before(field: Field, values: np.ndarray, grid: Grid, breaks: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Of the nodes of its panel, what their parts in the integral to X = `x` (M,) [m], ascending, miss: (m, M, p_max).
+    """Corrections (m, M, p_max) of the nodes' parts in the integral over the panel to X = `x` (M,) [m], ascending.
 
-    With a smooth function g, the integral of field g from the nose is the sum over those nodes of the missed times g,
-    plus what the `grid` gives for the `values` (m, n) times g.
+    With a smooth function g, the integral of field g from the nose is the sum over those nodes of the correction times
+    g, plus the integral by the `grid` of the `values` (m, n) times g.
     """
     home = grid.panel_at(x)
     ends_at = [panel.fraction(x[home == index]) for index, panel in enumerate(grid.panels)]
@@ -82,7 +82,7 @@ def missed_before(field: Field, values: np.ndarray, grid: Grid, breaks: np.ndarr
 def missed_within(
     field: Field, values: np.ndarray, grid: Grid, breaks: np.ndarray, fractions: np.ndarray
 ) -> np.ndarray:
-    """The same from the start of each node's panel to `fractions` (K,) of it, by the values at the nodes: (m, K, n)."""
+    """The same from the start of each node's panel to `fractions` (K,) of it, for all nodes: (m, K, n)."""
     result = np.zeros((len(fractions), *values.shape))
     ends = [np.concatenate((_inside(panel, breaks), fractions)) for panel in grid.panels]
     for part in _parts(field, grid, ends):
@@ -92,7 +92,7 @@ def missed_within(
 
 
 def _missed(part: Part, values: np.ndarray, ends_at: np.ndarray) -> np.ndarray:
-    """Of the p nodes of the panel with the `values` (m, p), up to the fractions `ends_at` (K,) of it: (K, m, p)."""
+    """The corrections (K, m, p) of the panel's nodes with the `values` (m, p), up to the fractions `ends_at` (K,)."""
     panel, shape = part.panel, (len(part.ends), len(part.at) // len(part.ends))
     fields = part.field.reshape(-1, *shape).transpose(1, 0, 2)
     exact = np.cumsum(fields @ interpolation_matrix(panel.points, part.at).reshape(*shape, -1), axis=0)
@@ -101,7 +101,7 @@ def _missed(part: Part, values: np.ndarray, ends_at: np.ndarray) -> np.ndarray:
 
 
 def _correction(part: Part, values: np.ndarray) -> np.ndarray:
-    """What the `values` (m, p) at the nodes of the panel lack of the moments; nothing at the panel's end."""
+    """The difference of the moments from those of the `values` (m, p) at the panel's nodes; 0 at the panel's end."""
     panel, nodes = part.panel, radau_points(part.panel.points)
     scale, basis = panel.locate(nodes)[1], _legendre(panel, nodes)
     moments = part.field @ _legendre(panel, part.at)
@@ -117,13 +117,13 @@ def _legendre(panel: Panel, at: np.ndarray) -> np.ndarray:
 
 
 def _inside(panel: Panel, breaks: np.ndarray) -> np.ndarray:
-    """Those of the rising `breaks` [m] that lie within the panel, as its fractions."""
+    """The `breaks` [m], rising, inside the panel, as fractions of it."""
     first, last = np.searchsorted(breaks, panel.start, side="right"), np.searchsorted(breaks, panel.end)
     return panel.fraction(breaks[first:last])
 
 
 def _parts(field: Field, grid: Grid, ends: Sequence[np.ndarray | None]) -> list[Part]:
-    """The panels of `grid` with `ends` of parts, fractions of each; None for a panel that is not wanted."""
+    """The panels of `grid` with `ends` of parts, as fractions; None for a panel that is not needed."""
     parts, weights, places, begin = [], [], [], 0
     for panel, each in zip(grid.panels, ends, strict=True):
         if each is not None:
@@ -141,9 +141,9 @@ def _parts(field: Field, grid: Grid, ends: Sequence[np.ndarray | None]) -> list[
 
 
 def _gauss_points(breaks: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The ends of parts of a panel between its `breaks`, and points and weights of Gauss' rule in each; as fractions.
+    """The ends of a panel's parts between its `breaks`, and points and weights of Gauss' rule in each, as fractions.
 
-    The rule with the fewest points is taken.
+    It uses the rule with the fewest points.
     """
     number, parts = min(RULES, key=lambda rule: rule[0] * (len(breaks) + rule[1]))
     ends = np.union1d(breaks, np.arange(1, parts + 1) / parts)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The panels of a body's grid: where the body is cut along X, and how many points each part has."""
+"""The panels of a body's grid: where the body is cut along X, and the number of points in each panel."""
 
 import math
 from dataclasses import replace
@@ -11,10 +11,10 @@ import numpy as np
 
 from eel_dynamics.model.body.grid import Panel
 
-FILLED = 8  # the number of nodes is a multiple of this: what any processor takes at once
+FILLED = 8  # the number of nodes is a multiple of this, a block for any processor
 WIDEST_PANEL = 24  # points; a longer panel is cut into equal parts
-LONG_OF_ROBOT = 4.0 / 3.0  # times the points of a long panel where modes bend others
-CLOSEST = 1e-3  # lengths between a kink of the body and a knot of a law that still gets a panel
+LONG_OF_ROBOT = 4.0 / 3.0  # factor for the points of a long panel if modes bend others
+CLOSEST = 1e-3  # lengths: least distance of a panel's end at a law's knot from a kink of the body
 
 
 @lru_cache(maxsize=256)
@@ -23,15 +23,15 @@ def panels_of(
 ) -> tuple[Panel, ...]:
     """Panels between the kinks of `body`, the `knots` [m] of a law's splines and the `edges` [m] of a robot's modes.
 
-    Together they have about `resolution` points per body length, and each has three to spare. With `edges`, none has
-    fewer than 2 + (resolution + 1.5) / 8: a mode bends a joint's short panel, which must be finer too where the rest
-    is. With three points the torque of a stiff joint that starts is off by 0.008 to 0.04, with four by 2e-5, with five
-    by 1e-7. The part behind the last joint needs more points per length than a bent body, or its torque was off by
-    0.001 at 18. Where the internal `wrench` is wanted, the first panel has more: the body and its loads go like roots
-    of X there (they weigh little).
-    So has the last panel where they do so at the tail.
+    Together they have about `resolution` points per body length, and each has three to spare. With `edges`, each has at
+    least 2 + (resolution + 1.5) / 8: a mode bends a joint's short panel, which must become finer with the others. With
+    three points the torque of a stiff joint that starts is wrong by 0.008 to 0.04, with four by 2e-5, with five by
+    1e-7. The part behind the last joint needs more points per length than a bent body, or its torque is wrong by 0.001
+    at 18. If the internal `wrench` is wanted, the first panel has more points, as body and loads behave like roots of X
+    there (these sections weigh little). So has the last panel if they do so at the tail.
 
-    Processors take up to eight nodes at once. The grid fills these: the panels that would have a point next get one.
+    Processors handle up to eight nodes together. The grid fills such blocks: the panels closest to a further point get
+    one.
     """
     least = CLOSEST * body.length
     kinks = np.array([0.0, *body.panel_ends])
@@ -55,10 +55,10 @@ def panels_of(
 
 
 def _next_resolution(panel: Panel, length: float, spare: int) -> float:
-    """The resolution at which `panel` of a body of `length` [m] would have a further point."""
+    """The resolution at which `panel` of a body of `length` [m] would get a further point."""
     return (panel.points - spare + 0.5 - (1 if panel.graded else 0)) * length / (panel.end - panel.start)
 
 
 def nearest(count: float) -> int:
-    """The nearest whole number, halves upwards. The last bit of `count` differs between versions of numpy."""
+    """The nearest whole number, halves upwards. The last bit of `count` depends on the version of NumPy."""
     return math.floor(count + 0.5 + 1e-9)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Half-axes along X as functions that compare equal by value, and that files can hold: by name, or as polynomials.
+"""Half-axes along X as functions that compare by value, and that files can hold: by name, or as polynomials.
 
 Sources: boyer2010 after section 7.2.1 of Boyer, Porez and Leroyer (2010); kern2006 after Kern and Koumoutsakos,
 J. Exp. Biol. 209 (2006).
@@ -16,8 +16,8 @@ from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
 DEGREE = 48  # of the polynomials through a function on each panel
-LOOKS, SEED = 1024, 1  # at a function on each panel, at random
-DETAIL = 1e-2  # part of the greatest value by which polynomials may miss it
+LOOKS, SEED = 1024, 1  # random evaluations of a function on each panel
+DETAIL = 1e-2  # error of the polynomials, relative to the greatest value, that causes a warning
 KERN_HEAD, KERN_TAIL, KERN_WIDTH_OF_TAIL = 0.04, 0.95, 0.01  # of the length
 KERN_MIDDLE, KERN_HEIGHT = 0.51, 0.08
 KINKS = {"boyer2010": (0.05, 0.2, 0.75), "kern2006": (KERN_HEAD, KERN_TAIL)}  # of the length
@@ -38,7 +38,7 @@ class NamedHalfAxis:
 
 @dataclass(frozen=True)
 class PolynomialAlong:
-    """A number along the body that is a Chebyshev polynomial between two of the `bounds` (0, kinks, length) [m].
+    """A number along the body that is a Chebyshev polynomial between successive `bounds` (0, kinks, length) [m].
 
     coefficients: one row for each panel.
     """
@@ -118,17 +118,17 @@ def coefficients_of(
 
 
 def series_through(function: Callable[[np.ndarray], np.ndarray], bounds: Sequence[float]) -> list[Any]:
-    """Chebyshev series through a `function` of X [m], one between two of the `bounds` [m].
+    """Chebyshev series through a `function` of X [m], one between successive `bounds` [m].
 
-    The points lie inside the panels: a jump at their ends is not seen.
+    The points lie inside the panels, so a jump at their ends has no influence.
     """
     return [chebyshev.Chebyshev.interpolate(function, DEGREE, domain=ends) for ends in pairwise(bounds)]
 
 
 def warn_of_details(name: str, function: Callable[..., Any], bounds: Sequence[float], power: int = 1) -> None:
-    """Warns of a `function` of X [m] whose `power` changes within a short part of a panel: a grid may pass over it.
+    """Warn of a `function` of X [m] whose `power` changes within a short part of a panel: a grid may not resolve it.
 
-    It is looked at at random X, `LOOKS` in each panel. What is not finite is for others to tell.
+    It is evaluated at random X, `LOOKS` per panel. Other checks report values that are not finite.
     """
     if isinstance(function, NamedHalfAxis | PolynomialAlong):
         return
@@ -154,9 +154,9 @@ def warn_of_details(name: str, function: Callable[..., Any], bounds: Sequence[fl
 def piecewise(
     functions: Sequence[Callable[..., Any]], bounds: Sequence[float] | np.ndarray, x: np.ndarray
 ) -> np.ndarray:
-    """Values at `x` [m] of functions of X, each from one of the `bounds` [m] to the next; a bound belongs to the first.
+    """Values at `x` [m] of functions of X, each between successive `bounds` [m]; a bound belongs to the first.
 
-    The first and the last function go on beyond the bounds.
+    The first and the last function extend beyond the bounds.
     """
     if len(functions) == 1:
         return np.asarray(functions[0](x))
@@ -169,7 +169,7 @@ def piecewise(
 
 
 def values_along(function: Callable[..., Any], x: np.ndarray) -> np.ndarray:
-    """Values of a `function` of X at `x` [m]; it takes arrays, or one number at a time."""
+    """Values of a `function` of X at `x` [m]. The function accepts arrays, or one number at a time."""
     try:
         values = np.asarray(function(x), dtype=float)
         if values.shape not in (x.shape, ()):

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bodies as texts, for commands, scene files and nodes: a name, a file or links, and what differs from it.
+"""Bodies as texts, for commands, scene files and nodes: a name, a file or links, followed by changes.
 
 boyer2010
 fish.csv base_drag=0.2 appendages=arms.csv
 links length=1.62 number=9 half_width=0.05 half_height=0.055 joints=0.65 mass=7.2
 
-What may follow a name or file are the numbers of `Body`, joints (flush, or a number) with link_length, and appendages:
-a table with the columns x, y, z, drag1, drag2, drag3 and law; what is left out is 0, and law axis.
+After a name or file may follow numbers of `Body`, joints (flush, or a number) with link_length, and appendages: a table
+with the columns x, y, z, drag1, drag2, drag3 and law. Missing columns are 0, or law axis.
 """
 
 import os
@@ -31,7 +31,7 @@ COLUMNS = "x", "y", "z", "drag1", "drag2", "drag3", "law"
 
 
 def body_of(text: str) -> Body:
-    """The body of a `text`. `ValueError` names what does not fit; `OSError`: not readable."""
+    """The body of a `text`. `ValueError` names the fault; `OSError`: a file is not readable."""
     with reading("body"):
         given: dict[str, Any] = named_fields("body", "name", text)
         what = given.pop("name")

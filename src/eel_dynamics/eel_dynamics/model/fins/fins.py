@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fins: stiff plates on the body that turn about their span, given angles, a servo, a hold of the roll.
+"""Fins: stiff plates on the body that turn about their span, with a given angle, a servo, or control of the roll.
 
-A fin has its root on the side of the body and its span across it. Its forces act at the centre of an elliptic plate, on
-the hinge line: attached lift after Whicker and Fehlner (David Taylor Model Basin, report 933, 1958) without sweep, the
-drag that goes with it, and beyond the stall a plate's across the stream; and its added mass along its normal
-(eel_core/loads/fins.hpp). The body is a mirror: the effective aspect ratio is 2 span^2 / area.
+A fin has its root on the side of the body, and its span points outwards. Its forces act at the centre of an elliptic
+plate, on the hinge line: attached lift after Whicker and Fehlner (David Taylor Model Basin, report 933, 1958) without
+sweep; the induced drag; beyond the stall the drag of a plate across the stream; and the added mass along its normal
+(eel_core/loads/fins.hpp). The body acts as a mirror: the effective aspect ratio is 2 span^2 / area.
 """
 
 import math
@@ -30,9 +30,9 @@ from eel_dynamics.model.body.body import Body
 from eel_dynamics.model.body.grid import Grid
 from eel_dynamics.model.scene import Scene
 
-COMMANDED = "commanded"  # angle of a fin that follows commands
-SIDES = {"right": 1.0, "left": -1.0}  # along axis 2 of the sections
-APART = 1e-9  # of the body's length: stations that are closer count as one place
+COMMANDED = "commanded"  # value of `angle` for a fin that follows commands
+SIDES = {"right": 1.0, "left": -1.0}  # direction along axis 2 of the sections
+APART = 1e-9  # of the body's length: closer stations count as one
 LONGEST_NAME = 100  # characters
 
 
@@ -40,7 +40,7 @@ LONGEST_NAME = 100  # characters
 class RollHold(Quantities):
     """The angle of a fin that holds the roll level: -k_p roll - k_d Omega1 on the right side, the opposite on the left.
 
-    roll [rad] is that of the section at the fin's station, 0 upright; Omega1 [rad/s] its angular velocity about E1.
+    roll [rad]: of the section at the fin's station, 0 upright. Omega1 [rad/s]: angular velocity of it about E1.
     """
 
     what: ClassVar[str] = "roll hold"
@@ -52,7 +52,7 @@ class RollHold(Quantities):
 @documented
 @dataclass(frozen=True)
 class Fin(Quantities):
-    """A fin. Immutable; `ValueError` names what does not fit."""
+    """A fin. Immutable; `ValueError` names a bad field."""
 
     what: ClassVar[str] = "fin"
 
@@ -102,9 +102,9 @@ class Fin(Quantities):
 
     @staticmethod
     def pair(station: float, area: float, aspect_ratio: float, name: str = "", **others: Any) -> tuple["Fin", "Fin"]:
-        """A fin on the left and one on the right, each of this area; the arguments are those of `Fin`.
+        """A fin on the left and one on the right, each of this area. The arguments are those of `Fin`.
 
-        name: of the pair, that of a fin begins with its side.
+        name: of the pair. The name of each fin begins with its side.
         """
         checked_instance("fin name", name, str)
         names = {side: f"{side}_{name}" if name else "" for side in ("left", "right")}
@@ -137,7 +137,7 @@ class Fin(Quantities):
 
     @property
     def slope(self) -> float:
-        """The lift slope in force."""
+        """The effective lift slope."""
         if self.lift_slope is not None:
             return self.lift_slope
         ratio = self.aspect_ratio
@@ -145,12 +145,12 @@ class Fin(Quantities):
 
     @property
     def sign(self) -> float:
-        """Of its angle by its servo's."""
+        """The sign of its angle relative to its servo's."""
         return -1.0 if isinstance(self.angle, RollHold) and self.side == "left" else 1.0
 
     @property
     def servo(self) -> tuple[Any, ...]:
-        """What turns it: fins that are equal in this have one servo."""
+        """The key of its servo: fins with equal keys share one servo."""
         own: Any = self.name if self.angle == COMMANDED else None
         where = self.station if isinstance(self.angle, RollHold) else own
         return self.angle, self.time_constant, self.limit, where, self.initial_angle
@@ -179,9 +179,9 @@ def _checked_angle(angle: Any) -> Any:
 
 
 def checked_fins(fins: Any, body: Body, scene: Scene) -> tuple[Fin, ...]:
-    """The fins of a run, pairs among them taken apart, each with a name of its own.
+    """The fins of a run, with pairs separated, each with its own name.
 
-    `ValueError` names one that `body` or `scene` does not allow.
+    `ValueError` names a fin that `body` or `scene` does not allow.
     """
     if fins is None:
         return ()
@@ -206,7 +206,7 @@ def checked_fins(fins: Any, body: Body, scene: Scene) -> tuple[Fin, ...]:
 
 
 def _named(fins: list[Fin]) -> tuple[Fin, ...]:
-    """The `fins`, of which those without a name get one by side and order: it stays where a fin moves."""
+    """The `fins`, with names by side and order for those without. A name does not change when a fin moves."""
     taken = [fin.name for fin in fins if fin.name]
     for name in taken:
         if taken.count(name) > 1:
@@ -220,12 +220,12 @@ def _named(fins: list[Fin]) -> tuple[Fin, ...]:
 
 
 def servos_of(fins: tuple[Fin, ...]) -> list[tuple[Any, ...]]:
-    """The servos of the fins, each once."""
+    """The distinct servos of the fins."""
     return list(dict.fromkeys(fin.servo for fin in fins))
 
 
 def edges_of(body: Body, fins: tuple[Fin, ...], known: tuple[float, ...] = ()) -> tuple[float, ...]:
-    """X [m] at which panels must end for the fins: no kink of the body, or end `known`, is closer than `APART`."""
+    """X [m] at which panels must end for the fins: those not within `APART` of a kink of the body, or of `known`."""
     stations = {fin.station for fin in fins}
     ends = (*body.panel_ends, *known)
     near = [x for x in stations if min(abs(x - end) for end in ends) < APART * body.length]
@@ -235,7 +235,7 @@ def edges_of(body: Body, fins: tuple[Fin, ...], known: tuple[float, ...] = ()) -
 def core_fins(
     body: Body, scene: Scene, grid: Grid, x: np.ndarray, fins: tuple[Fin, ...]
 ) -> tuple[list[Any], list[Any]]:
-    """The fins and their servos for the compiled mechanics; stations at `x` (M,) [m]."""
+    """The fins and their servos for the core. x (M,) [m]: stations."""
     if not fins:
         return [], []
     near, servos = 10.0 * APART * body.length, servos_of(fins)
@@ -268,7 +268,7 @@ def core_fins(
 
 
 def given_angles(fins: tuple[Fin, ...], commands: dict[str, float]) -> list[tuple[np.ndarray, np.ndarray]]:
-    """What each servo is given: knots (n,) [s] and coefficients (n - 1, 4) of cubics [rad], from the constant on.
+    """The given angle of each servo: knots (n,) [s] and coefficients (n - 1, 4) of cubics [rad], constant first.
 
     commands: [rad] by the names of commanded fins."""
     return [
@@ -282,7 +282,8 @@ def commanded_names(fins: tuple[Fin, ...]) -> tuple[str, ...]:
 
 
 def checked_commands(fins: tuple[Fin, ...], commands: Any) -> dict[str, float]:
-    """Angles [rad] by the names of commanded `fins`. `ValueError` for another name, or an angle that is no number."""
+    """Angles [rad] by the names of commanded `fins`. `ValueError` for an unknown name, or an angle that is no
+    number."""
     known = commanded_names(fins)
     for name in commands:
         checked_choice("commanded fin", name, known)

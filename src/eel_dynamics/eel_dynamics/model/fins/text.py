@@ -4,7 +4,7 @@
 pair station=0.5 area=0.0015 aspect_ratio=2.5 k_p=4 k_d=0.5 time_constant=0.05
 left station=0.5 area=0.0005 aspect_ratio=3 angle=commanded time_constant=0.1
 
-k_p and k_d make a `RollHold` of the angle. angle=commanded: the topic fin_command gives it. name=NAME: in topics.
+k_p and k_d make the angle a `RollHold`. With angle=commanded, the topic fin_command sets it. name=NAME: in topics.
 """
 
 from dataclasses import fields
@@ -23,7 +23,7 @@ GAINS = "k_p", "k_d"
 
 
 def fins_from_text(text: str) -> tuple[Fin, ...]:
-    """The fins of a `text`; none of an empty one. `ValueError` names what does not fit."""
+    """The fins of a `text`; none for an empty one. `ValueError` names the fault."""
     with reading("fin"):
         return tuple(fin for part in parts_of_text(text) if part for fin in _part(part))
 
@@ -40,7 +40,7 @@ def _part(text: str) -> tuple[Fin, ...]:
 
 
 def text_of_fins(fins: tuple[Fin, ...]) -> str:
-    """The text of `fins`. `ValueError` for one whose angle is a table."""
+    """The text of `fins`. `ValueError` for a fin whose angle is a table."""
     parts = []
     for fin in fins:
         if isinstance(fin.angle, tuple):

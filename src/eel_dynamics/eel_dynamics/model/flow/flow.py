@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What all flows share: the velocity u(x, t) of the water without the swimmer, its Jacobian and its rate.
+"""The interface of all flows: the velocity u(x, t) of the undisturbed water, its Jacobian and its rate.
 
-Places and velocities are in the axes of the world (REP-103). The scene's current is not part of u: the water moves with
-the sum of both. Flows add by `+`.
+Places and velocities are in the axes of the world (REP-103). The scene's current is not part of u: the water's velocity
+is the sum of both. Flows add by `+`.
 """
 
 from dataclasses import dataclass
@@ -18,8 +18,8 @@ from numpy.typing import ArrayLike
 import eel_core
 
 ROWS = 18  # numbers of a place in eel_core: x, u, u_t, and the Jacobian row by row
-SPACINGS = 6.0  # of a lattice, in a body's length
-REACH = np.array([8, 6, 3])  # spacings of a lattice to each side, along x, y and z
+SPACINGS = 6.0  # spacings of the lattice per body length
+REACH = np.array([8, 6, 3])  # spacings of the lattice to each side, along x, y and z
 
 
 class FlowSample(NamedTuple):
@@ -31,26 +31,26 @@ class FlowSample(NamedTuple):
 
 
 class FlowTraits(NamedTuple):
-    """What the grid and the steps must know of a flow."""
+    """Properties of a flow that grid and steps depend on."""
 
-    breakpoints: tuple[float, ...] = ()  # s, at which a derivative of u by time jumps
-    time_scale: float = np.inf  # s, shortest period of what goes on at a fixed place; infinite where it is steady
-    shortest_wave: float = np.inf  # m, shortest wavelength of u; infinite where it is the same everywhere
+    breakpoints: tuple[float, ...] = ()  # s, at which a time derivative of u jumps
+    time_scale: float = np.inf  # s, shortest period at a fixed place; infinite for a steady flow
+    shortest_wave: float = np.inf  # m, shortest wavelength of u; infinite for a uniform flow
     surface_height: float = np.inf  # m, z of the water's surface; infinite without one
     span: tuple[float, float] = -np.inf, np.inf  # s, first and last time at which it is known
 
 
 class Flow:
-    """A flow of the water. It never changes; two are equal where their fields are.
+    """A flow of the water. It never changes; two are equal if their fields are.
 
-    vectors: names of the fields that lie in the plane where u does.
+    vectors: names of the fields that lie in the plane if u does.
     """
 
     what: ClassVar[str] = "flow"
     vectors: ClassVar[tuple[str, ...]] = ()
 
     def sources(self, planar: bool) -> "list[eel_core.Source]":
-        """Its sources as `eel_core.Flow` takes them; planar: of a planar scene."""
+        """Its sources for `eel_core.Flow`. planar: for a planar scene."""
         raise NotImplementedError
 
     @cached_property
@@ -60,11 +60,11 @@ class Flow:
 
     @property
     def in_plane(self) -> bool:
-        """Whether u has no part along z and does not depend on it: a planar scene needs that."""
+        """Whether u has no component along z and does not depend on z, as a planar scene requires."""
         return not any(np.atleast_2d(getattr(self, name))[:, 2].any() for name in self.vectors)
 
     def outside(self, time: float, place: ArrayLike) -> tuple[str, float] | None:
-        """Where u is not known at a `place` (3,) [m]: the axis and its bounds in words, and the place along it."""
+        """If u is unknown at a `place` (3,) [m]: the axis and its bounds in words, and the place along it."""
         return None
 
     def sample(self, places: ArrayLike, time: float = 0.0) -> FlowSample:
@@ -81,7 +81,7 @@ class Flow:
         return FlowSample(rows[..., 3:6], rows[..., 6:9], rows[..., 9:].reshape(*x.shape, 3))
 
     def rows_at(self, places: np.ndarray, time: float) -> np.ndarray:
-        """(..., 18): place, velocity, rate and Jacobian, at `places` (..., 3) [m]; NaN where they are not known."""
+        """(..., 18): place, velocity, rate and Jacobian, at `places` (..., 3) [m]; NaN where unknown."""
         rows = np.zeros((*places.shape[:-1], ROWS))
         rows[..., :3] = places
         core_flow(self, False).at(time, rows)
@@ -118,7 +118,7 @@ class FlowSum(Flow):
 
 
 def parts_of(flow: Flow) -> tuple[Flow, ...]:
-    """The flows that add up to `flow`."""
+    """The flows whose sum is `flow`."""
     return flow.parts if isinstance(flow, FlowSum) else (flow,)
 
 
@@ -129,7 +129,7 @@ def core_flow(flow: Flow, planar: bool) -> eel_core.Flow:
 
 
 def checked_flow(flow: Any, planar: bool) -> Flow | None:
-    """`flow`, if it is one, or None. `ValueError` for one that a planar scene does not allow."""
+    """`flow`, if it is a flow or None. `ValueError` for one that a planar scene does not allow."""
     if flow is None:
         return None
     given: Flow = checked_instance("flow", flow, Flow)
@@ -147,11 +147,11 @@ def check_covers(flow: Flow | None, duration: float) -> None:
 
 
 def lattice_around(place: np.ndarray, length: float, flow: Flow) -> np.ndarray:
-    """Points (n, 3) [m] at which a flow is shown around a `place` (3,) [m] of a body of this `length` [m].
+    """Points (n, 3) [m] for showing a flow around a `place` (3,) [m] of a body of this `length` [m].
 
-    They are multiples of a spacing, so that they stand still in the world. They lie in a horizontal sheet at the
-    place's height; an upright one along x crosses it where the flow changes with the height. Their number depends on
-    the flow alone.
+    They are multiples of a spacing, so they are fixed in the world. They lie in a horizontal sheet at the place's
+    height. If the flow changes with height, an upright sheet along x crosses it. Their number depends only on the
+    flow.
     """
     spacing = length / SPACINGS
     middle = np.round(np.asarray(place) / spacing)
@@ -162,5 +162,5 @@ def lattice_around(place: np.ndarray, length: float, flow: Flow) -> np.ndarray:
 
 
 def velocities_at(flow: Flow, points: np.ndarray, time: float) -> np.ndarray:
-    """Velocities (n, 3) [m/s] at the `points` at `time` [s]; 0 where they are not known."""
+    """Velocities (n, 3) [m/s] at the `points` at `time` [s]; 0 where unknown."""
     return np.asarray(np.nan_to_num(flow.rows_at(points, time)[..., 3:6], nan=0.0))

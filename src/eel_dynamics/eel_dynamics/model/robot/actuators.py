@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What drives a joint: a servo that follows the law, or a torque that is given over time.
+"""The actuators of a joint: a servo that follows the law, or a torque given over time.
 
-Angles, speeds and torques are those of the joint, behind the gear, in the joint's sign. A servo's torque is
+Angles, speeds and torques are those of the joint, after the gear, in the joint's sign. A servo's torque is
 
     tau = clip(kp (reference - angle) + kd (reference rate - rate), low, high),
     high = torque_limit clip(1 - rate/speed_limit, 0, 1),   low = -torque_limit clip(1 + rate/speed_limit, 0, 1).
@@ -11,7 +11,7 @@ The rotor adds gear^2 rotor_inertia to the joint's inertia. With a series spring
     gear^2 rotor_inertia thdd = tau - tau_joint - friction thd,
     tau_joint = series_stiffness (th - angle) + series_damping (thd - rate);
 
-the servo's law then sees th.
+The servo's feedback then uses th.
 """
 
 from collections.abc import Callable, Sequence
@@ -27,7 +27,7 @@ from eel_common.wording import shown
 @documented
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Servo(Quantities):
-    """A motor that follows the law by its own feedback. Immutable; `ValueError` names a field that does not fit."""
+    """A motor that follows the law by its own feedback. Immutable; `ValueError` names a bad field."""
 
     what: ClassVar[str] = "servo"
 
@@ -57,25 +57,25 @@ class Servo(Quantities):
 
     @property
     def inertia(self) -> float:
-        """gear^2 rotor_inertia [kg m^2]: of the rotor at the joint."""
+        """gear^2 rotor_inertia [kg m^2]: the rotor's inertia at the joint."""
         return self.gear**2 * self.rotor_inertia
 
     @property
     def has_spring(self) -> bool:
-        """Whether a series spring lies between gear and joint: the motor then has an angle of its own."""
+        """Whether there is a series spring between gear and joint: the motor then has its own angle."""
         return self.series_stiffness is not None
 
 
 @dataclass(frozen=True, repr=False)
 class Torque(Quantities):
-    """A torque [N m] on a joint that is given over time.
+    """A torque [N m] on a joint, given over time.
 
     Args:
         torque: a function of the time [s], or values (n,) at `time`.
-        time: (n,) [s], rising, two or more, with values alone. A cubic spline lies through them; the first and the last
-            value are held.
+        time: (n,) [s], rising, two or more; with values only. They are interpolated by a cubic spline; the first and
+            the last value are held.
 
-    `ValueError` names what does not fit.
+    `ValueError` names a bad argument.
     """
 
     torque: Callable[[float], float] | tuple[float, ...]
@@ -98,13 +98,13 @@ class Torque(Quantities):
 
     @cached_property
     def spline(self) -> Any:
-        """The spline through the values; None of a function."""
+        """The spline through the values; None for a function."""
         from scipy.interpolate import CubicSpline
 
         return None if self.time is None else CubicSpline(self.time, self.torque)
 
     def at(self, time: Any) -> np.ndarray:
-        """The torque [N m] at `time` [s], one or (n,). `ValueError` where a function gives no finite number."""
+        """The torque [N m] at `time` [s], one or (n,). `ValueError` if a function gives no finite number."""
         instants = np.asarray(time, dtype=float)
         if self.spline is not None:
             return np.asarray(self.spline(np.clip(instants, self.spline.x[0], self.spline.x[-1])))
@@ -112,7 +112,7 @@ class Torque(Quantities):
         return values.reshape(instants.shape)
 
     def called(self, time: float) -> float:
-        """The torque [N m] of a function at `time` [s]. `ValueError` as of `at`."""
+        """The torque [N m] of a function at `time` [s]. `ValueError` as in `at`."""
         assert callable(self.torque)
         value: Any = self.torque(time)
         if not is_finite(value):
@@ -124,11 +124,12 @@ class Torque(Quantities):
 
 
 Actuator = Servo | Torque
-AT_LIMIT = 1.0 - 1e-9  # of the torque that a servo can give at its speed, from which it counts as at its limit
+AT_LIMIT = 1.0 - 1e-9  # of a servo's greatest torque at its speed: above this it counts as at its limit
 
 
 def most_torque(servos: Sequence[Servo | None], torque: np.ndarray, power: np.ndarray) -> np.ndarray:
-    """What motors (..., J) with this `torque` [N m] and `power` [W] could give at their speed; infinite: no limit."""
+    """The greatest torques of motors (..., J) with this `torque` [N m] and `power` [W] at their speed; inf: no
+    limit."""
     limit, fastest = (
         np.array([np.inf if each is None else getattr(each, name) or np.inf for each in servos])
         for name in ("torque_limit", "speed_limit")
@@ -145,5 +146,5 @@ def current_by_torque(servos: Sequence[Servo | None]) -> np.ndarray:
 
 
 def at_limit(servos: Sequence[Servo | None], torque: np.ndarray, power: np.ndarray) -> np.ndarray:
-    """Whether motors (..., J) with this `torque` [N m] and `power` [W] are at their limits; None: no servo."""
+    """Whether motors (..., J) with this `torque` [N m] and `power` [W] are at their limits. A None has no servo."""
     return np.asarray(np.abs(torque) >= AT_LIMIT * most_torque(servos, torque, power))

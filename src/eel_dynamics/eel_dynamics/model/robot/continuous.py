@@ -39,7 +39,7 @@ class ProfileTable:
         object.__setattr__(self, "values", tuple(values.tolist()))
 
     def __call__(self, x: Any) -> np.ndarray:
-        """At `x` [m]; the first and the last value are held."""
+        """The value at `x` [m]; the first and the last value are held."""
         from scipy.interpolate import pchip_interpolate
 
         return np.asarray(pchip_interpolate(self.x, self.values, np.clip(x, self.x[0], self.x[-1])))
@@ -69,9 +69,9 @@ class ContinuousPart(Part):
 @documented
 @dataclass(frozen=True, repr=False)
 class PassiveTail(ContinuousPart):
-    """A part that springs and dampers alone hold straight, up to the tail or to `end`. Immutable.
+    """A part that only springs and dampers keep straight, up to the tail or to `end`. Immutable.
 
-    `ValueError` names a field that does not fit.
+    `ValueError` names a bad field.
     """
 
     what: ClassVar[str] = "passive tail"
@@ -88,7 +88,7 @@ class PassiveTail(ContinuousPart):
 @documented
 @dataclass(frozen=True, repr=False)
 class Muscle(ContinuousPart):
-    """A part that muscles bend against its own stiffness. Immutable; `ValueError` names a field that does not fit."""
+    """A part that muscles bend against its own stiffness. Immutable; `ValueError` names a bad field."""
 
     what: ClassVar[str] = "muscle"
 

@@ -6,11 +6,11 @@ joint becomes a hinge, and the motion converges to that of rigid links. The torq
 
     stiffness (angle - rest_angle) + damping rate - tau,
 
-tau of the motor, and at a depth > 0 beyond a limit also that of the stop, against the depth:
+tau is the motor's torque. At a depth > 0 beyond a limit the stop's torque is added, against the depth:
 
     depth max(0, stop_stiffness + stop_damping depth_rate / STOP_DEPTH).
 
-It starts from zero at contact, as of Hunt and Crossley (J. Appl. Mech. 42 (1975)), so that no torque jumps; and a stop
+It starts from zero at contact, as in Hunt and Crossley (J. Appl. Mech. 42 (1975)), so that no torque jumps, and a stop
 never pulls. All angles are positive where the body bends to the left (yaw) or up (pitch), as the gaits' `left_bend`;
 with the axis "-yaw" or "-pitch" to the right or down. With "z" or "y", as of a URDF, a positive angle turns the part
 behind the joint about +z or +y (REP-103) of the part ahead: its tail end goes to the right, or up.
@@ -32,7 +32,7 @@ STOP_DEPTH = 0.01  # rad beyond a limit, where the stop has its `stop_damping`
 @documented
 @dataclass(frozen=True, repr=False)
 class Joint(Part):
-    """A joint. Immutable; `ValueError` names a field that does not fit."""
+    """A joint. Immutable; `ValueError` names a bad field."""
 
     what: ClassVar[str] = "joint"
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the parts of a robot that bend share: an axis, and a support along the body."""
+"""The base of a robot's bending parts: an axis, and a support along the body."""
 
 from typing import Any
 
@@ -13,11 +13,11 @@ AXES |= {"z": (2, 1), "-z": (2, -1), "y": (1, -1), "-y": (1, 1)}
 "z" and "y" are those of a URDF: a positive angle turns the part behind about +z or +y (REP-103) of the part ahead.
 """
 
-MOST_MODES = 12  # of a continuous part
+MOST_MODES = 12  # modes of a continuous part
 
 
 class Part(Quantities):
-    """Base of joints, passive tails and muscles, whose error names the part, the field and the value."""
+    """Base of joints, passive tails and muscles. Errors name the part, the field and the value."""
 
     axis: str
     name: str
@@ -33,7 +33,7 @@ class Part(Quantities):
 
     @property
     def support(self) -> tuple[float, float]:
-        """X [m] where it begins and ends, once both are known."""
+        """X [m] of its beginning and end, if both are known."""
         raise NotImplementedError
 
 

@@ -2,16 +2,16 @@
 """Ready robots by name, on the body of section 7.2.1 of Boyer, Porez and Leroyer (2010), 1 m long.
 
 The servo is the ROBOTIS DYNAMIXEL XM430-W210 at 12 V. From its e-Manual
-(emanual.robotis.com/docs/en/dxl/x/xm430-w210): gear 212.6:1, stall torque 3.0 N m, no-load speed 77 rev/min. Its
-torque falls from the one to the other along a line. Its controller sets the voltage: 885 units are all of it. The
-default position gain, 800/128 = 6.25 units for each of 4096 steps of a turn, is quoted from memory and was not looked
-up; it is 6.25/885 3.0 N m in 2 pi/4096 rad. The slope of the line, stall torque over no-load speed, damps the motor;
-the velocity feed-forward of the same controller takes that off the reference. In its position control mode it turns by
-360 degrees, half of them to each side; a frame may stop it earlier.
+(emanual.robotis.com/docs/en/dxl/x/xm430-w210): gear 212.6:1, stall torque 3.0 N m, no-load speed 77 rev/min. Between
+these two its torque falls linearly. Its controller sets the voltage: 885 units are the full voltage. The default
+position gain, 800/128 = 6.25 units for each of 4096 steps of a turn, is quoted from memory and was not looked up; it is
+6.25/885 3.0 N m in 2 pi/4096 rad. The slope of the line, stall torque over no-load speed, damps the motor; the velocity
+feed-forward of the same controller subtracts that from the reference. In its position control mode it turns by 360
+degrees, half of them to each side; a frame may stop it earlier.
 
 The data sheet does not give the rotor's inertia. Haarnoja et al. (Science Robotics 9, 2024, eadi8022,
-doi:10.1126/scirobotics.adi8022), as others quote them, identified 0.045 kg m^2 behind the gear of an XM430-W350. That
-this has the same motor behind 353.5:1 is an assumption: 3.6e-7 kg m^2 ahead of the gear.
+doi:10.1126/scirobotics.adi8022), as quoted by others, identified 0.045 kg m^2 after the gear of an XM430-W350. We
+assume that this has the same motor with a gear of 353.5:1: 3.6e-7 kg m^2 before the gear.
 """
 
 import math
@@ -34,16 +34,16 @@ XM430_W210 = Servo(
     rotor_inertia=0.045 / 353.5**2,
 )
 SERVOS = {"xm430_w210": XM430_W210}
-FIRST, SPACING, COUNT = 0.10, 0.12, 8  # m, of the joints on a body of 1 m
+FIRST, SPACING, COUNT = 0.10, 0.12, 8  # m, places of the joints on a body of 1 m
 SPRING = 50.0  # N m/rad
-"""Of `series_elastic`, chosen: the stall torque winds it by 0.06 rad; with the reflected rotor it swings at 9 Hz."""
+"""Of `series_elastic`, chosen: the stall torque winds it by 0.06 rad; with the reflected rotor it resonates at 9 Hz."""
 TAIL_STIFFNESS = 0.3  # N m^2
 """Of `passive_tail`: of stiffnesses a factor of 2 apart, the one that swims fastest at a period of 1 s."""
 TAIL_DAMPING = 0.01  # N m^2 s, chosen: a loss angle of 0.2 at 1 s
 
 
 def eight_servos() -> list[Any]:
-    """Eight joints in yaw with XM430-W210 servos, from 0.10 m to 0.94 m, each of which bends over 6 cm."""
+    """Eight joints in yaw with XM430-W210 servos, from 0.10 m to 0.94 m, each bending over 6 cm."""
     return _chain(XM430_W210)
 
 
@@ -62,7 +62,7 @@ def sixteen_servos() -> list[Any]:
 
 
 def passive_tail() -> list[Any]:
-    """The law imposed on the front, up to 0.6 m, and a passive tail of 0.3 N m^2 behind it."""
+    """The law is imposed on the front, up to 0.6 m, followed by a passive tail of 0.3 N m^2."""
     return [PassiveTail(0.6, TAIL_STIFFNESS, TAIL_DAMPING)]
 
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A robot: the parts of a body that bend by themselves, in order along it.
+"""A robot: the dynamic parts of a body, which bend under forces, in order along it.
 
-What the law does follows from the parts. In an axis (yaw, pitch) with motors the body bends at its joints alone: the
-law is what the servos are asked to follow. A servo's reference is the law's bend from midway between its joint and the
-one ahead to midway to the one behind; the first reaches to the nose, the last to the tail, or to the part that bends
-continuously. In an axis without motors the law is imposed, but for the supports of its joints, tails and muscles.
+The parts decide the law's role. In an axis (yaw, pitch) with motors the body bends only at its joints, and the law
+gives the servos' references. A servo's reference is the integral of the law's curvature from midway between its joint
+and the one ahead to midway to the one behind; the first reaches to the nose, the last to the tail, or to a continuous
+part. In an axis without motors the law is imposed, except on the supports of its joints, tails and muscles.
 """
 
 import math
@@ -32,15 +32,15 @@ MOST_PARTS = 64
 
 @dataclass(frozen=True, init=False)
 class Robot:
-    """The parts of a body that bend by themselves. Immutable; equal where all parts are.
+    """The dynamic parts of a body. Immutable; equal if all parts are.
 
-    `ValueError` names what does not fit; the rest is checked with the body (`mode_table`).
+    `ValueError` names a bad argument. The rest is checked with the body (`mode_table`).
 
     Attributes:
         parts: joints, passive tails and muscles, by their positions. Joints without a name are called joint_1, ...
-        name: what messages call the robot.
-        body: the body that it comes with, such as from a file; None: any.
-        notes: what its file holds and the robot does not, in words.
+        name: its name in messages.
+        body: its own body, such as from a file; None: any.
+        notes: content of its file that the robot ignores, in words.
     """
 
     parts: tuple[Joint | PassiveTail | Muscle, ...]
@@ -75,32 +75,32 @@ class Robot:
         return tuple(part for part in self.parts if isinstance(part, Joint))
 
     def joint(self, name: str) -> Joint:
-        """The joint called `name`. `ValueError` for another."""
+        """The joint called `name`. `ValueError` for an unknown name."""
         found = {joint.name: joint for joint in self.joints}
         checked_choice("joint", name, found)
         return found[name]
 
     @property
     def servos(self) -> tuple[Servo | None, ...]:
-        """The servos of its joints; None of a joint without."""
+        """The servos of its joints; None for a joint without."""
         return tuple(joint.actuator if isinstance(joint.actuator, Servo) else None for joint in self.joints)
 
     @property
     def ramp_ends(self) -> list[float]:
-        """Times [s] at which ramps of muscles' moments begin and end, where a derivative of these jumps."""
+        """Times [s] of beginnings and ends of ramps in muscles' moments, where a derivative jumps."""
         terms = (term for part in self.parts if isinstance(part, Muscle) for term in part.moment.terms)
         return sorted({time for term in terms for ramp in term.envelope for time in (ramp.start, ramp.end)})
 
     @property
     def driven_names(self) -> tuple[str, ...]:
-        """Names of the joints that have a servo."""
+        """Names of the joints with a servo."""
         return tuple(joint.name for joint in self.joints if isinstance(joint.actuator, Servo))
 
     def changed(self, part: str | None = None, **changes: Any) -> "Robot":
-        """The same robot with other fields of one `part`, or of all parts that have them; fields of an actuator too.
+        """The same robot with changed fields of one `part`, or of all parts that have them; also fields of actuators.
 
-        Such as robot.changed(torque_limit=1.0), or robot.changed("joint_3", stiffness=2.0). part: a name, or a kind:
-        joints, servos, tails, muscles. `ValueError` for a name that no part has, or the part does not have.
+        Examples: robot.changed(torque_limit=1.0), robot.changed("joint_3", stiffness=2.0). part: a name, or a kind:
+        joints, servos, tails, muscles. `ValueError` for a field that no part, or not the named part, has.
         """
         names = [each.name for each in self.parts]
         kind = None if part in names else SORTS.get(str(part))
@@ -119,15 +119,15 @@ class Robot:
         return Robot(parts, name=self.name, body=self.body, notes=self.notes)
 
     def has(self, name: str) -> bool:
-        """Whether a part, or its actuator, has the field that `name` ends with, as of `with_numbers`."""
+        """Whether a part, or its actuator, has the field at the end of `name`, as in `with_numbers`."""
         owners = (each for part in self.parts for each in _with_actuator(part))
         return any(item.name == name.rpartition(".")[2] for each in owners for item in fields(each))
 
     def with_numbers(self, numbers: Mapping[str, Any]) -> "Robot":
-        """The same robot with these `numbers`: FIELD of all parts that have it, or PART.FIELD as of `changed`.
+        """The same robot with these `numbers`: FIELD of all parts that have it, or PART.FIELD as in `changed`.
 
-        Such as {"kp": 20.0, "joint_3.stiffness": 2.0, "tail.bending_stiffness": 0.3}. An infinite limit or series
-        stiffness is none.
+        Example: {"kp": 20.0, "joint_3.stiffness": 2.0, "tail.bending_stiffness": 0.3}. An infinite limit or series
+        stiffness means none.
         """
         robot = self
         for name, value in checked_instance("robot numbers", numbers, Mapping).items():
@@ -143,7 +143,7 @@ class Robot:
 
     @staticmethod
     def named(name: str) -> "Robot":
-        """The ready robot called `name`, one of `READY`. `ValueError` for another."""
+        """The ready robot called `name`, one of `READY`. `ValueError` for an unknown name."""
         checked_choice("robot", name, READY, "a file")
         return Robot(READY[name](), name=name)
 
@@ -151,7 +151,7 @@ class Robot:
     def from_file(path: str | os.PathLike[str], servo: Servo | None = None, joints: Any = None) -> "Robot":
         """The robot in a .yaml file (`robot_file` has the keys) or in a URDF, with its body.
 
-        servo: gains of the motors of a URDF, which does not hold them. joints: of a URDF, the drag of its links:
+        servo: gains for the motors of a URDF, which does not hold them. joints: for a URDF, the drag of its links:
         "flush", or a coefficient from 0 to 0.87 (`Body.of_links`). `ValueError` in one line names file and place.
         """
         if not isinstance(path, (str, os.PathLike)):
@@ -177,7 +177,7 @@ SORTS: dict[str, Callable[[Any], bool]] = {  # kinds of parts by name
 
 
 def robot_of(text: str) -> Robot | None:
-    """The robot called `text`, or in that file; None for an empty text. `ValueError` if there is none.
+    """The robot called `text`, or in that file; None for an empty text. `ValueError` for an unknown name.
 
     A URDF needs the drag of its links, such as "chain.urdf joints=flush", or a coefficient from 0 to 0.87.
     """
@@ -192,7 +192,7 @@ def robot_of(text: str) -> Robot | None:
 
 
 def checked_robot(robot: Any) -> Robot | None:
-    """`robot`, if it is a `Robot` with parts; None for None and for one without. `ValueError` for anything else."""
+    """`robot`, if it is a `Robot` with parts; None for None or no parts. `ValueError` for anything else."""
     if isinstance(robot, (str, os.PathLike)):
         raise ValueError(f"robot must be a Robot, got {shown(robot)}: Robot.named(...) finds one by its name")
     if robot is None or not checked_instance("robot", robot, Robot).parts:
@@ -206,7 +206,7 @@ def _place(part: Joint | PassiveTail | Muscle) -> float:
 
 
 def _named(parts: list[Any]) -> tuple[Any, ...]:
-    """The `parts`, each with a name of its own."""
+    """The `parts`, each with its own name."""
     taken, count = {part.name for part in parts if part.name}, 0
     named: list[Any] = []
     for part in parts:
@@ -226,7 +226,7 @@ def _with_actuator(part: Any) -> tuple[Any, ...]:
 
 
 def _changed(part: Any, changes: dict[str, Any]) -> Any:
-    """`part` with those of the `changes` that it has; the actuator's in the actuator."""
+    """`part` with those of the `changes` that it has. Fields of the actuator are changed there."""
     own = {name: value for name, value in changes.items() if name in {item.name for item in fields(part)}}
     rest = {name: value for name, value in changes.items() if name not in own}
     if len(_with_actuator(part)) > 1 and "actuator" not in own:

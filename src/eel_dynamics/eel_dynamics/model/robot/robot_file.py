@@ -2,9 +2,9 @@
 """Robots as files and as plain values. An error names file, line and key.
 
     name: my_robot
-    body: fish.csv                    # a file beside this one, or a name; without: any body
+    body: fish.csv                    # a file in the same folder, or a name; by default any body
     joints:
-      - position: [0.10, 0.22, 0.34]  # m; joints that are alike in all else
+      - position: [0.10, 0.22, 0.34]  # m; joints that are otherwise equal
         servo: {kp: 13.8, kd: 0.37, torque_limit: 3.0, speed_limit: 8.06}
       - {position: 0.5, stiffness: 2.0, damping: 0.01, limits: [-0.8, 0.8]}
     tails:
@@ -13,8 +13,8 @@
       - {start: 0.2, end: 0.5, bending_stiffness: 1.0, damping: 0.1,
          moment: [{amplitude: [0.5], wavelength: 1.0, period: 1.0}]}
 
-The keys are the fields of `Joint`, `Servo`, `Torque`, `PassiveTail` and `Muscle`. `servo` may be a name (xm430_w210),
-`torque` holds `time` and `torque`, and `moment` terms of a law, whose amplitudes are N m. A stiffness or a damping that
+The keys are the fields of `Joint`, `Servo`, `Torque`, `PassiveTail` and `Muscle`. `servo` may be a name (xm430_w210).
+`torque` holds `time` and `torque`. `moment` holds terms of a law with amplitudes in N m. A stiffness or a damping that
 changes along the body is a table {x: [...], values: [...]}.
 """
 
@@ -43,7 +43,7 @@ from eel_dynamics.model.robot.ready import SERVOS
 LISTS: dict[str, type[Any]] = {"joints": Joint, "tails": PassiveTail, "muscles": Muscle}
 ACTUATORS: dict[str, type[Any]] = {"servo": Servo, "torque": Torque}
 FILE = ("name", "body", *LISTS)
-POINTS = 201  # of a table that stands for a function
+POINTS = 201  # points of a table that replaces a function
 
 
 def robot_in_yaml(path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -53,10 +53,10 @@ def robot_in_yaml(path: str | os.PathLike[str]) -> dict[str, Any]:
 
 
 def plain_of_robot(robot: Any, length: float) -> dict[str, Any]:
-    """`robot` as plain values, such as a file holds, without its body.
+    """`robot` as plain values, as in a file, without its body.
 
-    A stiffness that is a function of X becomes a table over a body of `length` [m]; a torque that is a function is
-    refused (`ValueError`): no file holds code.
+    A stiffness that is a function of X becomes a table over a body of `length` [m]. A torque that is a function is
+    refused (`ValueError`), as no file holds code.
     """
     plain: dict[str, Any] = {"name": robot.name}
     for key, kind in LISTS.items():
@@ -94,9 +94,9 @@ def _table(function: Callable[..., Any], part: Any, length: float) -> ProfileTab
 
 
 def robot_arguments(root: Any, folder: Path = Path()) -> dict[str, Any]:
-    """The arguments of a `Robot` of plain values: parts, and name and body where the document has them.
+    """The arguments of a `Robot` from plain values: parts, and name and body if the document has them.
 
-    folder: where files lie that the document names.
+    folder: the folder of files that the document names.
     """
     if not isinstance(root, Mapping):
         raise Misplaced("line 1", f"a robot must have keys such as joints, got {shown(root)}")
@@ -115,7 +115,7 @@ def robot_arguments(root: Any, folder: Path = Path()) -> dict[str, Any]:
 
 
 def _parts(kind: type[Any], entries: Any, root: Mapping[str, Any], key: str) -> list[Any]:
-    """The parts of one entry: several joints, where it has several positions."""
+    """The parts of one entry: several joints, if it has several positions."""
     given = dict(_fields(entries, root, key))
     if kind is Joint:
         own = {name: value for name, value in given.items() if name not in ACTUATORS}
@@ -134,7 +134,7 @@ def _parts(kind: type[Any], entries: Any, root: Mapping[str, Any], key: str) -> 
 
 
 def _built(kind: type[Any], entries: Mapping[str, Any], given: Mapping[str, Any] | None = None) -> Any:
-    """`kind` of the fields in a mapping, or of those `given` in their place."""
+    """`kind` from the fields in a mapping, or from `given`."""
     what = getattr(kind, "what", "") or kind.__name__.lower()
     return tried(entries, "", made, kind, entries if given is None else given, what)
 
@@ -163,7 +163,7 @@ def _moment(entries: Mapping[str, Any]) -> Law:
 
 
 def _fields(given: Any, above: Mapping[str, Any], key: str) -> Mapping[str, Any]:
-    """What is `given` at the `key`, if it is a mapping."""
+    """The value `given` at the `key`, if it is a mapping."""
     if not isinstance(given, Mapping):
         fail(above, key, f"must hold mappings of fields, got {shown(given)}")
     return given

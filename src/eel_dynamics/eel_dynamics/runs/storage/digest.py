@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The digest of a netCDF file: SHA-256 of all that it holds, as a text in its attribute `digest`.
+"""The digest of a netCDF file: SHA-256 of its whole content, as a text in its attribute `digest`.
 
-A file whose content has changed since it was saved does not fit its digest. What xarray or another program writes anew
-does not fit either; without the attribute `digest` it can be read, with a warning.
+A file whose content has changed since it was saved does not match its digest. Nor does a file that xarray or another
+program has rewritten; without the attribute `digest` it can be read, with a warning.
 """
 
 import hashlib
@@ -15,12 +15,12 @@ ATTRIBUTE = "digest"
 
 
 def add_digest(file: Any) -> None:
-    """Give an open `scipy.io.netcdf_file`, to which all else is written, its digest."""
+    """Add its digest to an open `scipy.io.netcdf_file` that is otherwise complete."""
     setattr(file, ATTRIBUTE, digest_of(file).encode())
 
 
 def check_digest(file: Any, named: str) -> None:
-    """`ValueError` where the open file does not fit its digest; a warning, which has it `named`, where it has none."""
+    """`ValueError` if the open file does not match its digest; a warning, in which it is `named`, without a digest."""
     written = getattr(file, ATTRIBUTE, None)
     if written is None:
         warnings.warn(f"{named} has no digest, as older ones: damage to it would not be seen", stacklevel=5)
@@ -39,7 +39,7 @@ def digest_of(file: Any) -> str:
 
 
 def _attributes(held: Any) -> list[Any]:
-    """Attributes of a file or a variable but for the digest, as plain values: what is read of them is what was set."""
+    """Attributes of a file or a variable, without the digest, as plain values: equal after writing and reading."""
     return sorted((name, _plain(value)) for name, value in held._attributes.items() if name != ATTRIBUTE)
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Contents of runs and batches as netCDF files (classic format, 64-bit offsets), by SciPy alone.
+"""Contents of runs and batches as netCDF files (classic format, 64-bit offsets), with SciPy only.
 
-xarray, and whatever else reads netCDF, opens the files too. What no array holds (law, body, scene, settings, ...) is a
-JSON text in the attribute `eel`.
+xarray, and other programs that read netCDF, can open the files too. Data other than arrays (law, body, scene, settings,
+...) are a JSON text in the attribute `eel`.
 """
 
 import json
@@ -23,7 +23,7 @@ from eel_dynamics.runs.storage.digest import add_digest, check_digest
 from eel_dynamics.runs.storage.run_contents import in_rep103_axes
 from eel_dynamics.runs.storage.variables import LABELS, OF_SWIMMERS, VARIABLES, Contents, variable_of
 
-FORMAT = 2  # of the files; format 1 does not name its axes, the paper's; a later one cannot be read
+FORMAT = 2  # of the files; format 1 has the paper's axes without naming them; later formats cannot be read
 MOST_BYTES = 2**31 - 4  # of an array in a file
 SUFFIX = ".nc"
 
@@ -40,9 +40,9 @@ def attributes_of(contents: Contents) -> dict[str, Any]:
 
 
 def write(contents: Contents, path: Any) -> None:
-    """Write `contents` to the file `path`, which has its name when it is complete.
+    """Write `contents` to the file `path`, which gets its name when it is complete.
 
-    `ValueError` where the path or the contents do not fit; `NotWritten` where the file cannot be completed.
+    `ValueError` for a bad path or contents; `NotWritten` if the file cannot be completed.
     """
     from scipy.io import netcdf_file
 
@@ -50,7 +50,7 @@ def write(contents: Contents, path: Any) -> None:
         raise ValueError(f"path must be a path that ends in {SUFFIX}, got {shown(path)}")
     check_output("path", path)
     path, sizes, attributes = Path(path), sizes_of(contents), attributes_of(contents)
-    from_json(attributes["eel"])  # what is saved can be loaded
+    from_json(attributes["eel"])  # check that it can be loaded
     for name, values in contents.arrays.items():
         if values.nbytes > MOST_BYTES:
             raise ValueError(
@@ -72,7 +72,7 @@ def write(contents: Contents, path: Any) -> None:
 
 
 def read(path: Any, kind: str) -> Contents:
-    """The contents of a file that `write` made of a `kind` ("run" or "batch").
+    """The contents of a file that `write` made for a `kind` ("run" or "batch").
 
     `ValueError` in one line for a file that is truncated, damaged, foreign, a sweep, of another version or kind.
     """
@@ -111,7 +111,7 @@ def read(path: Any, kind: str) -> Contents:
 
 
 def loaded(path: Any, kind: str, made: Callable[[Contents], Any]) -> Any:
-    """`made(contents)` of the file `path`. `ValueError` in one line, as in `read`, where they do not fit together."""
+    """`made(contents)` of the file `path`. `ValueError` in one line, as in `read`, if they do not fit together."""
     contents, named = read(path, kind), f"{kind} file {shown(os.fspath(path))}"
     if contents.axes != REP103:
         warnings.warn(f"{named} has the paper's axes, which are converted to those of REP-103", stacklevel=3)
@@ -120,7 +120,7 @@ def loaded(path: Any, kind: str, made: Callable[[Contents], Any]) -> Any:
 
 
 def sizes_of(contents: Contents) -> dict[str, int]:
-    """Length of each dimension. `ValueError` where arrays do not agree, or are empty."""
+    """Length of each dimension. `ValueError` if arrays disagree, or are empty."""
     sizes: dict[str, int] = {}
     for name, values in contents.arrays.items():
         dimensions, shape = variable_of(contents.kind, name).dimensions, values.shape

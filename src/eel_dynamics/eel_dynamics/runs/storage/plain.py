@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Laws, bodies, scenes, settings, flows, fins, errors and their estimates as values that JSON can hold, and back.
+"""Laws, bodies, scenes, settings, flows, fins, errors and their estimates as values for JSON, and back.
 
-A body whose half-axes are functions of the user's own becomes one of polynomials through their squares: no file holds
-code. All else comes back equal.
+A body whose half-axes are the user's functions is stored with polynomials through their squares, as no file holds code.
+Everything else comes back equal.
 """
 
 import warnings
@@ -39,16 +39,16 @@ from eel_dynamics.simulation.stopping import SimulationStopped
 
 HALF_AXES = ("half_width", "half_height")
 FUNCTIONS = {"named": NamedHalfAxis, "polynomial": PolynomialHalfAxis, "links": LinkHalfAxis}
-ROWS, OF_ROWS = ("time", "x", "values"), ("name", "transition", "about")  # arrays of a `SampledLaw`; its other values
+ROWS, OF_ROWS = ("time", "x", "values"), ("name", "transition", "about")  # arrays of a `SampledLaw`; its other fields
 OF_STOP = "time", "quantity", "value", "hint"  # arguments of `SimulationStopped`
-AS_EXACT = 1e-9  # of the body's length, by which a polynomial may miss a half-axis without a warning
+AS_EXACT = 1e-9  # of the body's length: a larger error of a half-axis's polynomial causes a warning
 
 
 def plain_of(value: Any) -> Any:
-    """What a run has of its own, or an error, as plain values; of a tuple a list; None as it is.
+    """A field of a run, or an error, as plain values; a tuple as a list; None unchanged.
 
-    The rows of a `SampledLaw` become text: numbers of 8 bytes in base 64. A half-axis of a body that no polynomial
-    meets to `AS_EXACT` gives a warning.
+    The rows of a `SampledLaw` become text: numbers of 8 bytes in base 64. A half-axis that no polynomial represents to
+    `AS_EXACT` causes a warning.
     """
     if value is None:
         return None
@@ -67,7 +67,7 @@ def plain_of(value: Any) -> Any:
 
 
 def law_of(plain: dict[str, Any]) -> Law | SampledLaw:
-    """The law that has become plain values."""
+    """The law from its plain values."""
     if "rows" in plain:
         rows: dict[str, Any] = {name: np.frombuffer(b64decode(text), "<f8") for name, text in plain["rows"].items()}
         rows["values"] = rows["values"].reshape(-1, 2, 3, plain["points"])
@@ -93,7 +93,7 @@ def _plain_body(body: Body) -> dict[str, Any]:
 
 
 def body_of(plain: dict[str, Any]) -> Body:
-    """The body that has become plain values."""
+    """The body from its plain values."""
     arguments = dict(plain)
     arguments["appendages"] = [Appendage(*row) for row in plain.get("appendages", ())]
     for name in (*HALF_AXES, *MASSES, *PROFILES):
@@ -105,28 +105,28 @@ def body_of(plain: dict[str, Any]) -> Body:
 
 
 def plain_robot(robot: Robot | None, body: Body) -> dict[str, Any] | None:
-    """A robot on its `body` as plain values; None as it is. `ValueError` for a torque that is a function."""
+    """A robot on its `body` as plain values; None unchanged. `ValueError` for a torque that is a function."""
     if robot is None:
         return None
     return {"parts": plain_of_robot(robot, body.length), "own_body": robot.body is not None}
 
 
 def robot_of(plain: dict[str, Any] | None, body: Body) -> Robot | None:
-    """The robot that has become plain values."""
+    """The robot from its plain values."""
     if plain is None:
         return None
     return Robot(**robot_arguments(plain["parts"]) | {"body": body if plain["own_body"] else None})
 
 
 def fins_of(plain: Sequence[dict[str, Any]] | None) -> tuple[Fin, ...]:
-    """The fins that have become plain values."""
+    """The fins from their plain values."""
     angles = (each["angle"] for each in plain or ())
     held = (RollHold(**angle) if isinstance(angle, dict) else angle for angle in angles)
     return tuple(Fin(**each | {"angle": angle}) for each, angle in zip(plain or (), held, strict=True))
 
 
 def stop_of(plain: dict[str, Any] | None) -> SimulationStopped | None:
-    """The error that has become plain values."""
+    """The error from its plain values."""
     if plain is None:
         return None
     error = SimulationStopped(*(plain[name] for name in OF_STOP))
@@ -135,11 +135,11 @@ def stop_of(plain: dict[str, Any] | None) -> SimulationStopped | None:
 
 
 def _settings(plain: dict[str, Any]) -> dict[str, Any]:
-    """The settings of an accuracy; of a swimmer of an older file that did not begin, for a budget of time, its name."""
+    """The settings of an accuracy. In an older file, a swimmer that did not begin has only the name of its budget."""
     return {"name": plain["budget"], "resolution": ANY} if "budget" in plain else plain
 
 
-READERS: dict[str, Callable[[Any], Any]] = {  # by the fields of a run whose plain values they read
+READERS: dict[str, Callable[[Any], Any]] = {  # field of a run: reader of its plain values
     "law": law_of,
     "body": body_of,
     "scene": lambda plain: Scene(**plain),
@@ -151,13 +151,13 @@ READERS: dict[str, Callable[[Any], Any]] = {  # by the fields of a run whose pla
 
 
 def each_once(values: tuple[Any, ...]) -> dict[str, Any]:
-    """A row of values, of which many may be equal, as plain values."""
+    """A tuple of values, many of them equal, as plain values that store each once."""
     places = {value: place for place, value in enumerate(dict.fromkeys(values))}
     return {"values": [plain_of(value) for value in places], "places": [places[value] for value in values]}
 
 
 def row_of(plain: Any, made: Callable[[Any], Any]) -> tuple[Any, ...]:
-    """The row of `each_once`, or of a list of plain values."""
+    """The tuple from the result of `each_once`, or from a list of plain values."""
     if not isinstance(plain, dict):
         return tuple(map(made, plain))
     values = [made(value) for value in plain["values"]]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Takes a run, or a batch, apart into `Contents`, and puts their fields together again."""
+"""Converts a run, or a batch, into `Contents`, and back."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.storage.variables import COUNTS, ENERGY, OWN, Contents, fields_of_arrays
 from eel_dynamics.simulation.bending.joint_motion import JOINT_ARRAYS
 
-OF_EACH = {  # fields of a run, and of a batch, whose swimmers have their own
+OF_EACH = {  # fields of a run: fields of a batch with a value per swimmer
     "law": "laws",
     "body": "bodies",
     "scene": "scenes",
@@ -37,9 +37,9 @@ def contents_of_run(run: Any) -> Contents:
 
 
 def arrays_of_run(run: Any) -> dict[str, np.ndarray]:
-    """The arrays of a `Run` by their names in `VARIABLES`; those that it has not are left out."""
+    """The arrays of a `Run` by their names in `VARIABLES`, without missing ones."""
     arrays = {name: getattr(run, name) for name in OWN if getattr(run, name) is not None}
-    arrays = {name: each for name, each in arrays.items() if each.size or name not in JOINT_ARRAYS}  # of no joints
+    arrays = {name: each for name, each in arrays.items() if each.size or name not in JOINT_ARRAYS}  # without joints
     return arrays | ({} if run.energy is None else {ENERGY + name: each for name, each in vars(run.energy).items()})
 
 
@@ -53,7 +53,7 @@ def fields_of_run(contents: Contents) -> dict[str, Any]:
 
 
 def in_rep103_axes(contents: Contents) -> Contents:
-    """The contents, fresh from a file, with world and head in the library's axes."""
+    """The contents from a file, with world and head converted to the library's axes."""
     if contents.axes == REP103:
         return contents
     values = contents.values
@@ -75,7 +75,7 @@ def contents_of_batch(batch: Any, arrays: dict[str, np.ndarray], energy_at_start
 
 
 def own_of_batch(contents: Contents) -> dict[str, Any]:
-    """What the swimmers of a batch have of their own."""
+    """The fields of a batch with a value per swimmer."""
     values, none = contents.values, len(contents.arrays["samples"]) * [None]
     several = {OF_EACH[name]: read for name, read in plain.READERS.items()}
     own: dict[str, Any] = {name: plain.row_of(values.get(name, none), read) for name, read in several.items()}

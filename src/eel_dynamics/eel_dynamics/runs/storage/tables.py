@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Contents of runs and batches as labelled arrays (xarray) and tables (pandas, .csv).
 
-xarray and pandas are needed for theirs alone.
+Only the functions for xarray and pandas need these packages.
 """
 
 import csv
@@ -41,7 +41,7 @@ def dataset_of(contents: Contents) -> Any:
 
 
 def columns_of(run: Any) -> dict[str, np.ndarray]:
-    """The columns (T,) of a run's table by name: time, head, centre of mass, and the ledger where there is one."""
+    """The columns (T,) of a run's table by name: time, head, centre of mass, and the ledger if there is one."""
     columns = {"time": run.time}
     columns |= {
         f"{name}_{axis}": getattr(run, name)[:, k] for name, axes in COLUMNS.items() for k, axis in enumerate(axes)
@@ -51,7 +51,7 @@ def columns_of(run: Any) -> dict[str, np.ndarray]:
 
 
 def write_columns(columns: Mapping[str, Any], path: Path) -> None:
-    """Write `columns`, (n,) each by name, as a table (.csv). `NotWritten` where it cannot be completed."""
+    """Write `columns`, (n,) each by name, as a table (.csv). `NotWritten` if it cannot be completed."""
     with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(columns)

@@ -2,7 +2,7 @@
 """The arrays of a run: dimensions, unit and meaning of each.
 
 They are those of `Observations` and `EnergyLedger`, and a few more. Files, labelled arrays, tables and the
-documentation of `Run` and `Batch` take them from here.
+documentation of `Run` and `Batch` use this list.
 """
 
 from collections.abc import Callable
@@ -33,7 +33,7 @@ OWN = {  # of a run itself
     "closure_force": Variable(("time",), "N", "magnitude of the internal force left over at the nose, less its load"),
     **JOINT_ARRAYS,
 }
-ENERGY = "energy_"  # begins the names of the ledger's arrays in a file
+ENERGY = "energy_"  # prefix of the ledger's arrays in a file
 LEDGER = {
     name: Variable(("time",), *hint.__metadata__)
     for name, hint in get_type_hints(EnergyLedger, include_extras=True).items()
@@ -61,13 +61,13 @@ PARTS = {  # arrays that not every run has
 
 
 def names_with(**there: Any) -> list[str]:
-    """Names of the arrays of runs, but time and x, where these `PARTS` are there."""
+    """Names of the arrays of runs, except time and x, with these `PARTS`."""
     absent = {"time", "x"}.union(*(PARTS[part] for part, present in there.items() if not present))
     return [name for name in VARIABLES if name not in absent]
 
 
 def shape_of(name: str, sizes: dict[str, int]) -> tuple[int, ...]:
-    """The shape of an array of a run. sizes: of the dimensions that have no labels; 0 where one is not there."""
+    """The shape of an array of a run. sizes: of the dimensions without labels; 0 if one is absent."""
     return tuple(len(LABELS[each]) if each in LABELS else sizes.get(each, 0) for each in VARIABLES[name].dimensions)
 
 
@@ -82,10 +82,10 @@ def variable_of(kind: str, name: str) -> Variable:
 def arrays_of(
     out: Observations, works: np.ndarray, start: float, joints: JointMotion | None, done: int, ledger: bool
 ) -> dict[str, np.ndarray]:
-    """The arrays of a run by their names in `VARIABLES`, but time and x. What was not asked for is left out.
+    """The arrays of a run by their names in `VARIABLES`, except time and x, without those that were not requested.
 
-    out, works (T, 7) [J], start [J]: what was observed, the works since the start and the energy there. joints: the
-    motion of a robot's. done: the first so many of the instants.
+    out, works (T, 7) [J], start [J]: the observations, the works since the start and the energy there. joints: the
+    motion of a robot's joints. done: number of valid instants.
     """
     arrays = {name: array[:done] for name, array in out.arrays().items() if name not in SENSORS}
     energies, powers, closure = (arrays.pop(name) for name in ("energies", "powers", "closure"))
@@ -103,10 +103,10 @@ def arrays_of(
 
 
 def fields_of_arrays(arrays: dict[str, np.ndarray], robot: Any) -> dict[str, Any]:
-    """The fields of a `Run` that `arrays` by their names in `VARIABLES` give; None for one that is not there.
+    """The fields of a `Run` from `arrays`, by their names in `VARIABLES`; None for a missing one.
 
-    robot: of the run; one of tails alone may have no arrays of joints. Files of still water or imposed bending need not
-    have those of the ledger.
+    robot: of the run; one with tails only may have no arrays of joints. Files of still water or imposed bending may
+    lack their powers in the ledger.
     """
     energy: EnergyLedger | None = None
     if ENERGY + "residual" in arrays:
@@ -123,7 +123,7 @@ def fields_of_arrays(arrays: dict[str, np.ndarray], robot: Any) -> dict[str, Any
 
 
 def documented_arrays(kind: str) -> Callable[[Kind], Kind]:
-    """Decorator of the dataclass of a `kind`: shape, unit and meaning of its arrays follow its docstring."""
+    """Decorator of the dataclass of a `kind`: appends shape, unit and meaning of its arrays to its docstring."""
 
     def documented(owner: Kind) -> Kind:
         lines = []
