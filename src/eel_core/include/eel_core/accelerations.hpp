@@ -3,9 +3,9 @@
 //
 //     alpha' = R Kddot + omega x R Kdot        acc' = alpha x t1 + omega x (omega x t1)
 //
-// Both are linear in the head's acceleration, which makes the wrench on the whole body vanish. Observations and the
-// ledger need them; marching takes the head's momentum, not its acceleration (momentum.hpp). The head's and the joints'
-// accelerations of robots: `find_accelerations_and_drift` in bending/balance.hpp.
+// Both are linear in the head's acceleration, which follows from zero total wrench on the whole body. Observations and
+// the ledger need them; a march uses the head's momentum, not its acceleration (momentum.hpp). For robots see
+// `find_accelerations_and_drift` in bending/balance.hpp.
 #pragma once
 
 #include "eel_core/loads/drag_kinks.hpp"
@@ -22,7 +22,7 @@ inline Vector3<Lanes> angular_acceleration_slope(const LawOnGrid& law, const Wor
     return turning(frame, law.combine_both(law.tables->node, work.factor, 2, k)) +
            cross(work.omega[k], turning(frame, work.curvature_rate[k]));
 }
-// acc', that of the linear acceleration, by the angular one.
+// acc', the slope of the linear acceleration, from the angular one.
 template <class M>
 EEL_CORE_INLINE inline Vector<M, Lanes> linear_acceleration_slope(const Workspace<M>& work,
                                                                   const Field<Angular<M, double>>& angular,
@@ -33,7 +33,7 @@ EEL_CORE_INLINE inline Vector<M, Lanes> linear_acceleration_slope(const Workspac
     return cross(angular[k], t1) + cross(omega, cross(omega, t1));
 }
 
-// Angular accelerations where the head has none.
+// Angular accelerations without acceleration of the head.
 inline void set_turning_acceleration(const Swimmer& swimmer, const LawOnGrid& law, Workspace<Space>& work)
 {
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
@@ -48,7 +48,7 @@ inline void set_turning_acceleration(const Swimmer& swimmer, const LawOnGrid& la
     }
 }
 
-// The wrench that the motion of a block's nodes takes of sections, about the head. In section axes:
+// The wrench, about the head, needed for the motion of a block's nodes. In section axes:
 //
 //     f_N = M Vdot + Omega x M V      f_C = J Omegadot + Omega x J Omega + V x M V
 template <class M>
@@ -66,7 +66,7 @@ EEL_CORE_INLINE inline Wrench<M, Lanes> inertial_wrench(const Section<Lanes>& se
     return about_head<M>(frame, work.position[k], taken);
 }
 
-// What the moment m e of sections, m h = `lever`, adds to it: m (Omegadot x e + Omega x (Omega x e)), and the torque
+// The part of the moment m e of sections, m h = `lever`: m (Omegadot x e + Omega x (Omega x e)), and the torque
 // m e x (Vdot + Omega x V).
 inline Wrench<Space, Lanes> wrench_of_offset(Lanes lever, const Workspace<Space>& work,
                                              const Accelerations<Space>& acceleration, std::size_t k)
@@ -76,7 +76,7 @@ inline Wrench<Space, Lanes> wrench_of_offset(Lanes lever, const Workspace<Space>
     return {cross(work.position[k], force) + cross(moment, acceleration.linear[k]), force};
 }
 
-// Adds it to the `density` of the balance. Returns its integral over the body.
+// Adds that part to the `density` of the balance. Returns its integral over the body.
 EEL_CORE_APART inline Wrench<Space, double> add_offset(const Swimmer& swimmer, const Accelerations<Space>& acceleration,
                                                        Workspace<Space>& work)
 {
@@ -89,7 +89,7 @@ EEL_CORE_APART inline Wrench<Space, double> add_offset(const Swimmer& swimmer, c
     return total_of(sum);
 }
 
-// Writes to `density` the wrench that the motion takes per length. Returns the integral of the density over the body.
+// Writes to `density` the wrench per length needed for the motion. Returns its integral over the body.
 template <class M>
 Wrench<M, double> set_inertial_density(const Swimmer& swimmer, const Accelerations<M>& acceleration, Workspace<M>& work)
 {
@@ -105,8 +105,8 @@ Wrench<M, double> set_inertial_density(const Swimmer& swimmer, const Acceleratio
     return taken;
 }
 
-// Adds the resistance, minus the drag, with the signs at the nodes less their jumps at the kinks ahead: as smooth as
-// the motion. `add_jumps` gives these back.
+// Adds the resistance, minus the drag, with the signs at the nodes minus their jumps at the kinks ahead. This is as
+// smooth as the motion. `add_jumps` restores the jumps.
 template <class M>
 void add_resistance(const Swimmer& swimmer, Workspace<M>& work)
 {
@@ -122,7 +122,7 @@ void add_resistance(const Swimmer& swimmer, Workspace<M>& work)
     }
 }
 
-// Accelerations of the sections where the head has none.
+// Accelerations of the sections without acceleration of the head.
 template <class M>
 void find_shape_accelerations(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
 {
@@ -133,7 +133,7 @@ void find_shape_accelerations(const Swimmer& swimmer, const LawOnGrid& law, Work
     swimmer.grid.from_nose.integrate(work.integrand, own.linear, Components<Angular<M, Lanes>>::count);
 }
 
-// What the water does on the nose [N] beside its added mass times the acceleration.
+// Force of the water on the nose [N] without its added mass times the acceleration.
 template <class M>
 double water_on_nose(const Swimmer& swimmer, const Workspace<M>& work)
 {
@@ -141,8 +141,8 @@ double water_on_nose(const Swimmer& swimmer, const Workspace<M>& work)
     return work.flowing ? drag + swimmer.nose_mass * work.flow.nose().acceleration().x : drag;
 }
 
-// The load that eq. (60) leaves to accelerate the head, where it has no acceleration; `on_nose` [N]: of the water. Sets
-// the accelerations of the shape, and the `density` of the balance for them.
+// The load that accelerates the head in eq. (60), computed with zero acceleration of the head. on_nose: [N], force of
+// the water. Sets the accelerations of the shape, and the `density` of the balance for them.
 template <class M>
 EEL_CORE_INLINE inline Wrench<M, double> accelerating_load(const Swimmer& swimmer, const LawOnGrid& law, double on_nose,
                                                            Workspace<M>& work)
@@ -158,8 +158,8 @@ EEL_CORE_INLINE inline Wrench<M, double> accelerating_load(const Swimmer& swimme
     return left;
 }
 
-// Acceleration of the head: eq. (60) in accelerations. `work` holds the true velocities, the loads that go with them
-// and the factored inertia. The density of the balance and the forces of the fins stay those of a head without any.
+// Acceleration of the head: eq. (60) in accelerations. `work` holds the true velocities, their loads and the factored
+// inertia. The density of the balance and the forces of the fins are still those without the head's acceleration.
 template <class M>
 EEL_CORE_APART void find_head_acceleration(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
 {
@@ -170,7 +170,7 @@ EEL_CORE_APART void find_head_acceleration(const Swimmer& swimmer, const LawOnGr
     work.nose_force = on_nose - swimmer.nose_mass * work.head_acceleration.linear.x;
 }
 
-// Then the accelerations of the sections, and the density of the balance with all loads.
+// After that, the accelerations of the sections, and the density of the balance with all loads.
 template <class M>
 void find_accelerations(const Swimmer& swimmer, Workspace<M>& work)
 {

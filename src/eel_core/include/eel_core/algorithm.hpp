@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// SECTION 7.1: the algorithm of one instant, from the shape and the head's state to the rates of both, and to the
-// internal wrench.
+// SECTION 7.1: the algorithm of one instant, from the shape and the head's state to their rates, and to the internal
+// wrench.
 #pragma once
 
 #include "eel_core/internal_wrench.hpp"
@@ -22,11 +22,11 @@ EEL_CORE_INLINE inline void find_loads(const Swimmer& swimmer, Workspace<M>& wor
     integrate_resistive_load(swimmer, work);
 }
 
-// Height [m] of the nose over the level of no potential energy: z = 0, carried along by the current, in whose frame the
-// powers are.
+// Height [m] of the nose above zero potential energy: z = 0, moving with the current, in whose frame powers are
+// defined.
 inline double height_in(const Water& water, double time, const State& y) { return y[2] - water.current.z * time; }
 
-// Shape of the body and axes of the head in state y at `time` [s], with the flow of such `water` along it, and its
+// Shape of the body and axes of the head in state y at `time` [s], with the flow of this `water` along it, and its
 // fins.
 template <class M>
 void place_body(const Swimmer& swimmer, const LawOnGrid& law, const Water& water, double time, const State& y,
@@ -39,7 +39,7 @@ void place_body(const Swimmer& swimmer, const LawOnGrid& law, const Water& water
         if (!work.fins.empty()) place_fins(swimmer, law, water, time, y, work);
 }
 
-// The same, and the twist of the head. False where the inertia is not positive definite.
+// The same, and the twist of the head. False if the inertia is not positive definite.
 template <class M>
 bool find_head_motion(const Swimmer& swimmer, const LawOnGrid& law, const Water& water, double time, const State& y,
                       Workspace<M>& work)
@@ -76,7 +76,7 @@ bool rate_of_state(const Swimmer& swimmer, const LawOnGrid& law, const Water& wa
     return true;
 }
 
-// Powers [W] of all but the actuators, after the acceleration of the head.
+// Powers [W] of all except the actuators, after the acceleration of the head.
 template <class M>
 EEL_CORE_INLINE inline Powers powers_of_loads(const Swimmer& swimmer, const Workspace<M>& work)
 {
@@ -96,8 +96,8 @@ EEL_CORE_INLINE inline Powers powers_of_loads(const Swimmer& swimmer, const Work
     return powers;
 }
 
-// Powers [W] of actuators, wake, nose, drag, flow, fins and appendages, in the motion that `work` holds; with the
-// acceleration of the head, eq. (60). Not inlined: the same to the last bit whoever asks.
+// Powers [W] of actuators, wake, nose, drag, flow, fins and appendages, in the motion held by `work`, with the
+// acceleration of the head, eq. (60). Not inlined, so that every caller gets the same bits.
 template <class M>
 EEL_CORE_APART Powers find_powers(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
 {
@@ -113,7 +113,7 @@ EEL_CORE_APART Powers find_powers(const Swimmer& swimmer, const LawOnGrid& law, 
 }
 
 // THE STEP OF THE INTERNAL WRENCH, after the accelerations: the `integral` of the balance's density from the nose to
-// the stations, from which `internal_wrench` gives eq. (50) there.
+// the stations. `internal_wrench` then gives eq. (50) there.
 inline void find_internal_wrench(const Swimmer& swimmer, const Workspace<Space>& work, UnsignedResistance& resistance,
                                  Field<Wrench<Space, double>>& integral)
 {

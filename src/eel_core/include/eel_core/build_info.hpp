@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the including file is compiled, from what the compiler itself says.
+// Compiler, flags and instruction set of the including file.
 #pragma once
 
 #include <string_view>
 
-#ifndef EEL_CORE_FLAGS  // included by another build
+#ifndef EEL_CORE_FLAGS  // included from another build
 #define EEL_CORE_FLAGS ""
 #endif
 

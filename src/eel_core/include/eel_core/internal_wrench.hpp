@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The internal wrench, eq. (50), from the balance of the part of the body behind each section; and the power that
-// actuators need for the change of shape.
+// The internal wrench, eq. (50), from the balance of the part of the body behind each section; and the actuators' power
+// for the change of shape.
 #pragma once
 
 #include "eel_core/accelerations.hpp"
@@ -11,7 +11,7 @@ namespace eel_core {
 using Powers = std::array<double, 7>;  // [W], of actuators, wake, nose, drag, flow, fins and appendages
 
 // The wrench on the part of the body behind a section, w_tail - integral from X to the tail of the density, about the
-// section and in its axes; from the integral `integral` X.
+// section and in its axes; computed from the `integral` from the nose to X.
 template <class M>
 Wrench<M, Lanes> wrench_behind(const Workspace<M>& work, const Wrench<M, Lanes>& integral, const Frame<M, Lanes>& frame,
                                const Vector<M, Lanes>& position)
@@ -20,9 +20,8 @@ Wrench<M, Lanes> wrench_behind(const Workspace<M>& work, const Wrench<M, Lanes>&
     return {frame.local(at_head.angular - cross(position, at_head.linear)), frame.local(at_head.linear)};
 }
 
-// THE INTERNAL WRENCH, eq. (50), (51), at a block of sections: the wrench behind each, less the momentum of the water
-// that is swept past it. v, omega: velocity of the sections through the water and
-// Omega, in their axes.
+// THE INTERNAL WRENCH, eq. (50), (51), at a block of sections: the wrench behind each, minus the momentum of the water
+// swept past it. v, omega: velocity of the sections through the water and Omega, in their axes.
 template <class M>
 Wrench<M, Lanes> internal_wrench(const Swimmer& swimmer, const Workspace<M>& work, const Wrench<M, Lanes>& integral,
                                  const Frame<M, Lanes>& frame, const Vector<M, Lanes>& position,
@@ -34,7 +33,7 @@ Wrench<M, Lanes> internal_wrench(const Swimmer& swimmer, const Workspace<M>& wor
     return swimmer.distributed_pressure ? plus_axial<M, Lanes>(wrench, swept.water_energy(v, omega)) : wrench;
 }
 
-// Drag and weight on a block of sections, about them and weighed by their length, in the axes of the head.
+// Drag and weight on a block of sections, about them and weighted by their length, in the axes of the head.
 template <class M>
 EEL_CORE_INLINE inline Wrench<M, Lanes> loads_on_sections(const Swimmer& swimmer, const Workspace<M>& work,
                                                           std::size_t k)
@@ -55,12 +54,12 @@ EEL_CORE_INLINE inline Wrench<M, Lanes> loads_on_sections(const Swimmer& swimmer
     return load;
 }
 
-// The power that the change of shape needs [W] where the head has no acceleration, after `find_head_acceleration`:
+// The power [W] needed for the change of shape without acceleration of the head, after `find_head_acceleration`:
 //
 //     - integral C . Kdot = integral (omega_s . c + v_s . n) - omega_s(l) . C_t - v_s(l) . N_t
 //
-// by parts, since omega_s' = R Kdot and v_s' = omega_s x t1 of the change of shape: (c, n) is what the motion takes of
-// a section, less its loads. An acceleration a of the head adds a . (momentum of the change of shape).
+// by parts, since omega_s' = R Kdot and v_s' = omega_s x t1 of the change of shape. (c, n): wrench needed for a
+// section's motion, minus its loads. An acceleration a of the head adds a . (momentum of the change of shape).
 template <class M>
 double power_of_shape(const Swimmer& swimmer, const Workspace<M>& work)
 {

@@ -10,15 +10,15 @@
 
 namespace eel_core {
 
-// R (0, K2, K3): the turning of sections by their bending, in the axes of the head.
+// R (0, K2, K3): the rotation of sections by their bending, in the axes of the head.
 template <Number T>
 Vector3<T> turning(const Frame3<T>& frame, const Vector2<T>& bending)
 {
     return bending.x * frame.axis2 + bending.y * frame.axis3;
 }
 
-// Rotations over the intervals that end at the nodes: apart from their product, in which each block waits for the one
-// before.
+// Rotations over the intervals that end at the nodes. They are separate from their product, in which each block waits
+// for the previous one.
 inline void turn_intervals(const Swimmer& swimmer, const LawOnGrid& law, Workspace<Space>& work)
 {
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
@@ -43,7 +43,7 @@ inline void orient_sections(const Swimmer& swimmer, const LawOnGrid& law, Worksp
     swimmer.grid.from_nose.integrate(work.integrand, work.shape_omega);
 }
 
-// In the plane the angle of a section is the integral of K3, tabulated with the law.
+// In the plane the angle of a section is the integral of K3, which is tabulated with the law.
 inline void orient_sections(const Swimmer& swimmer, const LawOnGrid& law, Workspace<Plane>& work)
 {
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
@@ -53,8 +53,8 @@ inline void orient_sections(const Swimmer& swimmer, const LawOnGrid& law, Worksp
     }
 }
 
-// Shape of the body and velocities due to its change: `set_velocities` adds the head's. Sets `factor`, which holds
-// until the next instant.
+// Shape of the body and velocities due to its change; `set_velocities` adds the head's motion. Sets `factor`, which is
+// valid until the next instant.
 template <class M>
 void configure(const Swimmer& swimmer, const LawOnGrid& law, double time, Workspace<M>& work)
 {
@@ -70,7 +70,7 @@ void configure(const Swimmer& swimmer, const LawOnGrid& law, double time, Worksp
     swimmer.grid.from_nose.integrate(work.integrand, work.shape_velocity, linear);
 }
 
-// Fields along the body with a motion of the head, from those without it: a, and b + a x r.
+// Adds a motion of the head to fields along the body: a, and b + a x r.
 template <class M>
 void add_head_motion(const Swimmer& swimmer, const Spatial<M, double>& head, const auto& position,
                      const auto& shape_turning, const auto& shape_moving, auto& turning, auto& moving)
@@ -81,7 +81,7 @@ void add_head_motion(const Swimmer& swimmer, const Spatial<M, double>& head, con
     }
 }
 
-// True velocities, from those due to the change of shape and the twist of the head, which becomes `work.twist`.
+// True velocities, from those due to the change of shape and the twist of the head, which is stored in `work.twist`.
 template <class M>
 void set_velocities(const Swimmer& swimmer, const Twist<M, double>& twist, Workspace<M>& work)
 {

@@ -39,9 +39,10 @@ struct Ramp {
 
 // Terms of the law with the same axis, period and envelope.
 struct Wave {
-    double period;                           // [s], 0: constant in time
-    std::vector<std::vector<Ramp>> factors;  // of the envelope: their ramps add up, and they multiply; none: 1
-    std::size_t sine, cosine;                // their rows: of sin(kX + phase) and cos(kX + phase)
+    double period;  // [s], 0: constant in time
+    std::vector<std::vector<Ramp>>
+        factors;               // of the envelope: the ramps of a factor add up, and factors multiply; none: 1
+    std::size_t sine, cosine;  // rows of sin(kX + phase) and cos(kX + phase)
 
     Jet envelope(double time) const
     {
@@ -71,7 +72,7 @@ struct Wave {
 };
 
 // Factors of the rows that hold value, rate and acceleration at one end of an interval of `length` [s], at the fraction
-// `s` of the way from that end: quintics that vanish with two derivatives at the other end. `sign` -1: the end's.
+// `s` from that end: quintics that vanish with two derivatives at the other end. `sign` -1: for the interval's end.
 inline void set_quintic(std::vector<Jet>& factor, std::size_t row, double s, double length, double sign)
 {
     const double s2 = s * s, s3 = s2 * s, left = 1.0 - s, rate = sign / length, accel = 1.0 / (length * length);
@@ -86,13 +87,13 @@ inline void set_quintic(std::vector<Jet>& factor, std::size_t row, double s, dou
                        scale * accel * left * (1.0 - s * (8.0 - 10.0 * s))};
 }
 
-// Six rows for each axis, of values at both ends of an interval; three, if the second end is zero (a blend that dies
-// out).
+// Six rows for each axis, for values at both ends of an interval; three, if the second end is zero (a blend that decays
+// to zero).
 struct Quintic {
     static constexpr std::size_t none = static_cast<std::size_t>(-1);
-    std::size_t row = none;  // the first
+    std::size_t row = none;  // index of the first row
     double start = 0.0, end = 0.0;
-    std::size_t of_start = 0, of_end = 3;  // of a segment: where the rows of an axis hold either end
+    std::size_t of_start = 0, of_end = 3;  // of a segment: offsets of the rows for either end
 
     void set_segment(std::vector<Jet>& factor, double time) const
     {
@@ -117,7 +118,7 @@ struct Quintic {
     }
 };
 
-// Rows at n points: one number each, or the three Magnus moments.
+// Rows at n points: one number per point, or the three Magnus moments.
 template <std::size_t Parts>
 struct RowTable {
     std::size_t blocks = 0;
@@ -128,7 +129,7 @@ struct RowTable {
 
     const std::array<Lanes, Parts>& at(std::size_t row, std::size_t block) const { return lanes[row * blocks + block]; }
 
-    // Sets a row from the values of n points, one part behind the other.
+    // Sets a row from the values of n points, part after part.
     void set(std::size_t row, const double* values, std::size_t n)
     {
         for (std::size_t block = 0; block < blocks; ++block)
@@ -140,7 +141,7 @@ struct RowTable {
                 lanes[row * blocks + block][part] = Lanes::load(here < width ? filled_up.data() : from);
             }
     }
-    // The reverse of `set`.
+    // The inverse of `set`.
     void get(std::size_t row, double* values, std::size_t n) const
     {
         for (std::size_t part = 0; part < Parts; ++part)
@@ -149,7 +150,7 @@ struct RowTable {
     }
 };
 
-// The rows of a law, tabulated on the nodes and the stations of a swimmer.
+// The rows of a law, tabulated at the nodes and the stations of a swimmer.
 struct LawTables {
     std::vector<std::size_t> rows_of[2];  // of each axis, `LawOnGrid::Axis`
     RowTable<1> node;                     // [rad/m] at the nodes, per unit of factor
@@ -189,7 +190,7 @@ struct LawTables {
         }
     }
 
-    // Hands over which rows are in force, and all rows by their columns (`march/archive.hpp`).
+    // Archives which rows are active, and all rows by their columns (`march/archive.hpp`).
     template <class Archive>
     void pass(Archive& archive)
     {
@@ -217,7 +218,7 @@ struct LawOnGrid {
     double origin = 0.0;  // [s], simulation time of the law's own t = 0
     std::vector<Wave> waves;
     Quintic segment, blend;
-    std::vector<AngleLaw> fins;  // what the servos of the fins are given; none: 0
+    std::vector<AngleLaw> fins;  // given angles of the fins' servos; none: 0
 
     // Factors of the rows at `time` [s].
     void set_factors(double time, std::vector<Jet>& factor) const
@@ -227,7 +228,7 @@ struct LawOnGrid {
         blend.set_blend(factor, time);
     }
 
-    // Sum over the rows of an axis of factor times row, at a block of points; `derivative` 0, 1, 2.
+    // Sum of factor times row over the rows of an axis, at a block of points; `derivative` 0, 1, 2.
     template <std::size_t Parts>
     std::array<Lanes, Parts> combine(const RowTable<Parts>& table, Axis axis, const std::vector<Jet>& factor,
                                      std::size_t derivative, std::size_t block) const
@@ -245,7 +246,7 @@ struct LawOnGrid {
     {
         return {combine(table, pitch, factor, derivative, block)[0], combine(table, yaw, factor, derivative, block)[0]};
     }
-    // The rotations over the intervals whose `moments` these are.
+    // The rotations over the intervals with these `moments`.
     Quaternion<Lanes> turn(const RowTable<3>& moments, const std::vector<Jet>& factor, std::size_t block) const
     {
         const auto p = combine(moments, pitch, factor, 0, block), y = combine(moments, yaw, factor, 0, block);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Inertia and momentum of body and water about the head, and the twist that goes with a momentum: section 6.
+// Inertia and momentum of body and water about the head, and the twist for a given momentum: section 6.
 //
 //     momentum = I_o twist + momentum of the change of shape
 #pragma once
@@ -11,7 +11,7 @@
 
 namespace eel_core {
 
-// I_o in three parts: angular momentum by Omega, by V (column by column), linear momentum by V.
+// I_o in three parts: angular momentum per Omega, per V (column by column), linear momentum per V.
 template <class M, Number T>
 struct Inertia;
 
@@ -23,7 +23,7 @@ struct Inertia<Space, T> {
     static constexpr std::tuple members{&Inertia::angular, &Inertia::by_v1, &Inertia::by_v2, &Inertia::by_v3,
                                         &Inertia::linear};
 
-    // Of one section with mass matrix A and inertia matrix about the head's axes, at r: r x A, and r x A x r^T.
+    // For a section at r with mass matrix A and inertia matrix about the head's axes: r x A, and r x A x r^T.
     EEL_CORE_INLINE static Inertia of(const Symmetric3<T>& turning, const Symmetric3<T>& a, const Vector3<T>& r)
     {
         const Vector3<T> c1 = cross(r, Vector3<T>{a.xx, a.xy, a.xz}), c2 = cross(r, Vector3<T>{a.xy, a.yy, a.yz}),
@@ -36,7 +36,7 @@ struct Inertia<Space, T> {
                 c3,
                 a};
     }
-    // Of the whole body, with the nose's m_o, which goes with V1.
+    // For the whole body, with the nose's m_o, which acts on V1.
     Factored<6> whole(double nose_mass) const
     {
         const auto &w = angular, &v = linear;
@@ -69,8 +69,8 @@ struct Inertia<Plane, T> {
     }
 };
 
-// Adds what the moments s = m e of the sections have of the inertia, and returns what of the momentum of the change of
-// shape: Omega x s, with r x (Omega x s) + s x V about the head.
+// Adds the inertia of the sections' moments s = m e, and returns their momentum of the change of shape: Omega x s, with
+// r x (Omega x s) + s x V about the head.
 EEL_CORE_APART inline Momentum<Space, double> add_offset_inertia(const Swimmer& swimmer, Workspace<Space>& work)
 {
     Inertia<Space, Lanes> inertia{};
@@ -93,7 +93,7 @@ EEL_CORE_APART inline Momentum<Space, double> add_offset_inertia(const Swimmer& 
     return total_of(momentum);
 }
 
-// Sets the inertia of a configured body; returns the momentum of its change of shape, without the nose's.
+// Sets the inertia of a configured body. Returns the momentum of its change of shape, without the nose's.
 template <class M>
 Momentum<M, double> inertia_and_momentum(const Swimmer& swimmer, Workspace<M>& work)
 {
@@ -118,7 +118,7 @@ Momentum<M, double> inertia_and_momentum(const Swimmer& swimmer, Workspace<M>& w
     return whole;
 }
 
-// Sets the head's twist from `work.momentum` in a configured body, and factors the inertia. False where that is not
+// Sets the head's twist from `work.momentum` in a configured body, and factors the inertia. False if that is not
 // positive definite.
 template <class M>
 EEL_CORE_APART bool find_twist(const Swimmer& swimmer, Workspace<M>& work)
@@ -133,7 +133,7 @@ EEL_CORE_APART bool find_twist(const Swimmer& swimmer, Workspace<M>& work)
     return definite;
 }
 
-// The momentum that goes with the twist of the head, in a configured body.
+// The momentum for a twist of the head, in a configured body.
 template <class M>
 Momentum<M, double> momentum_of(const Swimmer& swimmer, const Twist<M, double>& twist, Workspace<M>& work)
 {

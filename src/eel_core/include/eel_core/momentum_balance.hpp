@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Motion of the head: eq. (27), in the momentum form of the balance (60). It needs no acceleration; that of the head,
-// which the internal wrench needs, is found in accelerations.hpp.
+// Motion of the head: eq. (27), in the momentum form of the balance (60). It needs no acceleration. The head's
+// acceleration, which the internal wrench needs, is found in accelerations.hpp.
 //
 // The balance is the time derivative of the total momentum P' = P + m_o V1 E1, L about the head. With that momentum as
 // the state, neither accelerations nor Kddot are needed to march:
@@ -18,11 +18,11 @@
 namespace eel_core {
 
 // [position 0:3 m; orientation 3:7, quaternion x y z w; angular 7:10 and linear 10:13 momentum], all in the world's
-// axes, momentum about the head. Angles of fins' servos 13:16 [rad], or nothing, to fill up the lanes.
+// axes, momentum about the head. Angles of fins' servos 13:16 [rad], or padding of the lanes.
 inline constexpr std::size_t state_size = 13, most_servos = state_space - state_size;
 using State = std::array<double, state_space>;
 
-// Axes of the head in the world, by the quaternion of the state, which need not have length one.
+// Axes of the head in the world, from the quaternion of the state, which need not have unit length.
 inline Frame3<double> head_frame(const State& y, Space)
 {
     const double scale = 1.0 / std::sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6]);
@@ -50,7 +50,7 @@ inline Momentum<Plane, double> momentum_in_head(const State& y, const Frame2<dou
     return {y[9], head.local(Vector2{y[10], y[11]})};
 }
 
-// Puts a momentum, or its rate, given in the axes of the head into the state, or its rate.
+// Stores a momentum, or its rate, given in the axes of the head, in the state, or its rate.
 inline void put_momentum(const Momentum<Space, double>& momentum, const Frame3<double>& head, State& y)
 {
     const auto angular = head.parent(momentum.angular), linear = head.parent(momentum.linear);
@@ -62,7 +62,7 @@ inline void put_momentum(const Momentum<Plane, double>& momentum, const Frame2<d
     y[7] = y[8] = y[12] = 0.0, y[9] = momentum.angular, y[10] = linear.x, y[11] = linear.y;
 }
 
-// Puts the rates of position and orientation for the head's twist; `current` [m/s]: of the water, in the world's axes.
+// Stores the rates of position and orientation for the head's twist. current: [m/s], of the water, in the world's axes.
 inline void put_velocity(const Twist<Space, double>& twist, const Frame3<double>& head, const Vector3<double>& current,
                          const State& y, State& rate)
 {
@@ -83,7 +83,7 @@ inline void put_velocity(const Twist<Plane, double>& twist, const Frame2<double>
     rate[3] = rate[4] = 0.0, rate[5] = 0.5 * y[6] * twist.angular, rate[6] = -0.5 * y[5] * twist.angular;
 }
 
-// Rate of the momentum of world vectors, in the axes of the head, by the loads.
+// Rate of the momentum as a world vector, in the axes of the head, from the loads.
 template <class M>
 EEL_CORE_INLINE inline Momentum<M, double> momentum_rate_from_loads(const Swimmer& swimmer, const Workspace<M>& work)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fields along the body: numbers, vectors or frames at the nodes, each component in a row of its own.
+// Fields along the body: numbers, vectors or frames at the nodes, with each component in a row of its own.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,8 @@ namespace eel_core {
 
 inline std::size_t blocks_of(std::size_t nodes) { return (nodes + filled - 1) / filled * (filled / width); }
 
-// A field of numbers, of vectors, ...: `Value` is that of one node, and `Block` those of `width` neighbours. There is
-// room behind the last node, so that a block can be read from any node on.
+// A field of numbers, of vectors, ...: `Value` is the value at one node, `Block` the values at `width` neighbouring
+// nodes. There is padding after the last node, so that a block can be read from any node on.
 template <class Value>
 class Field {
   public:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two motions: in space, and in the plane that is spanned by axes 1 and 2, where rotations are angles about axis 3.
+// The two kinds of motion: in space, and in the plane of axes 1 and 2, where rotations are angles about axis 3.
 //
-// Vectors have three components in space and two in the plane; what turns (angular velocity, torque, angular momentum)
-// is a vector in space and a number in the plane. Every formula of the mechanics is written once over both.
+// Vectors have three components in space and two in the plane. Angular quantities (angular velocity, torque, angular
+// momentum) are vectors in space and numbers in the plane. Every formula of the mechanics is written once for both.
 #pragma once
 
 #include <tuple>
@@ -11,15 +11,15 @@
 
 namespace eel_core {
 
-// Inlined before anything else is decided, so that members of compounds are in registers.
+// Inlined first, so that members of compounds stay in registers.
 #define EEL_CORE_INLINE __attribute__((always_inline))
 
-// Compounds of numbers, or of further compounds, name their members in order; what adds, sums and stores them goes
-// through these.
+// Compounds of numbers, or of further compounds, list their members in order. Addition, sums and stores go through this
+// list.
 template <class T>
 concept Compound = requires { T::members; };
 
-// The same compound of another number.
+// The same compound with another number type.
 // clang-format off
 template <class C, Number B> struct Rebound;
 template <Number T, Number B> struct Rebound<T, B> { using Type = B; };
@@ -109,14 +109,14 @@ template <Number A, Number B> auto cross(A turning, Vector2<B> b) { return Vecto
 template <Number A, Number B> auto cross(A, B) { return decltype(A() * B())(0.0); }  // both along axis 3
 // clang-format on
 
-// Axes of a section, or of the head, in those of its parent: t1, t2, t3 are the columns of a rotation.
+// Axes of a section, or of the head, in its parent's axes: t1, t2, t3 are the columns of a rotation.
 template <Number T>
 struct Frame3 {
     Vector3<T> axis1, axis2, axis3;
     static constexpr std::tuple members{&Frame3::axis1, &Frame3::axis2, &Frame3::axis3};
 
     Vector3<T> t1() const { return axis1; }
-    // Components in these axes of a vector given in the parent's; and the inverse.
+    // From components in the parent's axes to components in these axes; and the inverse.
     auto local(auto v) const { return Vector3{dot(axis1, v), dot(axis2, v), dot(axis3, v)}; }
     auto parent(auto v) const { return v.x * axis1 + v.y * axis2 + v.z * axis3; }
 };
@@ -186,7 +186,7 @@ using Angular = typename M::template Angular<T>;
 template <class M, Number T>
 using Frame = typename M::template Frame<T>;
 
-// An angular and a linear part. About the head and in its axes, unless said.
+// An angular and a linear part; about the head and in its axes, unless stated otherwise.
 template <class M, Number T>
 struct Spatial {
     Angular<M, T> angular;
@@ -217,7 +217,7 @@ using Wrench = Spatial<M, T>;  // torque [N m], force [N]; or per length
 template <class M, Number T>
 using Momentum = Spatial<M, T>;  // [kg m^2/s], [kg m/s]
 
-// The wrench about the head of a section at `position` with such axes, from its torque and force in its own axes: Ad*.
+// The wrench about the head, from torque and force in the axes of a section at `position` with axes `frame`: Ad*.
 template <class M>
 EEL_CORE_INLINE inline auto about_head(const auto& frame, const auto& position, const auto& in_section)
 {
@@ -225,7 +225,7 @@ EEL_CORE_INLINE inline auto about_head(const auto& frame, const auto& position, 
     return Wrench<M, decltype(force.x)>{frame.parent(in_section.angular) + cross(position, force), force};
 }
 
-// `wrench` with a force along axis 1 added.
+// The `wrench` plus a force along axis 1.
 template <class M, Number T>
 Wrench<M, T> plus_axial(Wrench<M, T> wrench, T force)
 {
@@ -242,7 +242,7 @@ With<S, double> total_of(const S& value)
     return Components<With<S, double>>::make([&](std::size_t k) { return sums[k]; });
 }
 
-// Components of `value` by their number.
+// Components of `value` by index.
 template <class S>
 auto components_of(const S& value)
 {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers of the mechanics: a double, or `Lanes`, the doubles of neighbouring nodes side by side.
+// Numbers of the mechanics: a double, or `Lanes`, the doubles of neighbouring nodes, one per lane.
 //
-// Every formula is a template over the number, so that it serves the head (a double) and the nodes along the body
-// (lanes). Arithmetic is that of each lane by itself; a double beside lanes counts for all of them.
+// Every formula is a template over the number type, for the head (a double) and for the nodes along the body (lanes).
+// Arithmetic is lane by lane; a double combined with lanes applies to all of them.
 #pragma once
 
 #include <array>
@@ -21,13 +21,14 @@
 namespace eel_core {
 
 #if defined(__AVX512F__)
-inline constexpr std::size_t width = 8;  // lanes: the doubles of one register
+inline constexpr std::size_t width = 8;  // lanes: doubles in one register
 #elif defined(__AVX__)
 inline constexpr std::size_t width = 4;
 #else
 inline constexpr std::size_t width = 2;
 #endif
-inline constexpr std::size_t filled = 8;  // of which the number of nodes is a multiple, on every machine: one grid
+inline constexpr std::size_t filled =
+    8;  // the number of nodes is a multiple of this, so that all machines use the same grid
 
 class Mask;
 
@@ -37,7 +38,7 @@ class Lanes {
     using Bits = std::int64_t __attribute__((vector_size(width * sizeof(double))));
 
     Lanes() = default;
-    Lanes(double value) : native_(value - Native{}) {}  // NOLINT(google-explicit-constructor): counts for all lanes
+    Lanes(double value) : native_(value - Native{}) {}  // NOLINT(google-explicit-constructor): for all lanes
     explicit Lanes(Native native) : native_(native) {}
 
     // From and to neighbouring doubles, which need not be aligned.
@@ -59,13 +60,13 @@ class Lanes {
     friend Mask operator>=(Lanes a, Lanes b);
 
   private:
-    // The same in memory, unaligned. Unlike memcpy it tells GCC that a store changes doubles alone.
+    // The same type in memory, unaligned. Unlike memcpy it tells GCC that a store changes only doubles.
     using Neighbours __attribute__((aligned(alignof(double)))) = Native;
 
     Native native_;
 };
 
-// Of each lane, whether something holds.
+// For each lane, whether a condition holds.
 class Mask {
   public:
 #if defined(__AVX512F__)
@@ -75,7 +76,7 @@ class Mask {
 #endif
     explicit Mask(Native native) : native_(native) {}
 
-    // As the bits of a whole number, the first lane lowest.
+    // The bits of a whole number; the first lane is the lowest.
     unsigned bits() const
     {
 #if defined(__AVX512F__)
@@ -90,7 +91,7 @@ class Mask {
     }
     bool any() const { return bits() != 0; }
 
-    // The lanes whose number, from 0 on, is below `count`.
+    // The first `count` lanes.
     static Mask below(std::size_t count)
     {
 #if defined(__AVX512F__)
@@ -118,7 +119,7 @@ inline Mask operator>(Lanes a, Lanes b) { return Mask(a.native_ > b.native_); }
 inline Mask operator>=(Lanes a, Lanes b) { return Mask(a.native_ >= b.native_); }
 #endif
 
-// Allocates doubles such that a block of lanes lies within one line of the cache.
+// Allocates doubles so that a block of lanes lies within one cache line.
 template <class T>
 struct Aligned {
     using value_type = T;
@@ -128,7 +129,7 @@ struct Aligned {
     template <class B>
     Aligned(const Aligned<B>&)
     {
-    }  // NOLINT(google-explicit-constructor): as allocators are
+    }  // NOLINT(google-explicit-constructor): as in every allocator
     T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), line)); }
     void deallocate(T* memory, std::size_t) { ::operator delete(memory, line); }
     friend bool operator==(const Aligned&, const Aligned&) { return true; }
@@ -151,7 +152,7 @@ inline bool any(bool condition) { return condition; }
 inline bool any(Mask mask) { return mask.any(); }
 inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
 
-// The size of `value` with the sign of `sign`.
+// The magnitude of `value` with the sign of `sign`.
 inline double with_sign_of(double value, double sign) { return std::copysign(value, sign); }
 inline Lanes with_sign_of(Lanes value, Lanes sign)
 {
@@ -162,7 +163,7 @@ inline Lanes with_sign_of(Lanes value, Lanes sign)
 
 // -- functions
 
-// What `of` gives for each lane by itself. Compilers take all lanes at once where the processor can.
+// `of` applied to each lane. Compilers vectorise it if the processor allows.
 inline Lanes lane_by_lane(Lanes value, const auto& of)
 {
     Lanes::Native result;
@@ -185,7 +186,7 @@ inline Lanes round_down(Lanes value)
     return lane_by_lane(value, [](double each) { return std::floor(each); });
 }
 
-// Sum of the lanes: the upper half on the lower one, until two are left.
+// Sum of the lanes: the upper half is added to the lower half, until two are left.
 inline double total(double value) { return value; }
 template <class Vector, std::size_t... Low>
 double sum_of_halves(Vector lanes, std::index_sequence<Low...>)
@@ -202,7 +203,7 @@ inline double total(Lanes value) { return sum_of_halves(value.native(), std::mak
 
 inline double last(Lanes value) { return value[width - 1]; }
 
-// The lanes moved towards the last by `Steps`; the first ones are the `filling`.
+// The lanes shifted by `Steps` towards the last; the first lanes are the `filling`.
 template <std::size_t Steps>
 Lanes moved(Lanes value, double filling)
 {
@@ -212,16 +213,16 @@ Lanes moved(Lanes value, double filling)
     }(std::make_index_sequence<width>());
 }
 
-// The smooth ramp f_r of eq. (64) over a part of the way, 0 to 1.
+// The smooth ramp f_r of eq. (64) at a fraction 0 to 1.
 inline double smooth_ramp(double part)
 {
     constexpr double turn = 2.0 * std::numbers::pi;
     return part - std::sin(turn * part) / turn;
 }
 
-// -- functions to round-off, without branches
+// -- functions exact to round-off, without branches
 
-// sin(x)/x and cos(x) of z = x^2 up to 0.62, so of x up to a quarter of pi: Taylor's series.
+// sin(x)/x and cos(x) from z = x^2 up to 0.62, that is x up to pi/4: Taylor's series.
 template <Number T>
 std::array<T, 2> sine_and_cosine_series(T z)
 {
@@ -249,7 +250,7 @@ std::array<T, 2> sine_and_cosine(T angle)
     return {sign * (s + odd * (c - s)), sign * (c - odd * (c + s))};
 }
 
-// exp(x): 2^n exp(rest), by Taylor's series of the rest, which is at most ln(2)/2. Below -700 it counts as exp(-700).
+// exp(x): 2^n exp(rest), with Taylor's series of the rest, at most ln(2)/2. Below -700 the result is exp(-700).
 template <Number T>
 T exponential(T x)
 {
@@ -272,8 +273,8 @@ T exponential(T x)
     }
 }
 
-// x^(-1/5) of positive numbers: a fifth of the exponent, within 4 per cent, then two steps of order 4 by the binomial
-// series of (1 - e)^(-1/5) with e = 1 - x y^5.
+// x^(-1/5) of positive numbers: a fifth of the exponent, good to 4 per cent, then two steps of order 4 with the
+// binomial series of (1 - e)^(-1/5), e = 1 - x y^5.
 template <Number T>
 T inverse_fifth_root(T x)
 {

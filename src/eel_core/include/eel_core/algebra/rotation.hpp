@@ -10,7 +10,7 @@ template <Number T>
 struct Quaternion {
     T x, y, z, w;
 
-    // The rotation by `next` in the axes that this one leads to.
+    // This rotation followed by `next` in the rotated axes.
     friend Quaternion operator*(const Quaternion& a, const Quaternion& next)
     {
         return {(a.w * next.x + a.x * next.w) + (a.y * next.z - a.z * next.y),
@@ -19,7 +19,7 @@ struct Quaternion {
                 (a.w * next.w - a.x * next.x) - (a.y * next.y + a.z * next.z)};
     }
 
-    // Columns of the rotation of a unit quaternion.
+    // Columns of the rotation matrix of a unit quaternion.
     Frame3<T> frame() const
     {
         const T xx = x * x, yy = y * y, zz = z * z, xy = x * y, xz = x * z, yz = y * z;
@@ -45,7 +45,7 @@ struct Components<Quaternion<T>> {
     }
 };
 
-// The quaternion of a rotation by a vector [rad], however large.
+// The quaternion of a rotation by a vector [rad] of any length.
 inline Quaternion<double> rotation_by(const Vector3<double>& vector)
 {
     const double angle = std::sqrt(dot(vector, vector));
@@ -82,7 +82,7 @@ inline Quaternion<Lanes> magnus(const Vector2<Lanes>& b0, const Vector2<Lanes>& 
                                       b0.y - (c * w2 - u.x * w1) * (1.0 / 240.0)});
 }
 
-// Each quaternion of a block times all before it in the block: products of 2, 4, 8 successive ones.
+// Each quaternion of a block times all previous ones in the block: products of 2, 4, 8 successive ones.
 template <std::size_t Steps = 1>
 Quaternion<Lanes> successive_products(const Quaternion<Lanes>& q)
 {

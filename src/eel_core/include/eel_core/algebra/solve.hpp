@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Symmetric positive definite systems: L D L^T.
+// Symmetric positive definite systems, by L D L^T.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace eel_core {
 
-// A symmetric matrix of three or six rows by its lower triangle, row by row; its factors once factored: L below the
+// A symmetric matrix of three or six rows, stored as its lower triangle, row by row. After factoring: L below the
 // diagonal, 1/D on it.
 template <std::size_t N>
 class Factored {
@@ -19,7 +19,7 @@ class Factored {
 
     std::array<double, N*(N + 1) / 2> lower{};
 
-    // The product of the symmetric matrix, before it is factored, with a vector.
+    // The product of the matrix, before factoring, with a vector.
     std::array<double, N> times(const std::array<double, N>& x) const
     {
         std::array<double, N> result{};
@@ -28,7 +28,7 @@ class Factored {
         return result;
     }
 
-    // Factors the matrix in place. False where it is not positive definite.
+    // Factors the matrix in place. False if it is not positive definite.
     bool factor()
     {
         bool definite = true;
@@ -49,7 +49,7 @@ class Factored {
         return definite;
     }
 
-    // The solution for the right side `x`, by the factors.
+    // The solution for the right-hand side `x`, from the factors.
     void solve(std::array<double, N>& x) const
     {
 #pragma GCC unroll 6
@@ -66,7 +66,7 @@ class Factored {
     }
 };
 
-// One of any size, column by column; its factors once factored: L below the diagonal, 1/D on it.
+// The same for any size, column by column. After factoring: L below the diagonal, 1/D on it.
 class Definite {
   public:
     static constexpr std::size_t definite = static_cast<std::size_t>(-1);
@@ -82,7 +82,7 @@ class Definite {
     double& at(std::size_t i, std::size_t j) { return i >= j ? entries_[j * n_ + i] : entries_[i * n_ + j]; }
     double at(std::size_t i, std::size_t j) const { return i >= j ? entries_[j * n_ + i] : entries_[i * n_ + j]; }
 
-    // Factors the matrix in place. Returns `definite`, or the first row that is not.
+    // Factors the matrix in place. Returns `definite`, or the index of the first row that fails.
     std::size_t factor()
     {
         for (std::size_t k = 0; k < n_; ++k) {
@@ -100,7 +100,7 @@ class Definite {
         return definite;
     }
 
-    // The solution for the right side `x`, by the factors.
+    // The solution for the right-hand side `x`, from the factors.
     void solve(double* x) const
     {
         for (std::size_t k = 0; k < n_; ++k) {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // One instant of a body with modes: its motion, the rates of its momenta, and its accelerations.
 //
-// The state has, beside the head's, a momentum pi_m for each coordinate: (L, P', pi) = M (Omega, V, qdot) + momentum of
-// the imposed change of shape. Its rate is
+// In addition to the head's state there is a momentum pi_m for each coordinate: (L, P', pi) = M (Omega, V, qdot) +
+// momentum of the imposed change of shape. Its rate is
 //
 //     pidot_m = dT/dq_m + omega_m(l) . C_t + v_m(l) . N_t + integral (omega_m . c + v_m . n) dX - Q_m
 //     dT/dq_m = - integral B_m . R^T (omega x S_C + v x S_N) dX
 //
-// with the momentum (S_C, S_N) of the part behind a section, about it. The accelerations solve M a = h. In water that
-// moves by itself the momenta are those of the motion through it, the velocities in dT/dq_m the true ones, and (c, n)
-// has (U x p, rho_f A a_u - g^T p) besides. Fins act on their sections, as in fins.hpp.
+// with the momentum (S_C, S_N) of the part behind a section, about the section. The accelerations solve M a = h. In
+// moving water, momenta belong to the motion through the water, the velocities in dT/dq_m are the true ones, and (c, n)
+// has the additional terms (U x p, rho_f A a_u - g^T p). Fins act on their sections, as in fins.hpp.
 #pragma once
 
 #include <limits>
@@ -48,12 +48,12 @@ class BentBody {
     Columns<M> columns;
     std::vector<double> rate, acceleration;  // of the coordinates
     std::vector<double> momentum_rate;       // pidot
-    std::vector<double> drift;  // rates of the coordinates' rates that momenta at rest would leave, by M and b alone
+    std::vector<double> drift;  // accelerations of the coordinates at constant momenta, from changes of M and b alone
     Forces forces;
-    std::vector<Target> target;  // of the servos
+    std::vector<Target> target;  // targets of the servos
     State head_rate{};           // of the head's part of the state
 
-    // The shape at the coordinates x, and M. False where M is not positive definite.
+    // The shape at the coordinates x, and M. False if M is not positive definite.
     bool configure_at(const BentSettings& settings, double time, const State& y, const double* x)
     {
         law_ = &settings.law, time_ = time, state_ = y;
@@ -61,8 +61,8 @@ class BentBody {
         for (std::size_t m = 0; m < modes_->modes; ++m) work.factor[settings.first_mode + m] = {x[m], 0.0, 0.0};
         configure(*swimmer_, settings.law, time, work);
         set_targets(settings, work.factor, time, target);
-        if (time != pushed_at_) {  // a stage ends where the step does, and functions in Python cost more than a stage
-            pushed_at_ = std::numeric_limits<double>::quiet_NaN();  // also where one throws
+        if (time != pushed_at_) {  // a stage ends with the step, and Python functions cost more than a stage
+            pushed_at_ = std::numeric_limits<double>::quiet_NaN();  // even if one throws
             set_pushing(*modes_, time, drive_, forces.pushing);
             pushed_at_ = time;
         }
@@ -77,14 +77,14 @@ class BentBody {
         return singular_ == Definite::definite;
     }
 
-    // Shape, motion and loads at present. False where M is not positive definite.
+    // Shape, motion and loads at present. False if M is not positive definite.
     bool find_present(const BentSettings& settings, const Present& now)
     {
         if (!configure_at(settings, now.time, now.state, now.x.data())) return false;
         move_by_rates(now.rate.data(), now.x.data());
         return true;
     }
-    // The first of the modes that make M singular at present; none where it is positive definite.
+    // The first mode that makes M singular at present; none if M is positive definite.
     std::optional<std::size_t> singular_mode(const BentSettings& settings, const Present& now)
     {
         if (configure_at(settings, now.time, now.state, now.x.data())) return {};
@@ -98,7 +98,7 @@ class BentBody {
         return sum;
     }
 
-    // `rate` of a configured body, from the momenta of the coordinates; `move` goes on.
+    // `rate` of a configured body, from the momenta of the coordinates. `move` follows.
     void find_rates_of(const double* momenta)
     {
         const auto whole = components_of(work.momentum);
@@ -121,7 +121,7 @@ class BentBody {
         }
         if (work.flowing) set_flow_load(*swimmer_, work);
         find_loads(*swimmer_, work);
-        if (swimmer_->weighs()) set_weight(*swimmer_, 0.0, work);  // its energy is that of what is observed
+        if (swimmer_->weighs()) set_weight(*swimmer_, 0.0, work);  // the energy is set by observations
         if constexpr (!M::planar)
             if (!work.fins.empty()) find_fin_loads(*swimmer_, *law_, time_, state_, work);
         set_mode_loads();
@@ -145,7 +145,7 @@ class BentBody {
         move(x);
     }
 
-    // Momenta (L, P') of the head in its axes, and those of the coordinates, for a twist of the head and `rates`.
+    // Momenta (L, P') of the head in its axes, and of the coordinates, for a twist of the head and `rates`.
     Momentum<M, double> momenta_of(const Twist<M, double>& twist, const double* rates, double* momenta) const
     {
         auto sum = components_of(twist);
@@ -162,7 +162,7 @@ class BentBody {
         return Components<Momentum<M, double>>::make([&](std::size_t k) { return sum[k]; });
     }
 
-    // `head_rate` and `momentum_rate` in the motion that `work` holds, of state y.
+    // `head_rate` and `momentum_rate` for state y, in the motion held by `work`.
     void find_rates(const BentSettings& settings, const State& y)
     {
         put_velocity(work.twist, work.head, settings.water.current, y, head_rate);
@@ -177,7 +177,7 @@ class BentBody {
         for (std::size_t i = modes_->modes; i < modes_->coordinates; ++i) momentum_rate[i] = -forces.total[i];
     }
 
-    // `acceleration`, that of the head in `work`, and `drift`, after `find_rates`.
+    // `acceleration`, the head's in `work`, and `drift`; after `find_rates`.
     void find_accelerations_and_drift(const BentSettings& settings)
     {
         const LawOnGrid& law = settings.law;
@@ -187,7 +187,7 @@ class BentBody {
         const double on_nose = water_on_nose(*swimmer_, work);
         const auto left = accelerating_load(*swimmer_, law, on_nose, work);
         imposed_at_rest_ = power_of_shape(*swimmer_, work);
-        for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {  // about the sections, weighed
+        for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {  // about the sections, weighted
             Wrench<M, Lanes> taken = work.density[k];
             taken.angular = taken.angular - cross(work.position[k], taken.linear);
             load_.store(k, swimmer_->grid.weight[k] * taken);
@@ -214,14 +214,14 @@ class BentBody {
             if (!work.fins.empty()) accelerate_fins();
     }
 
-    // Power of what imposes the change of shape [W], - integral C . Kdot_imposed, after the accelerations.
+    // Power [W] that imposes the change of shape, - integral C . Kdot_imposed, after the accelerations.
     double imposed_power() const
     {
         double power = imposed_at_rest_;
         for (std::size_t i = 0; i < solution_.size(); ++i) power += solution_[i] * columns.momentum[i];
         return power;
     }
-    // Of motors and of what imposes a change of shape, wake, nose, drag, flow [W], after the accelerations.
+    // Powers [W] of motors and imposed change of shape, wake, nose, drag, flow; after the accelerations.
     Powers powers() const
     {
         Powers powers = powers_of_loads(*swimmer_, work);
@@ -230,7 +230,7 @@ class BentBody {
     }
 
   private:
-    // omega_a(l) . C_t + v_a(l) . N_t + integral (omega_a . c + v_a . n) dX, of the modes.
+    // omega_a(l) . C_t + v_a(l) . N_t + integral (omega_a . c + v_a . n) dX, for each mode.
     void set_mode_loads()
     {
         for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) load_.store(k, loads_on_sections(*swimmer_, work, k));
@@ -256,7 +256,7 @@ class BentBody {
         }
     }
 
-    // What the flow and the fins add to the rates of the modes' momenta.
+    // Terms of the flow and the fins in the rates of the modes' momenta.
     EEL_CORE_APART void set_added_loads()
     {
         std::ranges::fill(added_, 0.0);
@@ -270,7 +270,7 @@ class BentBody {
 
     static Wrench<Space, double> of_force(const FinMotion& now) { return {cross(now.arm, now.whole), now.whole}; }
 
-    // Work of what `wrench` gives of each fin, about its section, on the motion of a mode; 0 without fins.
+    // Work of `wrench` of each fin, about its section, on the motion of a mode; 0 without fins.
     template <class OfFin>
     double work_of_fins(std::size_t m, OfFin wrench) const
     {
@@ -281,7 +281,7 @@ class BentBody {
         return sum;
     }
 
-    // Gives the fins' forces the accelerations that were found.
+    // Updates the fins' forces with the accelerations.
     EEL_CORE_APART void accelerate_fins()
     {
         for (std::size_t i = 0; i < swimmer_->fins.size(); ++i) {
@@ -294,7 +294,7 @@ class BentBody {
         }
     }
 
-    // The momentum from the nose to each node; then what turns with the modes, to `integrand`.
+    // The momentum from the nose to each node; then the part that turns with the modes, into `integrand`.
     void set_momentum_behind()
     {
         for (std::size_t k = 0; k < swimmer_->grid.blocks; ++k) {
@@ -342,14 +342,14 @@ class BentBody {
     const Swimmer* swimmer_;
     const Modes* modes_;
     Definite factored_;
-    std::size_t singular_ = 0;                   // row of M that is not positive definite
-    Field<Wrench<M, double>> load_;              // about the sections, weighed by their length, in the axes of the head
-    Field<Momentum<M, double>> momentum_ahead_;  // of each node, about the head
-    std::vector<double> mode_load_, added_, solution_;  // `added_`: in the rates of momenta alone
+    std::size_t singular_ = 0;       // row of M that is not positive definite
+    Field<Wrench<M, double>> load_;  // about the sections, weighted by their length, in the axes of the head
+    Field<Momentum<M, double>> momentum_ahead_;         // of each node, about the head
+    std::vector<double> mode_load_, added_, solution_;  // `added_`: only in the rates of momenta
     std::vector<Jet> drive_;
     Wrench<M, double> by_loads_{};
-    double imposed_at_rest_ = 0.0;    // W, of what imposes the change of shape, without accelerations
-    const LawOnGrid* law_ = nullptr;  // of the instant, as the next two
+    double imposed_at_rest_ = 0.0;    // W, power of the imposed change of shape without accelerations
+    const LawOnGrid* law_ = nullptr;  // of the instant, like the next two
     double time_ = 0.0;
     double pushed_at_ = std::numeric_limits<double>::quiet_NaN();  // [s], of `forces.pushing`
     State state_{};

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Columns of the modes: how the sections move when one coordinate does; and the mass matrix of head and coordinates.
+// Columns of the modes: the motion of the sections per unit rate of a coordinate; and the mass matrix of head and
+// coordinates.
 //
 //     omega_m' = R B_m      v_m' = omega_m x t1
 //
-// in the axes of the head, zero at the nose and ahead of the support. Behind it a column is the motion of a rigid body.
-// M_ab = integral (omega_a . s_b + v_a . p_b) dX with the momentum (s, p) of a column, of sections and of fins' added
-// masses m_a y_a y_b, y = e_n . (v + omega x x_f); and the nose's m_o and the coordinates' inertia.
+// in the axes of the head, zero at the nose and ahead of the support. Behind the support a column is a rigid motion.
+// M_ab = integral (omega_a . s_b + v_a . p_b) dX with the momentum (s, p) of a column; plus the fins' added masses
+// m_a y_a y_b, y = e_n . (v + omega x x_f), the nose's m_o and the coordinates' inertia.
 #pragma once
 
 #include "eel_core/algorithm.hpp"
@@ -15,15 +16,15 @@ namespace eel_core {
 
 template <class M>
 struct Column {
-    std::size_t first_stretch, last_stretch;  // of the support; the latter: the one behind
+    std::size_t first_stretch, last_stretch;  // of the support; the latter is the one behind it
     std::size_t first_block, first_node, last_node;
     Field<Angular<M, double>> omega;  // per unit of rate
     Field<Vector<M, double>> velocity;
-    Field<Wrench<M, double>> momentum;  // of the sections, about each and weighed by its length
+    Field<Wrench<M, double>> momentum;  // of each section, about it and weighted by its length
 };
 
-// Momentum of body and water of a block of sections, about each and in the axes of the head; from its angular velocity
-// and its velocity. `section` and `lever` may be weighed.
+// Momentum of body and water of a block of sections, each about itself and in the axes of the head, from its angular
+// velocity and its velocity. `section` and `lever` may be weighted.
 template <class M>
 Momentum<M, Lanes> momentum_of_sections(const Swimmer& swimmer, const Section<Lanes>& section, Lanes lever,
                                         const Frame<M, Lanes>& frame, const Angular<M, Lanes>& omega,
@@ -57,16 +58,16 @@ class Columns {
 
     std::vector<Column<M>> column;
     Definite mass;                 // of head and coordinates
-    std::vector<double> momentum;  // of the imposed change of shape alone, in the direction of each of them
-    std::vector<double> at_rest;   // the same, less that of the water's own motion: where head and coordinates rest
+    std::vector<double> momentum;  // of only the imposed change of shape, in the direction of each of them
+    std::vector<double> at_rest;   // the same minus the water's own motion: with head and coordinates at rest
 
-    // B_m of a block.
+    // B_m for a block.
     static Lanes shape(const BentSettings& settings, std::size_t m, std::size_t k)
     {
         return settings.law.tables->node.at(settings.first_mode + m, k)[0];
     }
 
-    // Sets all of it for a body that is configured with the velocities of the imposed change of shape.
+    // Sets all columns for a body configured with the velocities of the imposed change of shape.
     void set(const Swimmer& swimmer, const Modes& modes, const BentSettings& settings, Workspace<M>& work)
     {
         const auto of_shape = components_of(inertia_and_momentum(swimmer, work));
@@ -91,7 +92,7 @@ class Columns {
         if (work.flowing) take_flow(swimmer, work);
     }
 
-    // sum of a column's fields times these, of blocks: integral (omega_m . c + v_m . n), where (c, n) are weighed,
+    // Sum of a column's fields times these, over blocks: integral (omega_m . c + v_m . n), with (c, n) weighted,
     // about the sections and in the axes of the head.
     double work_of(std::size_t m, const Field<Wrench<M, double>>& load) const
     {
@@ -187,7 +188,7 @@ class Columns {
         }
     }
 
-    // The column's momentum, in the direction of the head's motions and of the imposed change of shape too.
+    // The column's momentum, also in the direction of the head's motions and of the imposed change of shape.
     void set_momentum(const Swimmer& swimmer, std::size_t m, const Workspace<M>& work)
     {
         Column<M>& own = column[m];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an instant shows of the coordinates of a body with modes: one row of numbers.
+// Observed numbers of the coordinates of a body with modes at an instant, in one row.
 #pragma once
 
 #include <numeric>
@@ -8,8 +8,8 @@
 
 namespace eel_core {
 
-// Where the numbers of an instant lie in the row. Energies and works are in J, powers in W; the moment of a mode is the
-// integral of B . C.
+// Places of the numbers in the row. Energies and works are in J, powers in W; the moment of a mode is the integral of
+// B . C.
 struct CoordinateRow {
     // clang-format off
     enum Quantity : std::size_t {
@@ -30,7 +30,7 @@ struct CoordinateRow {
     }
     std::size_t size() const { return begin.back(); }
 
-    // Fills the row with the present, which the body holds afterwards. False where M is not positive definite.
+    // Fills the row with the present, which the body then holds. False if M is not positive definite.
     template <class M>
     bool put(const BentSettings& settings, const Modes& modes, const Present& now, BentBody<M>& body, double* row) const
     {

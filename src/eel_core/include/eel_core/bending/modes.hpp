@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What bends by itself: modes of the curvature, and what drives them. Ours, not the paper's.
+// Dynamic bending: modes of the curvature, and their drives. Our own, not in the paper.
 //
 //     K(t, X) = K_imposed(t, X) + sum_m q_m(t) B_m(X)
 //
 // Each B_m lies along axis 2 (pitch) or 3 (yaw), on a support of whole panels. The coordinates are the q_m and, behind
-// series springs, the angles of motors. What acts on a coordinate is a force in the sense of Lagrange: K (x - rest) +
-// D xdot + stops - drives.
+// series springs, the angles of motors. The generalised force on a coordinate, in the sense of Lagrange, is
+// K (x - rest) + D xdot + stops - drives.
 #pragma once
 
 #include <algorithm>
@@ -27,8 +27,8 @@ struct Servo {
     double torque_limit, speed_limit;  // [N m], [rad/s]; infinite: none
 };
 
-// What holds a mode beyond its limits: stiffness depth + damping depth d(depth)/dt, as of Hunt and Crossley (J. Appl.
-// Mech. 42 (1975)). It starts from zero at contact, so that no force jumps; and it never pulls.
+// The stop of a mode beyond its limits: stiffness depth + damping depth d(depth)/dt, as in Hunt and Crossley (J. Appl.
+// Mech. 42 (1975)). It starts from zero at contact, so that no force jumps, and it never pulls.
 struct Stop {
     std::size_t mode;
     double low, high;  // [rad], or rad/m
@@ -43,7 +43,7 @@ struct Stop {
     }
 };
 
-// A torque that is given over time.
+// A torque given over time.
 struct GivenTorque {
     std::size_t coordinate;
     std::function<double(double)> at;
@@ -51,46 +51,46 @@ struct GivenTorque {
 
 struct Modes {
     std::size_t modes = 0, coordinates = 0;
-    std::vector<LawOnGrid::Axis> axis;       // of each mode, as the next five
-    std::vector<std::size_t> first, last;    // first node of the support, and the one behind its last
-    std::vector<bool> continuous;            // whether it is one of several on its support, in place of a joint
+    std::vector<LawOnGrid::Axis> axis;       // of each mode, like the next five
+    std::vector<std::size_t> first, last;    // first node of the support, and the node after its last
+    std::vector<bool> continuous;            // whether it is one of several on its support, not a joint
     std::vector<double> span, moment;        // integral of |B| [1, or m]; torque for a unit of force [1, or 1/m]
-    std::vector<double> inertia, rest;       // of each coordinate: armature or rotor, and where its springs rest
+    std::vector<double> inertia, rest;       // of each coordinate: armature or rotor, and rest position of its springs
     std::vector<double> stiffness, damping;  // (coordinates, coordinates)
     std::vector<Servo> servos;
     std::vector<Stop> stops;
     std::vector<GivenTorque> torques;
-    // What muscles do to the coordinates: by the factors of a law of their own; none: nothing.
+    // Muscles' forces on the coordinates: from the factors of a law of their own; empty: no muscles.
     std::shared_ptr<const LawOnGrid> drive;
     std::vector<double> push;  // (coordinates, rows of `drive`)
 };
 
-// A command to a servo, which holds in place of the law. A velocity moves the reference of the position. To position
-// and velocity the torque is added; an effort is the torque alone.
+// A command to a servo, which replaces the law. A velocity moves the reference of the position. With position and
+// velocity the torque is added; an effort is only the torque.
 struct Command {
     enum Kind : std::uint8_t { law, position, velocity, effort };  // law: none
     Kind kind = law;
     double angle = 0.0, rate = 0.0, torque = 0.0;  // [rad], [rad/s], [N m], as a bend
-    // [rad]: how far a velocity moves the reference.
+    // [rad]: most that a velocity moves the reference.
     double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
-    double since = 0.0;  // [s]: when the reference was at `angle`
+    double since = 0.0;  // [s]: time at which the reference is `angle`
 };
 
-// What a servo follows at an instant.
+// The target of a servo at an instant.
 struct Target {
     Jet reference{};      // [rad]
-    double torque = 0.0;  // [N m], added to its feedback, or in place of it
+    double torque = 0.0;  // [N m], added to its feedback, or replacing it
     bool by_torque = false;
 };
 
-// As `MarchSettings`, of a body with modes. The rows of the modes are the last ones of the law's tables.
+// `MarchSettings` of a body with modes. The rows of the modes are the last ones of the law's tables.
 struct BentSettings : MarchSettings {
     std::size_t first_mode = 0;     // row of the first mode
-    std::vector<double> reference;  // (servos, first_mode): what a servo follows, by the factors of the law
+    std::vector<double> reference;  // (servos, first_mode): reference of a servo, from the factors of the law
     std::vector<Command> commands;  // (servos), or none
 };
 
-// Sets the modes' factors to their coordinates and rates, and to these accelerations; none: zero.
+// Sets the modes' factors to their coordinates, rates, and these accelerations; none: zero.
 inline void set_factors(const Modes& modes, const BentSettings& settings, const Present& now,
                         const double* acceleration, std::vector<Jet>& factor)
 {
@@ -99,7 +99,7 @@ inline void set_factors(const Modes& modes, const BentSettings& settings, const 
         factor[settings.first_mode + m] = {now.x[m], now.rate[m], acceleration ? acceleration[m] : 0.0};
 }
 
-// Forces at an instant, and what the ledger needs of them.
+// Forces at an instant, and their data for the ledger.
 struct Forces {
     std::vector<double> total;    // (coordinates) [N m, or N m^2], as defined above
     std::vector<double> torque;   // (servos) [N m]
@@ -109,7 +109,7 @@ struct Forces {
     double damping_power = 0.0;   // [W], <= 0
 };
 
-// What a commanded servo follows at `time` [s].
+// The target of a commanded servo at `time` [s].
 inline Target target_of(const Command& command, double time)
 {
     if (command.kind != Command::velocity)
@@ -119,7 +119,7 @@ inline Target target_of(const Command& command, double time)
     return {{within, within == moved ? command.rate : 0.0, 0.0}, command.torque};
 }
 
-// What the servos follow at `time` [s].
+// The targets of the servos at `time` [s].
 inline void set_targets(const BentSettings& settings, const std::vector<Jet>& factor, double time,
                         std::vector<Target>& target)
 {
@@ -135,7 +135,7 @@ inline void set_targets(const BentSettings& settings, const std::vector<Jet>& fa
     }
 }
 
-// What muscles and given torques do to the coordinates at `time` [s]; `factor`: work space.
+// Forces of muscles and given torques on the coordinates at `time` [s]. factor: work space.
 inline void set_pushing(const Modes& modes, double time, std::vector<Jet>& factor, std::vector<double>& pushing)
 {
     std::fill(pushing.begin(), pushing.end(), 0.0);
@@ -152,7 +152,7 @@ inline void set_pushing(const Modes& modes, double time, std::vector<Jet>& facto
 struct TorqueRange {
     double low, high;
 };
-// Torque that a servo can give at a speed: it falls in a straight line to the speed limit.
+// Available torque of a servo at a speed: it falls linearly to zero at the speed limit.
 inline TorqueRange torque_range(const Servo& servo, double rate)
 {
     if (!std::isfinite(servo.torque_limit)) return {-servo.torque_limit, servo.torque_limit};
@@ -165,7 +165,7 @@ inline double wanted_torque(const Servo& servo, const Target& target, double x, 
     return servo.kp * (target.reference[0] - x) + servo.kd * (target.reference[1] - rate) + target.torque;
 }
 
-// Forces for the coordinates x and their rates. `forces.pushing` and the targets are those of the instant.
+// Forces for the coordinates x and their rates. `forces.pushing` and the targets must be those of the instant.
 inline void set_forces(const Modes& modes, const std::vector<Target>& target, const double* x, const double* rate,
                        Forces& forces)
 {
@@ -199,8 +199,8 @@ inline void set_forces(const Modes& modes, const std::vector<Target>& target, co
     }
 }
 
-// Derivatives of the forces, but of stops, by coordinates and rates, and of what a reference that moves adds to their
-// rate.
+// Derivatives of the forces, without stops, with respect to coordinates and rates, and the part of a moving reference
+// in their rate.
 inline void linearise(const Modes& modes, const std::vector<Target>& target, const double* x, const double* rate,
                       std::vector<double>& stiffness, std::vector<double>& damping, std::vector<double>& in_time)
 {
@@ -223,7 +223,7 @@ inline void linearise(const Modes& modes, const std::vector<Target>& target, con
     }
 }
 
-// Adds the stops to `linearise`.
+// Adds the stops to the result of `linearise`.
 inline void linearise_stops(const Modes& modes, const double* x, const double* rate, std::vector<double>& stiffness,
                             std::vector<double>& damping)
 {

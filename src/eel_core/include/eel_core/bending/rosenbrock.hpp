@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Steps in time of a body with modes: ROS34PW2 of Rang and Angermann (BIT 45 (2005)), with dense output.
 //
-// It is of order 3 for any Jacobian, L-stable and stiffly accurate. The Jacobian has what is stiff: springs, dampers
-// and servos' gains, by the mass matrix at the start of the step,
+// It has order 3 for any Jacobian, is L-stable and stiffly accurate. The Jacobian contains the stiff terms: springs,
+// dampers and servos' gains, with the mass matrix at the start of the step,
 //
 //     qdot <- du,  pidot <- - K dq - D du,  du from dpi by M.
 //
-// Its column of time holds what a reference that moves adds, and the `drift` of qdot that comes from the change of M
-// and of the imposed shape. Without them the order falls with the gain.
+// Its time column contains the motion of references, and the `drift` of qdot due to the change of M and of the imposed
+// shape. Without these the order falls as the gain grows.
 #pragma once
 
 #include "eel_core/bending/balance.hpp"
@@ -27,7 +27,7 @@ struct BentState {
 };
 
 inline constexpr std::size_t bent_works = std::tuple_size_v<Powers> + 1;
-using BentPowers = std::array<double, bent_works>;  // [W]: `Powers`, and that of the dampers
+using BentPowers = std::array<double, bent_works>;  // [W]: `Powers`, then the dampers' power
 
 inline void add_scaled(double factor, const std::vector<double>& x, std::vector<double>& y)
 {
@@ -53,16 +53,16 @@ struct Ros34Pw2 {
     }
 };
 
-// A state with all that is known there.
+// A state with all known data at its time.
 template <class M>
 struct BentPoint {
     double time = 0.0;
     BentState y;
     State head_rate{};
     std::vector<double> momentum_rate, rate, drift, force;
-    std::vector<double> stiffness, damping, in_time;  // of the forces
-    std::vector<double> damping_but_stops;            // theirs grows from zero, so that no acceleration jumps
-    Frame<M, double> head{};                          // axes of the head
+    std::vector<double> stiffness, damping, in_time;  // derivatives of the forces
+    std::vector<double> damping_but_stops;  // the stops' damping grows from zero, so that no acceleration jumps
+    Frame<M, double> head{};                // axes of the head
     Definite mass;
     BentPowers powers{};
 
@@ -116,8 +116,8 @@ class BentStepper {
             [&](double tiny) { return take_step(settings, tiny); });
     }
 
-    // Has the last step end at `time` [s] within it: it is taken again. Whether it was. What lies between the ends of
-    // steps is less exact than they are, and no motion should begin there.
+    // Repeats the last step so that it ends at `time` [s] within it. Returns whether it did. States between the ends of
+    // steps are less exact than the ends, and no motion should begin there.
     bool end_at(BentSettings& settings, double time)
     {
         const double tiny = 1e-12 * std::max(1.0, std::abs(time));
@@ -135,7 +135,7 @@ class BentStepper {
         return status == Status::marched;
     }
 
-    // Hands over what the next steps and the present follow from (`march/archive.hpp`).
+    // Archives all data that determine the next steps and the present (`march/archive.hpp`).
     template <class Archive>
     void pass(Archive& archive)
     {
@@ -143,7 +143,7 @@ class BentStepper {
                 hardest_, anew_);
     }
 
-    // Puts state, coordinates, their rates and the works at the present time, which lies within the step.
+    // Sets state, coordinates, their rates and the works to the present time, which lies within the step.
     EEL_CORE_APART void put_state(bool, Present& now) const
     {
         const double length = here_.time - before_.time;
@@ -153,7 +153,7 @@ class BentStepper {
         } else {
             const double theta = std::clamp((now.time - before_.time) / length, 0.0, 1.0);
             interpolate(theta, now.state, now.x, now.rate);
-            double square = 0.0;  // by fused products: they round alike wherever this is compiled
+            double square = 0.0;  // with fused products, which round the same in every build
             for (std::size_t k = 3; k < 7; ++k) square = std::fma(now.state[k], now.state[k], square);
             for (std::size_t k = 3; k < 7; ++k) now.state[k] /= std::sqrt(square);
             for (std::size_t k = 0; k < bent_works; ++k)
@@ -165,7 +165,7 @@ class BentStepper {
     }
 
   private:
-    // Integral up to theta of the parabola through powers at 0, 1/2 and 1.
+    // Integral from 0 to theta of the parabola through powers at 0, 1/2 and 1.
     static double work_until(double theta, double a, double b, double c)
     {
         const double slope = 4.0 * b - 3.0 * a - c, bend = 2.0 * (a - 2.0 * b + c);
@@ -181,7 +181,7 @@ class BentStepper {
         for (std::size_t k = 0; k < state_space; ++k)
             head[k] = before_.y.head[k] + b1 * (here_.y.head[k] - before_.y.head[k]) + r0 * before_.head_rate[k] +
                       r1 * here_.head_rate[k];
-        // The derivative of this cubic is nearer to the stiff rates between the ends than their own at the ends are.
+        // Between the ends, the derivative of this cubic is closer to the stiff rates than their values at the ends.
         const double slope = 6.0 * theta * left / length, s0 = left * (1.0 - 3.0 * theta),
                      s1 = theta * (3.0 * theta - 2.0);
         x.resize(modes_->coordinates), rate.resize(modes_->coordinates);
@@ -210,8 +210,7 @@ class BentStepper {
         return all;
     }
 
-    // Rates, accelerations and linear forces at a point whose time and state are known. `smoothed`: at the end of a
-    // step.
+    // Rates, accelerations and linear forces at a point of known time and state. smoothed: at the end of a step.
     bool find_point(const BentSettings& settings, BentPoint<M>& point, bool smoothed)
     {
         ++pace.counts.evaluations;
@@ -237,9 +236,9 @@ class BentStepper {
         return true;
     }
 
-    // Where dampers are stiff, the coordinates are more exact than their rates from the momenta, whose errors the
-    // dampers make torques of. There the rates come from the cubic through the last four ends of steps: the difference
-    // is filtered by (M + g D + g^2 K)^-1 g D, which is small where dampers are not stiff. False without such ends.
+    // With stiff dampers, the coordinates are more exact than their rates from the momenta, whose errors become torques
+    // in the dampers. Then the rates come from the cubic through the last four ends of steps: the difference is
+    // filtered by (M + g D + g^2 K)^-1 g D, which is small unless dampers are stiff. False without such ends.
     bool smooth_rates(const BentPoint<M>& point)
     {
         if (known_ends_ < 2 || before_.damping_but_stops != damping_of_ends_) return false;
@@ -265,7 +264,7 @@ class BentStepper {
         return true;
     }
 
-    // Puts (M + g D + g^2 K)^-1 g D x of the last step, for head and coordinates, into `right`.
+    // Sets `right` to (M + g D + g^2 K)^-1 g D x of the last step, for head and coordinates.
     void filter(double length, const std::vector<double>& damping, const std::vector<double>& x,
                 std::vector<double>& right) const
     {
@@ -277,7 +276,7 @@ class BentStepper {
         matrix_.solve(right.data());
     }
 
-    // Makes the start of the last step one of the past ends.
+    // Adds the start of the last step to the past ends.
     void remember_end()
     {
         if (known_ends_ > 0 && before_.damping_but_stops != damping_of_ends_) known_ends_ = 0;
@@ -287,7 +286,7 @@ class BentStepper {
         ends_[0].time = before_.time, ends_[0].x = before_.y.x;
     }
 
-    // Tries a step of `length` [s] into `trial_`; `error`: over the tolerance.
+    // Tries a step of `length` [s] into `trial_`. error: relative to the tolerance.
     Status attempt(const BentSettings& settings, double length, double& error)
     {
         constexpr std::size_t head = M::freedoms;
@@ -359,7 +358,7 @@ class BentStepper {
         add_scaled(factor, step_p_[stage], trial_.momentum);
     }
 
-    // The difference of the two results over the tolerance: of the head as elsewhere; of the coordinates as angles, and
+    // The difference of the two results / the tolerance: for the head as elsewhere; for the coordinates as angles, and
     // as the torques of springs and dampers.
     double error_of(const BentSettings& settings, double length)
     {
@@ -373,7 +372,7 @@ class BentStepper {
             add_scaled(weight[j] / length, step_head_[j], defect);
             add_scaled(weight[j], step_x_[j], dx), add_scaled(weight[j], step_u_[j], du);
         }
-        // Of continuous parts, less what the rates at the step's end are smoothed by: their high modes are stiff.
+        // For continuous parts, without the smoothing of the rates at the step's end: their high modes are stiff.
         filter(length, here_.damping, du, smoothed);
         for (std::size_t i = 0; i < modes_->modes; ++i)
             if (modes_->continuous[i]) du[i] -= smoothed[M::freedoms + i];
@@ -433,7 +432,7 @@ class BentStepper {
         return greatest;
     }
 
-    // By Simpson's rule. Apart, so that its sums round alike whatever calls it.
+    // By Simpson's rule. Not inlined, so that its sums round the same for every caller.
     EEL_CORE_APART Status add_works(const BentSettings& settings)
     {
         const double length = here_.time - before_.time, time = before_.time + 0.5 * length;
@@ -467,13 +466,13 @@ class BentStepper {
             archive(time, x);
         }
     };
-    std::array<End, 3> ends_;  // of the steps before the last, the latest first
+    std::array<End, 3> ends_;  // of the steps before the last one, the latest first
     std::size_t known_ends_ = 0;
-    std::vector<double> damping_of_ends_;  // `damping_but_stops` there
+    std::vector<double> damping_of_ends_;  // `damping_but_stops` at these ends
     Definite matrix_;                      // of the last step, factored
     std::array<State, Tableau::stages> step_head_{};
     std::array<std::vector<double>, Tableau::stages> step_x_, step_p_, step_u_;
-    struct Scratch {                           // of a step: nothing is allocated within one
+    struct Scratch {                           // of a step: no allocation within a step
         std::vector<double> right;             // of the linear system, then its solution: head and coordinates
         std::vector<double> bx, sum_x, sum_u;  // coordinates: of a stage
         std::vector<double> dx, du;            // the difference of the two results

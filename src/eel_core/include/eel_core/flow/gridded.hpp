@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A flow that is known at the points of a grid in time and space: cubics of Catmull and Rom between them. The velocity
-// has one continuous derivative in space and in time; at each point of an axis it is that of the parabola through the
-// point and its two neighbours, at the ends of the axis through the last three.
+// A flow given at the points of a grid in time and space, with Catmull-Rom cubics in between. The velocity has one
+// continuous derivative in space and in time: at each point of an axis that of the parabola through the point and its
+// two neighbours, and at the ends of the axis that of the parabola through the last three points.
 #pragma once
 
 #include <algorithm>
@@ -13,13 +13,13 @@
 
 namespace eel_core {
 
-// The weights of up to four neighbouring points of an axis: of the value at a place, and of its derivative.
+// The weights of up to four neighbouring points of an axis, for the value at a place, and for its derivative.
 struct AxisWeights {
     std::size_t first = 0, count = 0;
     std::array<double, 4> value{}, slope{};
 };
 
-// The points of an axis, ascending. A single one: all is the same along the axis.
+// The points of an axis, ascending. With a single point the flow is uniform along the axis.
 struct GridAxis {
     std::vector<double> points;
 
@@ -45,7 +45,7 @@ struct GridAxis {
     }
 
   private:
-    // Adds the derivative at a point, times these factors.
+    // Adds the derivative at a point times these factors.
     void add_tangent(std::size_t point, double value, double slope, const auto& add) const
     {
         if (points.size() == 2) {
@@ -64,7 +64,7 @@ struct GridAxis {
 };
 
 struct GriddedFlow {
-    using Point = std::array<double, 4>;  // u [m/s], and none
+    using Point = std::array<double, 4>;  // u [m/s], and padding
 
     std::array<GridAxis, 4> axes;                      // t [s], x, y, z [m]
     std::shared_ptr<const std::vector<Point>> points;  // in that order, the last axis fastest
@@ -112,7 +112,7 @@ struct GriddedFlow {
             return {{u[0], u[1], u[2]}, {rate[0], rate[1], rate[2]}, {row(0), row(1), row(2)}};
         }
     };
-    // Of places in the world, whatever the view.
+    // At places in the world, for any view.
     Now at(double time, const auto&) const { return {*this, axes[0].covers(time) ? axes[0].at(time) : AxisWeights{}}; }
 };
 

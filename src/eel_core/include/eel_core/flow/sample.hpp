@@ -17,7 +17,7 @@ struct Jacobian<Space, T> {
 
     auto times(const auto& v) const { return Vector3{dot(x, v), dot(y, v), dot(z, v)}; }  // g v
     auto transposed_times(const auto& v) const { return v.x * x + v.y * y + v.z * z; }    // g^T v
-    // Of the curl of u, along `axis`.
+    // Component of the curl of u along `axis`.
     auto curl_along(const auto& axis) const
     {
         return axis.x * (z.y - y.z) + axis.y * (x.z - z.x) + axis.z * (y.x - x.y);
@@ -46,7 +46,7 @@ struct Jacobian<Plane, T> {
     }
 };
 
-// The Jacobian of a velocity along `along` with this `gradient`.
+// The Jacobian of a velocity along `along` with the gradient `gradient`.
 template <Number T>
 Jacobian<Space, T> outer(const Vector3<double>& along, const Vector3<T>& gradient)
 {
@@ -69,7 +69,7 @@ struct FlowSample {
     Vector<M, T> acceleration() const { return u_t + g.times(u); }
 };
 
-// The part of a sample in the plane of axes 1 and 2, or all of it.
+// The part of a sample in the plane of axes 1 and 2, or the whole sample.
 template <Number T>
 FlowSample<Plane, T> part_in(Plane, const FlowSample<Space, T>& s)
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Flows of the water without the swimmer, in the axes of the paper's world. Each source, at an instant and seen from
-// the head, is a function of the place r about the head, in the head's axes, as what it gives: it turns its own vectors
-// once, not the water's at each place. The function is a template over the number: it serves the nose and the nodes.
+// Flows of the undisturbed water, in the axes of the paper's world. Each source, at an instant and seen from the head,
+// is a function of the place r about the head; place and result are in the head's axes. So a source rotates its own
+// vectors once, not the water's at each place. The function is a template over the number type, for nose and nodes.
 #pragma once
 
 #include <functional>
@@ -17,15 +17,15 @@ namespace eel_core {
 template <Number T>
 using WaterAt = FlowSample<Space, T>;
 
-// From where the water is seen: the head's place [m] in the world, its axes, and the current [m/s]: rates are those at
-// a place that moves with it.
+// The view of the water: the head's place [m] in the world, its axes, and the current [m/s]. Rates are those at a place
+// that moves with the current.
 template <class M>
 struct View {
     Vector3<double> nose;
     Frame<M, double> head;
     Vector3<double> current;
 
-    // A vector of the world, or its part in the plane, in the axes of the head.
+    // A world vector, or its part in the plane, in the axes of the head.
     Vector<M, double> local(const Vector3<double>& v) const
     {
         if constexpr (M::planar)
@@ -35,7 +35,7 @@ struct View {
     }
 };
 
-// The same velocity and rate everywhere, of the head's axes.
+// A uniform velocity and rate, in the head's axes.
 template <class M>
 auto everywhere(const Vector<M, double>& u, const Vector<M, double>& u_t)
 {
@@ -46,7 +46,7 @@ auto everywhere(const Vector<M, double>& u, const Vector<M, double>& u_t)
     };
 }
 
-// `velocity` [m/s], times the sum of the ramps f_r of eq. (64), or times 1 where there are none.
+// `velocity` [m/s] times the sum of the ramps f_r of eq. (64), or times 1 without ramps.
 struct RampedFlow {
     Vector3<double> velocity;
     std::vector<Ramp> ramps;
@@ -61,7 +61,7 @@ struct RampedFlow {
     }
 };
 
-// The same everywhere, over time.
+// Uniform, as a function of time.
 struct SplineFlow {
     Cubics<Vector3<double>> velocity;
 
@@ -73,8 +73,8 @@ struct SplineFlow {
     }
 };
 
-// velocity tanh(d / width), or velocity d / width where it is `linear`; d: distance along the unit vector `across` from
-// the place where its part along that vector is `middle` [m].
+// velocity tanh(d / width), or velocity d / width if `linear`. d: distance along the unit vector `across` from the
+// place whose component along that vector is `middle` [m].
 struct ShearFlow {
     Vector3<double> velocity, across;
     double middle, width;
@@ -84,7 +84,7 @@ struct ShearFlow {
     auto at(double, const View<M>& view) const
     {
         const double inverse = 1.0 / width, middle_by_width = inverse * (middle - dot(across, view.nose)),
-                     passed = inverse * dot(across, view.current);  // of d / width: the current's part per time
+                     passed = inverse * dot(across, view.current);  // rate of d / width due to the current
         return [=, along = view.local(velocity), by_width = inverse * view.local(across),
                 linear = linear]<Number T>(const Vector<M, T>& r) {
             const T s = dot(by_width, r) - middle_by_width;
@@ -98,7 +98,7 @@ struct ShearFlow {
     }
 };
 
-// Vortices of Lamb and Oseen about vertical axes, which drift alike:
+// Lamb-Oseen vortices about vertical axes, with a common drift:
 //
 //     u = Gamma / (2 pi r^2) (1 - exp(-r^2 / r_c^2)) (-y, x)
 struct VortexFlow {
@@ -113,7 +113,7 @@ struct VortexFlow {
     auto at(double time, const View<M>& view) const
     {
         const Vector<M, double> axis_x = view.local({1.0, 0.0, 0.0}), axis_y = view.local({0.0, 1.0, 0.0});
-        const Vector2 nose{view.nose.x - time * drift.x, view.nose.y - time * drift.y};  // less the way of the drift
+        const Vector2 nose{view.nose.x - time * drift.x, view.nose.y - time * drift.y};  // minus the drift
         const Vector2 passing{drift.x - view.current.x, drift.y - view.current.y};
         return [=, this, by_core = 1.0 / (core * core)]<Number T>(const Vector<M, T>& r) {
             const T place_x = dot(axis_x, r) + nose.x, place_y = dot(axis_y, r) + nose.y;
@@ -137,7 +137,7 @@ struct VortexFlow {
         };
     }
 
-    // f = (1 - exp(-s)) / s and its derivative: by the series where s is small, and without the exponential where that
+    // f = (1 - exp(-s)) / s and its derivative: from the series for small s, and without the exponential if that
     // is below round-off.
     template <Number T>
     static std::array<T, 2> swirl_and_slope(T s)
@@ -187,8 +187,8 @@ struct WaveFlow {
     }
 };
 
-// A function of the user: `rows` (n, 18) of which it reads the place x (3) and writes u (3), u_t (3) and the Jacobian
-// (3, 3), row by row.
+// A user's function. rows (n, 18): it reads the place x (3) and writes u (3), u_t (3) and the Jacobian (3, 3), row by
+// row.
 struct FunctionFlow {
     static constexpr std::size_t columns = 18;
     std::function<void(double time, std::vector<double>& rows)> function;
@@ -203,7 +203,7 @@ struct Flow {
         sources;
 };
 
-// Writes u, u_t and the Jacobian at the places of `rows` (count, 18), as those of `FunctionFlow`, into them.
+// Writes u, u_t and the Jacobian at the places of `rows` (count, 18) into them, like a `FunctionFlow`.
 inline void flow_at(const Flow& flow, double time, double* rows, std::size_t count)
 {
     constexpr std::size_t columns = FunctionFlow::columns;
@@ -231,8 +231,8 @@ inline void flow_at(const Flow& flow, double time, double* rows, std::size_t cou
                                           [&](std::size_t c, double value) { rows[columns * i + 3 + c] = value; });
 }
 
-// The water of a run: it moves with the `current` [m/s], in the world's axes, and with the flow besides. Motions are
-// those in the frame of the current: an exact shift of frame.
+// The water of a run: it moves with the `current` [m/s], in the world's axes, plus the flow. Motions are relative to
+// the frame of the current, which is an exact shift of frame.
 struct Water {
     Vector3<double> current{0.0, 0.0, 0.0};
     std::shared_ptr<const Flow> flow{};  // none: at rest in that frame

@@ -16,7 +16,7 @@ class FlowValues {
     FlowSample<M, Lanes> operator[](std::size_t block) const { return here_[block]; }
     FlowSample<M, double> node(std::size_t i) const { return here_.node(i); }
     const FlowSample<M, double>& nose() const { return nose_; }
-    // Time [s] and place [m] in the world where the flow was asked for last and is not known: outside a grid.
+    // Time [s] and place [m] in the world of the last evaluation where the flow is unknown: outside a grid.
     const std::optional<std::array<double, 4>>& outside() const { return outside_; }
 
     // Sets the values at the first `count` of the points at `position` [m], about the head and in its axes, which are
@@ -51,7 +51,8 @@ class FlowValues {
         const auto at = [&](const Vector3<double>& place) {
             const WaterAt<double> water = now(place);
             if (std::isnan(water.u.x)) {
-                const bool first_unknown = known_ && !std::isnan(place.x + place.y + place.z);  // else it has diverged
+                const bool first_unknown =
+                    known_ && !std::isnan(place.x + place.y + place.z);  // otherwise the motion has diverged
                 if (first_unknown) outside_ = {time, place.x, place.y, place.z};
                 known_ = false;
             }
@@ -73,7 +74,7 @@ class FlowValues {
         put_each(row, row(count), view, count, first);
     }
 
-    // Adds what `block` gives for each block of points, and the water at the nose; or sets the values to them.
+    // Adds the result of `block` for each block of points, and the water at the nose; or sets the values to them.
     void put(const auto& block, const FlowSample<M, double>& at_nose, bool first)
     {
         for (std::size_t k = 0; k < here_.stride() / width - 1; ++k) {
@@ -87,7 +88,7 @@ class FlowValues {
             nose_ += at_nose;
     }
 
-    // The same for what `row` gives in the world at each of the `count` points, one by one; behind the last as there.
+    // The same with the result of `row` in the world at each of the `count` points; padding as the last point.
     void put_each(const auto& row, const WaterAt<double>& at_nose, const View<M>& view, std::size_t count, bool first)
     {
         for (std::size_t i = 0; i + width < place_.stride(); ++i)
@@ -119,7 +120,7 @@ class FlowValues {
         }
     }
 
-    Field<Vector3<double>> place_;     // [m], in the world, of sources that are asked point by point
+    Field<Vector3<double>> place_;     // [m], in the world, for sources evaluated point by point
     Field<WaterAt<double>> in_world_;  // of such a source
     Field<FlowSample<M, double>> here_;
     FlowSample<M, double> nose_{};

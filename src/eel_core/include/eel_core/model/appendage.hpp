@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Appendages: bars, boxes, plates and cables that are fixed to a section, and the base of a blunt tail, as drag areas.
-// Constants of a run, and the numbers of one evaluation. Ours, not the paper's.
+// Appendages: bars, boxes, plates and cables fixed to a section, and the base of a blunt tail, as drag areas. Constants
+// of a run, and the numbers of one evaluation. Our own, not in the paper.
 #pragma once
 
 #include "eel_core/algebra/motion.hpp"
@@ -13,12 +13,12 @@ struct Appendage {
     std::size_t node = 0;            // at its X, where a panel ends
     Vector3<double> arm{};           // [m], (0, y, z) from the section's centre, section axes
     Vector3<double> drag{};          // [kg/m], 1/2 rho_f times its drag areas, section axes
-    bool by_speed = false;           // the law |w| w_i in place of |w_i| w_i
+    bool by_speed = false;           // the law |w| w_i instead of |w_i| w_i
     bool of_body = false;            // the base of the body's tail: its power is part of the drag's
-    std::size_t station_behind = 0;  // the first station there or behind; none for one at the tail's end
+    std::size_t station_behind = 0;  // the first station there or behind; none for an appendage at the tail's end
 };
 
-// Of one evaluation, in the axes of the head.
+// One evaluation, in the axes of the head.
 template <class M>
 struct AppendageMotion {
     Vector<M, double> arm, position;  // [m], of the appendage, about the section and about the head

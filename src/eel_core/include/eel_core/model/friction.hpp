@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The laws of the axial friction c_f(Re), section 7.2.1.
 //
-// A new law is an entry of `Friction` and of `friction_laws` (swimmer_from.hpp), and a case of `axial_friction`; `Scene.friction` takes its
-// name. Its coefficients come from `sections_of` in eel_dynamics/model/section_data.py. One that is not analytic along the body
-// is named in `ROUGH_FRICTION` (eel_dynamics/model/scene.py), which asks for more points. One that is no sum of a laminar and a
-// turbulent part, as `taylor`, has a case in `set_drag_units` (march/missed.hpp) too.
+// A new law is an entry of `Friction` and of `friction_laws` (swimmer_from.hpp), and a case of `axial_friction`;
+// `Scene.friction` takes its name. Its coefficients come from `sections_of` in eel_dynamics/model/section_data.py. One
+// that is not analytic along the body is named in `ROUGH_FRICTION` (eel_dynamics/model/scene.py), which demands more
+// points. One that is no sum of a laminar and a turbulent part, as `taylor`, has a case in `set_drag_units`
+// (march/missed.hpp) too.
 //
-// `taylor`: flow across a cylinder keeps its boundary layer thin, so that the friction along it is
+// `taylor`: flow across a cylinder keeps its boundary layer thin, so the friction along it is
 // 1/2 rho_f 5.4 (nu d)^(1/2) V1 |Vn|^(1/2), with the diameter d and the speed Vn across (Taylor, Proc. R. Soc. A 214
-// (1952), doi:10.1098/rspa.1952.0159). Where it goes straight the laminar plate's remains: the squares of both add up.
+// (1952), doi:10.1098/rspa.1952.0159). For straight motion the laminar plate's friction remains: the squares add up.
 #pragma once
 
 #include "eel_core/model/section.hpp"
@@ -17,20 +18,19 @@ namespace eel_core {
 
 enum class Friction : std::size_t { printed, laminar, blended, taylor };
 
-// Whether the friction jumps where Re is critical, 8e4; the place of the jump is then integrated exactly
-// (`find_kinks`).
+// Whether the friction jumps at the critical Re, 8e4. The place of the jump is then integrated exactly (`find_kinks`).
 inline bool jumps(Friction law) { return law == Friction::printed; }
 
 // Axial friction of sections, per length and V1 [kg/m/s].
 struct AxialFriction {
-    Lanes laminar;          // by the laminar law
-    Lanes excess;           // what the turbulent law adds
-    Lanes turbulent_share;  // how much of the excess there is, 0 to 1
+    Lanes laminar;          // from the laminar law
+    Lanes excess;           // the turbulent law's excess
+    Lanes turbulent_share;  // share of the excess, 0 to 1
     Lanes above_critical;   // Re / 8e4 - 1
 };
 
-// Share of the turbulent law, for ratio = Re / 8e4: the ramp f_r of eq. (64) in ln Re, from Re = 4e4 to 1.6e5; ours,
-// not the paper's.
+// Share of the turbulent law for ratio = Re / 8e4: the ramp f_r of eq. (64) in ln Re, from Re = 4e4 to 1.6e5. Our own,
+// not in the paper.
 inline double turbulent_share(double ratio)
 {
     if (ratio <= 0.5) return 0.0;
@@ -42,7 +42,7 @@ inline double turbulent_share(double ratio)
 inline Lanes speed_across(const Vector2<Lanes>& v) { return abs(v.y); }
 inline Lanes speed_across(const Vector3<Lanes>& v) { return sqrt(v.y * v.y + v.z * v.z); }
 
-// By the velocity v of the section through the water, in its axes.
+// From the velocity v of the section through the water, in its axes.
 inline AxialFriction axial_friction(const DragSection<Lanes>& section, Friction law, const auto& v)
 {
     const Lanes speed = abs(v.x);

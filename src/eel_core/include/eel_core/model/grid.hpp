@@ -20,8 +20,8 @@ struct PanelRows {
 
 // The integral from the nose to n points: THE integral along the body, of every quantity.
 //
-// For each stretch of `filled` points: the integral to the node before the stretch's first panel is known, and the rest
-// is a sum over the nodes of its panels, with one weight for each point: for each node a column of weights.
+// For each stretch of `filled` points: the integral to the node before the stretch's first panel is known. The rest is
+// a sum over the nodes of its panels, with one weight for each point, so each node has a column of weights.
 class FromNose {
   public:
     static constexpr std::size_t parts = filled / width;  // blocks of points in a stretch
@@ -58,12 +58,12 @@ class FromNose {
     }
 
     std::span<const Stretch> stretches() const { return stretches_; }
-    // Of each point: the index of the first node of its panel, plus its fraction of the panel; it rises along the body.
+    // For each point, the index of the first node of its panel plus its fraction of the panel; it rises along the body.
     const Row& place() const { return place_; }
 
-    // `result` at the points, from components of `integrand` at the nodes, those from `first_row` on; `known` is the
-    // integral at the nodes (the result itself, where these are the points), and `at_nose` the value that it starts
-    // from. Over the stretches from `begin` up to `end` alone, if the integrand is zero before them and so is `known`.
+    // `result` at the points, from the components of `integrand` at the nodes from `first_row` on; `known` is the
+    // integral at the nodes (the result itself, if these are the points), and `at_nose` its value at the
+    // nose. Only over the stretches from `begin` up to `end`, if integrand and `known` are zero before them.
     template <class Value, class Source>
     void integrate(const Field<Source>& integrand, std::size_t first_row, const Value& at_nose,
                    const Field<Value>& known, Field<Value>& result, std::size_t begin = 0,
@@ -76,14 +76,14 @@ class FromNose {
             for (std::size_t part = 0; part < parts; ++part) result.store(parts * s + part, before + here[part]);
         }
     }
-    // The integral from the nose, at the nodes, from zero on.
+    // The integral from the nose at the nodes, starting from zero.
     template <class Value, class Source>
     void integrate(const Field<Source>& integrand, Field<Value>& result, std::size_t first_row = 0) const
     {
         integrate(integrand, first_row, Components<Value>::make([](std::size_t) { return 0.0; }), result, result);
     }
 
-    // The integral from the nose, at the points, from the integrand alone; `weight` [m]: of the nodes.
+    // The integral from the nose at the points, from the integrand only. weight: [m], of the nodes.
     template <class Value>
     void integrate(const Field<Value>& integrand, const Row& weight, Field<Value>& result) const
     {
@@ -96,7 +96,7 @@ class FromNose {
         }
     }
 
-    // Adds to `result` at the points, times their `factor`, what these rows give of `integrand`: of the first
+    // Adds to `result` at the points, times their `factor`, the result of these rows for `integrand`: the first
     // components, those of a `Value`.
     template <class Value, class Source>
     void add(const Field<Source>& integrand, const Row& factor, Field<Source>& result) const
@@ -114,7 +114,7 @@ class FromNose {
     }
 
   private:
-    // Of the points of a stretch: the integral from the start of its first panel.
+    // For the points of a stretch: the integral from the start of its first panel.
     template <class Value, class Source>
     std::array<typename Field<Value>::Block, parts> within(const Field<Source>& integrand, std::size_t first_row,
                                                            const Stretch& stretch) const
@@ -124,7 +124,7 @@ class FromNose {
         const std::size_t stride = integrand.stride();
         const Column* column = columns_.data() + stretch.column;
         const double* f = integrand.row(first_row) + stretch.begin;
-        // Few sums would wait for their last term: the nodes go to two sets of them in turn.
+        // Two alternating sets of sums, as a single set would wait for its last term.
         constexpr std::size_t sets = count * parts < 6 ? 2 : 1;
         std::array<std::array<std::array<Lanes, parts>, count>, sets> sum{};
         const auto add_node = [&](std::size_t node, std::size_t set) {
@@ -150,20 +150,20 @@ class FromNose {
     Row place_;
 };
 
-// The n nodes. A multiple of `filled` leaves no lanes empty; those that are empty have no weight.
+// The n nodes. A multiple of `filled` leaves no lanes empty. Empty lanes have no weight.
 struct Grid {
     std::size_t nodes = 0, blocks = 0, widest = 0;  // widest: nodes of the largest panel
     Row weight;                                     // [m], of the integral over the body
     std::vector<std::size_t> first, count;          // first node of the node's panel, and its number of nodes
     FromNose from_nose;
 
-    // What finds and integrates up to a place within a panel (`drag_kinks`):
+    // Data to find places within a panel, and to integrate up to them (`drag_kinks`):
     Row fraction;             // of the node's panel, in its own variable
-    Row by_step, by_two;      // one by the fraction since the node before; between the nodes before and behind
+    Row by_step, by_two;      // 1 / fraction since the previous node; 1 / fraction between the nodes before and after
     Row barycentric;          // weights of the interpolation within the panel
-    std::vector<Row> series;  // [m]: rows as those of `PanelRows`, as series of Chebyshev polynomials T_m
+    std::vector<Row> series;  // [m]: the rows of `PanelRows`, as series of Chebyshev polynomials T_m
 
-    // Sets what follows from `fraction`, `first` and `count`.
+    // Sets the data that follow from `fraction`, `first` and `count`.
     void set_steps()
     {
         by_step = by_two = Row(blocks);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Data of the elliptic sections of body and water, and what they say of momentum and energy: eq. (37), section 7.2.1.
+// Data of the elliptic sections of body and water, with their momentum and energy: eq. (37), section 7.2.1.
 //
 // They come from half-axes a along axis 3, b along axis 2, by the formulae in eel_dynamics/model/section_data.py.
 #pragma once
@@ -8,7 +8,7 @@
 
 namespace eel_core {
 
-// One section, or those of a block. SI units, per length of the body.
+// One section, or a block of them. SI units, per length of the body.
 template <Number T>
 struct Section {
     T mass;                          // [kg/m], of the body
@@ -68,7 +68,7 @@ struct Section {
     }
     T inertia_matrix(const Frame2<T>&) const { return inertia3; }
 
-    // All of it, times a weight [m].
+    // All fields times a weight [m].
     Section weighed(T weight) const
     {
         return {weight * mass,     weight * added2,   weight * added3,    weight * inertia1,
@@ -103,7 +103,7 @@ struct DragSection {
 struct Sections {
     Field<Section<double>> inertia;
     Row lever;      // [kg], m h of the weight; see weight.hpp
-    Row net;        // [kg/m], of the displaced water less the body, where bodies weigh
+    Row net;        // [kg/m], mass of displaced water minus body, if bodies have weight
     Row displaced;  // [kg/m], of the water that the section displaces
     Field<DragSection<double>> resistance;
 

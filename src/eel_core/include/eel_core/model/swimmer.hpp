@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run never writes: body and water at the nodes and stations, and which physics is on.
+// Constants of a run: body and water at the nodes and stations, and the active physics.
 #pragma once
 
 #include "eel_core/model/appendage.hpp"
@@ -10,7 +10,7 @@
 namespace eel_core {
 
 // Speeds of a section on which its drag depends: V1, V2, V3, Omega1 and Re / 8e4 - 1; `speeds` is their number. From
-// `lateral` on, the drag has a kink or a jump where the speed changes its sign.
+// `lateral` on, the drag has a kink or a jump when the speed changes sign.
 enum Speed : std::size_t { axial = 0, lateral = 1, vertical = 2, roll = 3, above_critical = 4, speeds = 5 };
 
 // Numbers of a section in which its inertial wrench, its weight, the undisturbed pressure of a flow and, from `drag2`
@@ -29,28 +29,28 @@ struct Swimmer {
     Sections sections;
     Friction friction = Friction::printed;
     bool resistive = true;                // drag along the body
-    bool segmented = false;               // the links have a drag of their own, `DragSection::segment`
+    bool segmented = false;               // whether links have drag, `DragSection::segment`
     std::size_t first_watched = lateral;  // from this `Speed` on, changes of sign are integrated exactly
-    double wake = 1.0;                    // 0 where no water is swept past the sections
-    double inertia_of_water = 1.0;        // 0 where the sections of the nodes have no water
+    double wake = 1.0;                    // 0 if no water is swept past the sections
+    double inertia_of_water = 1.0;        // 0 if the sections at the nodes have no water
     bool flow_gradient = true;            // forces by the gradient of a flow
-    Section<double> tail{};               // what is swept off there, whatever the nodes have
+    Section<double> tail{};               // the water swept off there, independent of the nodes
     double nose_mass = 0.0;               // [kg], m_o
     double nose_drag = 0.0;               // [kg/m], 1/2 rho_f k_o
-    bool distributed_pressure = false;    // -d/dX(T_f t1) along the body in place of -T_f t1 at the tail
+    bool distributed_pressure = false;    // -d/dX(T_f t1) along the body instead of -T_f t1 at the tail
     bool offset = false;                  // the centre of mass is off the axis: `lever` is part of the inertia
-    double righting = 0.0;                // [m/s^2], g, by which `lever` gives a moment of weight; 0: none
-    double gravity = 0.0;                 // [m/s^2], g, by which `net` gives a force; 0: no section has any
+    double righting = 0.0;                // [m/s^2], g, for the moment of weight of `lever`; 0: none
+    double gravity = 0.0;                 // [m/s^2], g, for the force of `net`; 0: no net weight
 
-    std::vector<Fin> fins;         // in space alone
+    std::vector<Fin> fins;         // only in space
     std::vector<FinServo> servos;  // of the fins
 
     std::vector<Appendage> appendages;  // and the base of a blunt tail
 
     bool weighs() const { return righting != 0.0 || gravity != 0.0; }
 
-    // For some speeds: parts of the nodes that the integral of the drag from a panel's start misses, by the drag at the
-    // node [m]; at fractions (1 - cos(pi k / last)) / 2 of the panel, k = 0 ... last. None where the sections are
+    // For some speeds: corrections of the nodes' parts in the integral of the drag from a panel's start, per drag at
+    // the node [m]; at fractions (1 - cos(pi k / last)) / 2 of the panel, k = 0 ... last. Empty if the sections are
     // smooth.
     std::array<std::vector<Row>, speeds> missed_drag;
 
@@ -60,10 +60,10 @@ struct Swimmer {
         0;  // the first so many, of which profiles are given; then, from `first_sensor` on, the sensors'
     Sections at_station;
     Row added2_slope, added3_slope, added_roll_slope;  // derivatives by X
-    std::vector<std::size_t> nodes_before;             // how many nodes lie at or before the station
+    std::vector<std::size_t> nodes_before;             // number of nodes at or before the station
     FromNose to_station;
-    // For each `SectionPart`: what the sum of `to_station` over a station's own panel misses of its integral. Empty
-    // where the sections are as smooth as the motion.
+    // For each `SectionPart`: correction of the sum of `to_station` over a station's own panel. Empty
+    // if the sections are as smooth as the motion.
     std::vector<FromNose> missed;
 
     // A stretch of `to_station` holds stations that rise: the sensors begin one.

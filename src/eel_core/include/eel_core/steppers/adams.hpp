@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps of Adams and Bashforth of variable length and order: one evaluation each.
+// Adams-Bashforth steps of variable length and order, with one evaluation each.
 //
 //     y(t + h) = y(t) + h sum_j g_j phi*_j,  phi*_j = beta_j phi_j,  phi_0 = f,
 //     phi_(j+1) = phi_j - phi*_j of the step before
 //
 // in modified divided differences (Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, section
-// III.5, eqs. 5.7 to 5.10). The next term of the sum, known once the new rate is, estimates the error of the step. The
-// first steps after a start rise in order, from one.
+// III.5, eqs. 5.7 to 5.10). The next term of the sum, known with the new rate, estimates the error of the step. After a
+// start, the order rises from one.
 //
 // Stable steps get longer as the order falls: 2/7, 6/11, 1 and 2 times the time of the fastest decay at orders 4 to 1.
-// So where steps have become very short, the order is that of three neighbours that promises the longest step, as in
-// Hindmarsh's LSODE; elsewhere it is the one asked for.
+// So when steps have become very short, the order with the longest predicted step among three neighbours is taken, as
+// in Hindmarsh's LSODE. Otherwise it is the requested order.
 #pragma once
 
 #include <algorithm>
@@ -47,20 +47,20 @@ inline State stepped(State y, double length, std::span<const double> weight, std
 
 class Adams {
   public:
-    static constexpr std::size_t highest = 6;   // beyond, stable steps are shorter than exact ones
-    static constexpr double is_short = 0.0125;  // of the longest step: below, the order may fall
-    // How many times longer a step must get by a neighbouring order, and the least growth that is taken, so that steps
-    // stay equal: in the way of LSODE (Hindmarsh, ODEPACK, 1983), where they are 1.3/1.2, 1.4/1.2 and 1.1.
+    static constexpr std::size_t highest = 6;   // at higher orders, stable steps are shorter than exact ones
+    static constexpr double is_short = 0.0125;  // of the longest step: the order of shorter steps may fall
+    // Least growth of a step by which a neighbouring order is taken, and least growth that is used at all, so that
+    // steps stay equal: as in LSODE (Hindmarsh, ODEPACK, 1983), where they are 1.3/1.2, 1.4/1.2 and 1.1.
     static constexpr double gain_below = 1.1, gain_above = 1.3, least_growth = 1.15;
-    // The greatest growth while the order is above that of the steps that are known, and later. Ours.
+    // The greatest growth while the order exceeds the number of known steps, and later. Our own.
     static constexpr double growth_at_start = 2.0, growth_of_full_order = 1.5;
 
     explicit Adams(std::size_t wanted = 1) : wanted_(wanted) {}
 
     std::size_t order() const { return order_; }
-    std::size_t terms() const { return terms_; }  // of the step under way
+    std::size_t terms() const { return terms_; }  // of the present step
 
-    // Forgets the steps before one whose `rate` at the start is known.
+    // Discards the past steps before a step with known `rate` at its start.
     void begin(const State& rate)
     {
         known_ = 0, order_ = wanted_, since_change_ = 0, may_rise_ = false;
@@ -73,7 +73,7 @@ class Adams {
         terms_ = std::min(order_, known_ + 1);
         const std::size_t top = terms_ + (may_rise_ ? 1 : 0);  // the last g, for the error
         set_weights(length, top);
-        double beta = 1.0, to_end = length, to_start = 0.0;  // s, to rates before from the step's end and start
+        double beta = 1.0, to_end = length, to_start = 0.0;  // s, from the step's end and start to past rates
         for (std::size_t j = 0; j < top; ++j) {
             if (j > 0) {
                 to_start += length_[j - 1];
@@ -85,7 +85,7 @@ class Adams {
         return stepped(y, length, weight_, std::span(starred_).first(terms_));
     }
 
-    // The error by the step's length of a step of so many terms, with the `rate` at its end.
+    // The error / the step's length, for a step of so many terms with the `rate` at its end.
     State defect(std::size_t terms, const State& rate) const
     {
         State left = rate;
@@ -94,7 +94,7 @@ class Adams {
         return left;
     }
 
-    // Makes the step of `length` [s] one of the past, with the `rate` at its end.
+    // Adds the step of `length` [s] to the past steps, with the `rate` at its end.
     void accept(double length, const State& rate)
     {
         State left = rate;
@@ -109,12 +109,12 @@ class Adams {
         known_ = std::min(known_ + 1, wanted_);
     }
 
-    // Whether the neighbouring orders of the step under way are to be looked at, where steps are short.
+    // Whether the neighbouring orders of the present step are evaluated, as steps are short.
     bool may_fall() const { return terms_ > 1; }
     bool may_rise() const { return may_rise_; }
 
-    // Chooses the order of the next step; returns how many times longer than this one it is. `growth`: as its error
-    // allows. Where steps are short, `below` and `above`: as the neighbouring orders promise, 0 where not looked at.
+    // Chooses the order of the next step. Returns its length relative to this one's. growth: allowed by its
+    // error. below, above: for short steps, allowed by the neighbouring orders; 0 if not evaluated.
     double choose_order(bool steps_are_short, double growth, double below, double above)
     {
         const bool settled = since_change_ > order_;
@@ -133,7 +133,7 @@ class Adams {
     }
 
   private:
-    // g_j: of equal steps, or for the present lengths.
+    // g_j: for equal steps, or for the present lengths.
     void set_weights(double length, std::size_t top)
     {
         static constexpr std::array<double, 8> equal{1.0,           1.0 / 2.0,    5.0 / 12.0,        3.0 / 8.0,
@@ -154,7 +154,7 @@ class Adams {
         }
     }
 
-    // What of a proposed growth is taken.
+    // The growth that is used of a proposed one.
     double taken(double growth) const
     {
         if (known_ + 1 < order_) return std::min(growth_at_start, growth);
@@ -163,7 +163,7 @@ class Adams {
     }
 
     std::size_t wanted_, known_ = 0, terms_ = 0, order_ = 1, since_change_ = 0;
-    bool may_rise_ = false;                                    // a look at the next order is due: steps are short
+    bool may_rise_ = false;                                    // the next order is to be evaluated: steps are short
     std::array<State, highest + 2> difference_{}, starred_{};  // phi_j at the end of the last step, phi*_j of this one
     std::array<double, highest + 2> length_{};                 // s, of the last steps, the latest first
     std::array<double, highest + 3> weight_{};                 // g_j

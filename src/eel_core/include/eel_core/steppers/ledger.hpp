@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Works of actuators, wake, nose, drag, flow, fins and appendages along the way: integrals of their powers, by the
-// Lobatto points of each step.
+// Works of actuators, wake, nose, drag, flow, fins and appendages: integrals of their powers, from the Lobatto points
+// of each step.
 #pragma once
 
 #include "eel_core/internal_wrench.hpp"
@@ -12,7 +12,7 @@ using WorkDone = Powers;  // [J], of actuators, wake, nose, drag, flow, fins and
 // Lobatto's points, as fractions of the step.
 inline constexpr std::array<double, 4> lobatto{0.0, 0.276393202250021030, 0.723606797749978970, 1.0};
 
-// For each of the points, the coefficients, from the constant one on, of the cubic that is 1 there and 0 at the others.
+// For each of the points, the coefficients, constant first, of the cubic that is 1 there and 0 at the others.
 constexpr std::array<std::array<double, 4>, 4> lagrange_cubics()
 {
     std::array<std::array<double, 4>, 4> result{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The methods by which steps in time are taken. The last rate of a step is the first of the next.
+// The methods for steps in time. The last rate of a step is the first of the next.
 //
 // Adams and Bashforth's of orders 1 to 6 (`adams.hpp`); the pair of Dormand and Prince of orders 5(4) (J. Comp. Appl.
 // Math. 6 (1980)), with dense output of order 4 by Shampine (Math. Comp. 46 (1986)); the classical Runge-Kutta method.
@@ -19,13 +19,13 @@ struct Method {
     std::size_t stages;
     std::array<Weights, most_stages> a;                    // a[i][j], weight of rate j in the state of stage i
     Weights c;                                             // time of the stages, as fractions of the step
-    Weights error;                                         // of the error estimate
+    Weights error;                                         // weights of the error estimate
     std::array<std::array<double, 4>, most_stages> dense;  // y(theta) = y + h sum_i k_i sum_j dense[i][j] theta^(j+1)
     bool adaptive;
-    int order;          // of the error's size by the step's length
+    int order;          // of the error as a power of the step's length
     std::size_t adams;  // order of Adams' method, whose rows are the first, the mean and the last rate; 0: Runge-Kutta
 
-    // By the cubic that meets value and rate at both ends, from the weights of the mean rate.
+    // From the cubic that matches value and rate at both ends, with the weights of the mean rate.
     void set_hermite_output(const Weights& mean)
     {
         for (std::size_t i = 0; i < stages; ++i) dense[i] = {0.0, 3.0 * mean[i], -2.0 * mean[i], 0.0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pace of a march: what its steps so far leave for the choice of the next ones, whatever their method.
+// The pace of a march: data from its past steps for the choice of the next ones, for any method.
 #pragma once
 
 #include "eel_core/steppers/present.hpp"
@@ -9,11 +9,11 @@ namespace eel_core {
 struct Pace {
     Counts counts;
     MomentumScale scale;
-    double torque_scale = 0.0;  // [N m], the greatest of a body with modes so far
+    double torque_scale = 0.0;  // [N m], greatest torque so far of a body with modes
     double proposed = 0.0;      // [s], length of the next step
-    double budget = 0.0;        // steps that may still be tried before the next are earned by motion
+    double budget = 0.0;        // steps that may be tried before motion earns further ones
 
-    // Forgets what was before the first of all steps, which begins in the state y.
+    // Resets the pace for the very first step, which begins in the state y.
     void forget(const State& y, const StepBounds& bounds)
     {
         *this = {};
@@ -21,8 +21,8 @@ struct Pace {
         scale.include(y);
     }
 
-    // Has `take_step` take one after the other until the last, whose end is at `end_time()` [s], holds the time `until`
-    // [s]. `nodes`: that an evaluation costs; `besides`: evaluations' worth of a step besides.
+    // Calls `take_step` until the last step, which ends at `end_time()` [s], contains the time `until`
+    // [s]. nodes: cost of an evaluation. besides: further cost of a step, in evaluations.
     Status march(double until, std::size_t nodes, std::int64_t besides, Slice& slice, const auto& end_time,
                  const auto& take_step)
     {
@@ -38,13 +38,13 @@ struct Pace {
         return Status::marched;
     }
 
-    // Shortens a step of `length` [s] that ends so (`status`), or with too large an `error` over the tolerance.
+    // Shortens a step of `length` [s] that ended with this `status`, or with an `error` above the tolerance.
     void shorten(Status status, double error, double order, double& length)
     {
         ++counts.rejected, budget -= 1.0;
         length *= status != Status::marched ? shrinking_of_lost : shrink_factor(error, order);
     }
-    // Proposes the next step after one of `length` [s] that may grow by a factor; `asked`: the length asked for.
+    // Proposes the next step after one of `length` [s] that may grow by a factor. asked: the requested length.
     void propose(const StepBounds& bounds, double length, double asked, double growth)
     {
         const double grown = length * rounded_down(growth);

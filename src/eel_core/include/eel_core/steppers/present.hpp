@@ -11,7 +11,7 @@ namespace eel_core {
 
 enum class Status { marched, not_finite, step_too_small, singular, too_many_steps, unfinished };
 
-// Nodes that may still be evaluated before a march comes back unfinished, to be asked to go on: some milliseconds.
+// Nodes that may be evaluated before a march returns unfinished, to be called again: some milliseconds.
 struct Slice {
     std::int64_t left = 40'000;
 
@@ -19,7 +19,7 @@ struct Slice {
     void spend(std::size_t nodes) { left -= static_cast<std::int64_t>(nodes); }
 };
 
-// What is fixed while a march goes on undisturbed.
+// Settings that are fixed while a march is not disturbed.
 struct MarchSettings {
     LawOnGrid law;
     std::vector<double> breakpoints;  // [s], ascending

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What sets the time step. `error_by_tolerance` judges the error of the last one, `growth_factor` or `shrink_factor`
-// propose the next one by it (called by `Stepper`, for robots by `BentStepper`, and by `Pace`, which both have), and
-// `time_step_size` fits the proposal to `StepBounds` and to what lies ahead. The bounds come from the accuracy and the
-// law: `step_bounds_of` in eel_dynamics/accuracy/step_bounds.py.
+// The control of the time step. `error_by_tolerance` judges the error of the last step. From it `growth_factor` or
+// `shrink_factor` propose the next one (called by `Stepper`, for robots by `BentStepper`, and by `Pace`, which both
+// have). `time_step_size` fits the proposal to `StepBounds` and to breakpoints ahead. The bounds come from the accuracy
+// and the law: `step_bounds_of` in eel_dynamics/accuracy/step_bounds.py.
 #pragma once
 
 #include <algorithm>
@@ -14,16 +14,16 @@
 
 namespace eel_core {
 
-// What bounds the steps of a march.
+// Bounds of the steps of a march.
 struct StepBounds {
     double tolerance;           // relative error per step
-    double longest;             // [s], of a time step; a fixed method takes all as long, or a little shorter
+    double longest;             // [s], longest step; a fixed method takes steps of this length, or slightly shorter
     double smallest;            // [s]
     double length;              // [m], scale of positions
-    double momentum_floor;      // [kg m/s], below which momentum counts as none
-    double part_of_span;        // of the time between two breakpoints, that a step may take
+    double momentum_floor;      // [kg m/s], smaller momentum counts as none
+    double part_of_span;        // of the time between two breakpoints: greatest step
     double most_steps;          // per second of motion
-    double spare_steps;         // beyond these, to be spent at any time
+    double spare_steps;         // further steps, available at any time
     double torque_floor = 0.0;  // [N m], of a body with modes: below it torques count as none
 };
 
@@ -53,9 +53,8 @@ struct MomentumScale {
     }
 };
 
-// Error of a step over the tolerance: of the position by the body's length, of the orientation and the fins by one, of
-// the momenta by their greatest size; the worst of the five. `defect`: error by the step's length; `end`: state at the
-// step's end.
+// Error of a step relative to the tolerance: the worst of position / body length, orientation and fins / 1, and momenta
+// / their greatest magnitude. defect: error / the step's length. end: state at the step's end.
 inline double error_by_tolerance(const StepBounds& bounds, MomentumScale scale, const State& end, const State& defect,
                                  double length)
 {
@@ -69,22 +68,23 @@ inline double error_by_tolerance(const StepBounds& bounds, MomentumScale scale, 
     return std::sqrt(worst) * length / bounds.tolerance;
 }
 
-// A growth of the step in whole parts of 32, no greater. It comes from an estimate of the error, whose last digits
-// differ from processor to processor: they must not be handed on to all later steps.
+// A growth of the step rounded down to a multiple of 1/32. It comes from an error estimate whose last digits differ
+// between processors, and these must not affect all later steps.
 inline double rounded_down(double growth) { return std::floor(32.0 * growth) / 32.0; }
 
-// Of Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, section II.4, eq. 4.13: the step is a
-// little shorter than its error allows, and changes by no more than these factors at once.
+// From Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, section II.4, eq. 4.13: the step is
+// slightly shorter than its error allows, and changes by at most these factors at a time.
 inline constexpr double safety = 0.9, greatest_growth = 5.0, greatest_shrinking = 0.2;
 inline constexpr double no_error = 1e-4;  // of the tolerance: the step grows by the greatest factor at any order
 
-// Ours:
-inline constexpr double shrinking_of_lost = 0.1;  // of a step at whose end no motion is found
-inline constexpr double accepted_of_adams = 4.0;  // error over tolerance: the next step is shorter, and none repeated
-inline constexpr double first_step = 0.02;        // of the longest: the first of all steps
-inline constexpr double equal_steps = 8.0;        // of Adams' method, or fewer: those up to a breakpoint are made equal
+// Our own:
+inline constexpr double shrinking_of_lost = 0.1;  // for a step without a valid motion at its end
+inline constexpr double accepted_of_adams =
+    4.0;  // error / tolerance: up to this the step is not repeated, but the next one is shorter
+inline constexpr double first_step = 0.02;  // of the longest: the first of all steps
+inline constexpr double equal_steps = 8.0;  // up to so many steps of Adams' method before a breakpoint are made equal
 
-// How many times longer a step may be whose error goes with the power `order` of its length.
+// Growth of a step whose error is proportional to its length to the power `order`.
 inline double growth_factor(double error, double order)
 {
     return error < no_error ? greatest_growth : std::min(greatest_growth, safety * std::pow(error, -1.0 / order));
@@ -106,8 +106,8 @@ struct Span {
     }
 };
 
-// Length [s] of the next step from `start`: as proposed, or such that steps end on the next breakpoint without a sliver
-// before it; at most a part of the span, for the works are integrals of what goes on there.
+// Length [s] of the next step from `start`: as proposed, or adjusted so that steps end on the next breakpoint without a
+// tiny last step; at most a part of the span, as the works are integrals over it.
 inline double time_step_size(bool adaptive, bool adams, const StepBounds& bounds, double proposed, double start,
                              const Span& span, double tiny)
 {

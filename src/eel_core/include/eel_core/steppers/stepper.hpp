@@ -14,7 +14,7 @@
 
 namespace eel_core {
 
-// The step that the present lies in, and what the next ones need to know.
+// The step that contains the present, and the data for the next ones.
 template <class M>
 class Stepper {
   public:
@@ -29,21 +29,21 @@ class Stepper {
     const Workspace<M>& work() const { return work_; }
     double end_time() const { return start_ + length_; }
 
-    // The head's twist relative to the water at `time` [s], where the last step ends there: it is known already.
+    // The head's twist relative to the water at `time` [s], known if the last step ends there.
     std::optional<Twist<M, double>> twist_at_end(double time) const
     {
         if (anew_ || !ends_at(time)) return {};
         return end_twist_;
     }
 
-    // Lets the next step begin at present.
+    // Makes the next step begin at the present.
     void begin(const MarchSettings&, const Present& now)
     {
         end_ = now.state, works_ = now.works;
         start_ = now.time, length_ = 0.0, anew_ = true;
     }
 
-    // Marches until the step holds the time `until` [s].
+    // Marches until the step contains the time `until` [s].
     Status march(const MarchSettings& settings, double until, Slice& slice)
     {
         return pace.march(
@@ -51,7 +51,7 @@ class Stepper {
             [this] { return end_time(); }, [&](double tiny) { return take_step(settings, tiny); });
     }
 
-    // Hands over what the next steps and the present follow from (`march/archive.hpp`).
+    // Archives all data that determine the next steps and the present (`march/archive.hpp`).
     template <class Archive>
     void pass(Archive& archive)
     {
@@ -59,7 +59,7 @@ class Stepper {
         archive(pace, adams_, start_, length_, begin_, end_, end_twist_, rate_, works_, powers_, anew_);
     }
 
-    // Puts state and works at the present time, which lies within the step.
+    // Sets state and works to the present time, which lies within the step.
     void put_state(bool ledger, Present& now) const
     {
         double theta = 1.0;
@@ -95,7 +95,7 @@ class Stepper {
         return rate_of_state(*swimmer_, settings.law, settings.water, time, y, work_, rate);
     }
 
-    // Tries a step of `length` [s] into `trial_`; `error`: over the tolerance.
+    // Tries a step of `length` [s] into `trial_`. error: relative to the tolerance.
     Status attempt(const MarchSettings& settings, double start, double length, double& error)
     {
         const std::size_t last = method_.stages - 1;
@@ -154,7 +154,7 @@ class Stepper {
         return settings.ledger ? find_step_powers(settings, first_of_span) : Status::marched;
     }
 
-    // How many times longer the next step may be.
+    // Allowed growth of the next step.
     double growth(const StepBounds& bounds, double length, double error)
     {
         if (method_.adams == 0) return growth_factor(error, method_.order);
@@ -194,7 +194,7 @@ class Stepper {
         return Status::marched;
     }
 
-    static constexpr std::int64_t evaluations_of_powers = 4;  // that the powers of a step cost as much as
+    static constexpr std::int64_t evaluations_of_powers = 4;  // cost of the powers of a step, in evaluations
 
     const Swimmer* swimmer_;
     Method method_;
@@ -206,7 +206,7 @@ class Stepper {
     std::array<State, Method::most_stages> rate_{};
     WorkDone works_{};  // at the start of the step
     StepPowers powers_;
-    bool anew_ = true;  // the rate and powers at the start of the next step are not known
+    bool anew_ = true;  // rate and powers at the start of the next step are unknown
     bool begin_anew_ = true;
 };
 
