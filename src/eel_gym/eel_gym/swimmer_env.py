@@ -12,7 +12,7 @@ import numpy as np
 from eel_common.head_motion import HeadMotion
 from eel_common.quantity import checked_instance, number
 from eel_common.wording import not_one_of, one_line, shown
-from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.accuracy import STANDARD, Accuracy
 from eel_dynamics.batches.simulate_batch import MOST_THREADS
 from eel_dynamics.model.body.body import Body
 from eel_dynamics.model.flow.flow import Flow
@@ -71,7 +71,7 @@ class SwimmerEnv(Task):
         *,
         body: Body | None = None,
         scene: Scene | None = None,
-        accuracy: str | float | Accuracy = "standard",
+        accuracy: str | float | Accuracy = STANDARD,
         action: Action | None = None,
         render_mode: str | None = None,
         recordings: Any = "recordings",

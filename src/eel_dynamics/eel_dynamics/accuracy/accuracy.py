@@ -28,6 +28,7 @@ from eel_dynamics.model.scene import ROUGH_FRICTION, Scene
 from eel_dynamics.model.section_data import WATCHED
 
 PRESETS = {"draft": 1e-2, "standard": 1e-4, "fine": 1e-6, "reference": 1e-8}
+STANDARD = "standard"  # the default
 COARSEST, FINEST = 0.1, 1e-10
 # Number of step errors that add up in a swim: in a run that measures its error and is refined if that is too large; and
 # in one that cannot be refined, such as a node's, with a margin for sensitive motions.

@@ -19,6 +19,7 @@ import numpy as np
 from eel_common.wording import shown
 from numpy.typing import ArrayLike
 
+from eel_dynamics.accuracy.accuracy import STANDARD
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.batches.batch import Batch, batch_of, coordinates_of
 from eel_dynamics.batches.broadcast import Swimmer, swimmers_of
@@ -45,7 +46,7 @@ def simulate_batch(
     *,
     bodies: Any = None,
     scenes: Any = None,
-    accuracy: Any = "standard",
+    accuracy: Any = STANDARD,
     sample_period: float | None = None,
     stations: int | ArrayLike | None = None,
     positions: ArrayLike = (0.0, 0.0, 0.0),

@@ -16,7 +16,7 @@ from eel_common.texts import TRUTH, value_of
 from eel_common.wording import shown
 from eel_gaits.gaits.registry import GAITS, find
 
-from eel_dynamics.accuracy.accuracy import PRESETS
+from eel_dynamics.accuracy.accuracy import PRESETS, STANDARD
 from eel_dynamics.model.body.body import NAMED
 from eel_dynamics.model.flow.text import NAMES
 from eel_dynamics.model.robot.ready import READY
@@ -198,7 +198,7 @@ OPTIONS = {  # the arguments for argparse
         "base_drag=0.2'",
     },
     "--accuracy": {
-        "default": "standard",
+        "default": STANDARD,
         "metavar": "TARGET",
         "help": f"{', '.join(PRESETS)}, or a target relative error",
     },

@@ -31,6 +31,7 @@ from eel_gaits.laws.law import Law
 from eel_gaits.sources.motion_file import read_motion
 from eel_gaits.sources.sampled_law import SampledLaw
 
+from eel_dynamics.accuracy.accuracy import STANDARD
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.joint_demand import MOST_JOINTS
 from eel_dynamics.commands.filmed import EEL, add_film_options, beat_from, body_for, effect_of_fit
@@ -84,7 +85,7 @@ def _add_options(parser: Parser) -> None:
     add_options(
         parser, "--scale", "--duration", "--accuracy", "--bare", "--body", "--scene", "--flow", "--robot", "--fins",
         "--sample-period",
-        duration=duration, accuracy=(None, "standard"),
+        duration=duration, accuracy=(None, STANDARD),
         body=(None, f"boyer2010; with --midlines {EEL}, as long as the swimmer in the film"),
     )  # fmt: skip
     parser.add_argument("--stations", type=int, help=f"points along the body ({STATIONS})")

@@ -14,6 +14,7 @@ from eel_common.attitude import unit_quaternion
 from eel_common.quantity import AT_RESET, Quantities, quantity
 from eel_common.wording import shown
 
+from eel_dynamics.accuracy.accuracy import STANDARD
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.joint_demand import MOST_JOINTS
 
@@ -29,7 +30,7 @@ class DynamicsParameters(Quantities):
     """The node's parameters except the scene."""
 
     accuracy: str = quantity(
-        "standard",
+        STANDARD,
         "",
         "preset (draft, standard, fine, reference) or a target relative error of a run of that duration, or of 10 s",
         number=True,

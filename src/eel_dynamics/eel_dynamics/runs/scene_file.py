@@ -32,7 +32,7 @@ from eel_common.quantity import checked_instance, checked_path, checked_row, pos
 from eel_common.wording import did_you_mean, shown
 from eel_gaits.gaits.settings import SEQUENCES, Settings
 
-from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.accuracy import STANDARD, Accuracy
 from eel_dynamics.model.body.body import Body
 from eel_dynamics.model.body.text import body_of
 from eel_dynamics.model.fins.text import fins_from_text, text_of_fins
@@ -79,7 +79,7 @@ def swim_of(words: Any, base: Swim | None = None) -> Swim:
             hint = did_you_mean(word, (*WORDS, *known))
             raise ValueError(f"unknown word {shown(word)}{hint}, must be gait, its numbers, or {', '.join(WORDS)}")
     settings = Settings().changed(gait)
-    swim = base or Swim(settings.law(), Body.boyer2010(), Scene(), Accuracy.of("standard"), gait=settings)
+    swim = base or Swim(settings.law(), Body.boyer2010(), Scene(), Accuracy.of(STANDARD), gait=settings)
     if base is not None and gait:
         swim = swim.with_gait(**gait)
     for word, about in WORDS.items():

@@ -10,7 +10,7 @@ from typing import Any
 from eel_common.command.progress import Forecast
 from numpy.typing import ArrayLike
 
-from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.accuracy import STANDARD, Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.model.body.body import Body
 from eel_dynamics.model.flow.flow import Flow
@@ -31,7 +31,7 @@ def simulate(
     *,
     body: Body | None = None,
     scene: Scene | None = None,
-    accuracy: "str | float | Accuracy" = "standard",
+    accuracy: "str | float | Accuracy" = STANDARD,
     sample_period: float | None = None,
     stations: int | ArrayLike = 51,
     position: ArrayLike = (0.0, 0.0, 0.0),

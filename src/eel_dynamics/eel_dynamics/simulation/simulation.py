@@ -13,7 +13,7 @@ from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 from numpy.typing import ArrayLike
 
-from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.accuracy import STANDARD, Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
@@ -64,7 +64,7 @@ class Simulation(Present):
         self,
         body: Body | None = None,
         scene: Scene | None = None,
-        accuracy: "str | float | Accuracy" = "standard",
+        accuracy: "str | float | Accuracy" = STANDARD,
         stations: int | ArrayLike = 51,
         position: ArrayLike = (0.0, 0.0, 0.0),
         orientation: ArrayLike = (0.0, 0.0, 0.0, 1.0),

@@ -12,7 +12,7 @@ from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 
 import eel_core
-from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.accuracy import STANDARD, Accuracy
 from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
 from eel_dynamics.accuracy.law_waves import check_law, knots_of_law, waves_of_rows
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS, check_cost
@@ -53,7 +53,7 @@ class SimulationSetup(EqualByFields):
         *,
         body=None,
         scene=None,
-        accuracy="standard",
+        accuracy=STANDARD,
         stations=51,
         position=(0.0, 0.0, 0.0),
         orientation=(0.0, 0.0, 0.0, 1.0),

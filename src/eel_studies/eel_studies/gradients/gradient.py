@@ -24,6 +24,7 @@ from eel_common.attitude import world_from_body
 from eel_common.command.progress import progress_of
 from eel_common.quantity import checked_choice, checked_instance, number, positive
 from eel_common.wording import shown
+from eel_dynamics.accuracy.accuracy import STANDARD
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.measures import checked_measures
@@ -90,7 +91,7 @@ def gradient(
     body: Body | None = None,
     scene: Scene | None = None,
     robot: Robot | str | None = None,
-    accuracy: AccuracyLike = "standard",
+    accuracy: AccuracyLike = STANDARD,
     sample_period: float | None = None,
     stations: Stations = 51,
     steps: dict[str, float] | None = None,

@@ -21,7 +21,7 @@ import numpy as np
 from eel_common.command.progress import progress_of
 from eel_common.quantity import checked_instance, positive
 from eel_common.wording import WorkStopped, one_line, shown
-from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.accuracy import STANDARD, Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import checked_measures, described
 from eel_dynamics.analysis.settling import tell_unsettled
@@ -124,7 +124,7 @@ def sweep(
     """
     xarray = needed("xarray", "a sweep")
     names, axes = _checked_grid(grid)
-    own = gait if isinstance(gait, Swim) else Swim(None, Body.boyer2010(), Scene(), "standard", duration=UNTIL_SETTLED)
+    own = gait if isinstance(gait, Swim) else Swim(None, Body.boyer2010(), Scene(), STANDARD, duration=UNTIL_SETTLED)
     duration = own.duration if duration is None else duration
     sample_period = own.sample_period if sample_period is None else sample_period
     stations = own.stations if stations is None else stations

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from operator import attrgetter
 from typing import Any
 
-from eel_dynamics.accuracy.accuracy import PRESETS, Accuracy
+from eel_dynamics.accuracy.accuracy import PRESETS, STANDARD, Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.runs.companion import relative_errors
 
@@ -146,7 +146,7 @@ def affordable(swim: Swim, quick: bool, repeats: int) -> tuple[list[Accuracy], i
 
     quick: as in `settings`.
     """
-    standard = swim._replace(accuracy=Accuracy.of("standard").in_scene(swim.scene))
+    standard = swim._replace(accuracy=Accuracy.of(STANDARD).in_scene(swim.scene))
     cost = DEARER * cpu_seconds([standard], float(swim.duration), 1)[0]
     for fewer, rounds in ((quick, repeats), (True, repeats), (True, 1)):
         rows = settings(swim, fewer)

@@ -20,7 +20,7 @@ from eel_common.wording import one_line, shown
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.law_message import law_from_message
 
-from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.accuracy import STANDARD, Accuracy
 from eel_dynamics.model.body.body import Body, checked_body
 from eel_dynamics.model.body.grid import Grid
 from eel_dynamics.model.body.moments import with_moments
@@ -191,10 +191,10 @@ def _accuracy(once: dict[str, Any], scene: Scene) -> Accuracy:
     statuses = getattr(once.get("diagnostics"), "status", ())
     names = [pair.value for status in statuses for pair in status.values if pair.key == "accuracy"]
     try:
-        wanted = Accuracy.of(names[-1] if names else "standard")
+        wanted = Accuracy.of(names[-1] if names else STANDARD)
     except ValueError as error:
         warnings.warn(f"the accuracy is not known: {one_line(error)}", stacklevel=5)
-        wanted = Accuracy.of("standard")
+        wanted = Accuracy.of(STANDARD)
     return wanted.in_scene(scene)
 
 
