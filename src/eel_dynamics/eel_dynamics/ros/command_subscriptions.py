@@ -20,7 +20,7 @@ SENSOR = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)  # a
 def subscribe_to_commands(node: ServedNode, run: RunLoop) -> None:
     """Let the `node` subscribe for a `run`. What a message says is read and checked in the run loop's thread.
 
-    The node subscribes also without such joints and fins, so that it can answer whoever commands them.
+    The node subscribes also without such joints and fins, so that it can answer their commands.
     """
 
     def receiver(queue: CommandQueue) -> Callable[[Any], None]:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Converts axes at the boundary of the core, both ways. The core works in the paper's: at rest the body lies along +x
-// from the head, and swims towards -x. Whoever uses the core gives and gets world and head in those of REP-103: x
+// from the head, and swims towards -x. Callers of the core give and get world and head in REP-103 axes: x
 // forward, y left, z up.
 //
 // A half turn about axis 3, of world and head alike, takes each into the other. Section axes stay the paper's.

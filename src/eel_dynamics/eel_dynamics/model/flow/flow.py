@@ -124,7 +124,7 @@ def parts_of(flow: Flow) -> tuple[Flow, ...]:
 
 @lru_cache(maxsize=64)
 def core_flow(flow: Flow, planar: bool) -> eel_core.Flow:
-    """`flow` for the compiled mechanics. planar: of a planar scene."""
+    """`flow` for the core. planar: for a planar scene."""
     return eel_core.Flow(flow.sources(planar))
 
 
