@@ -38,7 +38,7 @@ def commands() -> dict[str, EntryPoint]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Return the exit status of the command; 0 after the list; 2 for a command that is unknown or cannot be imported."""
+    """Return the exit status of the command; 0 after the list; 2 if it is unknown or cannot be imported."""
     words = sys.argv[1:] if arguments is None else arguments
     if COMPLETING in os.environ:
         words = _typed_before_the_cursor()
