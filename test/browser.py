@@ -68,8 +68,8 @@ class Page:
 
     def screenshot(self, element: str) -> bytes:
         """The first element that the CSS selector finds, as PNG."""
-        box = self.value(f"(({{x, y, width, height}}) => ({{x, y, width, height}}))"
-                         f"(document.querySelector('{element}').getBoundingClientRect())")  # fmt: skip
+        of_page = "({x, y, width, height}) => ({x: x + scrollX, y: y + scrollY, width, height})"
+        box = self.value(f"({of_page})(document.querySelector('{element}').getBoundingClientRect())")
         return base64.b64decode(self.call("Page.captureScreenshot", clip={**box, "scale": 1})["data"])
 
     def call(self, method: str, **parameters: Any) -> dict[str, Any]:

@@ -25,7 +25,7 @@ from eel_viz.scene3d.skin import Skin
 from eel_viz.scene3d.swimmer_scene import in_sight
 from eel_viz.scene3d.track import EDGES, LENGTH, PIECES, POINTS, STROBE_PERIOD
 from eel_viz.scene3d.water import FLOOR, GRID, LABELS, WALLS
-from eel_viz.settings import Settings
+from eel_viz.settings import BLUEPRINTS, Settings
 from eel_viz.views.blueprint import arrangement
 from made_up_recording import body
 from made_up_recording import profiles as profiles_of
@@ -552,9 +552,7 @@ def test_the_recording_carries_its_blueprint(made):
 
     path, _ = made
     assert len(RrdReader(str(path)).blueprints()) == 1
-    with pytest.raises(
-        ValueError, match="blueprint must be one of overview, torques, motion, robot, swimmer, compare, got 'best'"
-    ):
+    with pytest.raises(ValueError, match=f"blueprint must be one of {', '.join(BLUEPRINTS)}, got 'best'"):
         arrangement("best")
 
 

@@ -12,7 +12,7 @@ import made_up
 import numpy as np
 import pytest
 from eel_viz.recording.reading import read
-from eel_viz.settings import Settings
+from eel_viz.settings import BLUEPRINTS, Settings
 from eel_viz.viewer import native_viewer
 from fake_swimmer import TOPICS, arrived, body_message, found, messages
 
@@ -187,7 +187,7 @@ def test_what_cannot_be_is_refused_in_one_line_with_status_2(start_in_turn, tmp_
         "rate:=often": "rate must be a number, got 'often'",
         "port:=1": "port",
         "compare:=/": "compare must be another namespace than the swimmer's own, got '/'",
-        "blueprint:=mine": "blueprint must be one of overview, torques, motion, robot, swimmer, compare, got 'mine'",
+        "blueprint:=mine": f"blueprint must be one of {', '.join(BLUEPRINTS)}, got 'mine'",
     }
     lines = [["--ros-args", "-p", "sink:=[save]", "-p", setting] for setting in cannot_be]
     for words, (status, said) in zip(cannot_be.values(), start_in_turn("eel_viz.ros.node", lines), strict=True):
