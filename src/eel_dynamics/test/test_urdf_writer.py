@@ -148,6 +148,8 @@ def test_random_robots_keep_joints_stops_and_limits(tmp_path, seed):
     draw = drawn(seed)
     robot, body = draw.robot, Body.boyer2010()
     urdf = urdf_of(body, robot, density=draw.scene.density)
+    whole = composite(urdf.text)
+    assert np.allclose(whole, of_mechanics(body, draw.scene.density), rtol=0.0, atol=1e-9 * whole[3, 3])
     read = read_again(tmp_path, urdf)
     assert read.body.mass == pytest.approx(body.mass_in(draw.scene.density), rel=1e-12)
     for one, other in zip(robot.joints, read.joints, strict=True):
