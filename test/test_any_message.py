@@ -17,7 +17,7 @@ from eel_viz.recording.reading import read
 from extreme_messages import broken, extremes, for_names, get_message, get_service, huge, stamped
 from fake_swimmer import TOPICS, body_message, messages
 from gait_client import GaitClient
-from geometry_msgs.msg import Vector3Stamped
+from geometry_msgs.msg import Vector3Stamped, WrenchStamped
 from made_up import Swimmer
 from nav_msgs.msg import Odometry, Path
 from rclpy.duration import Duration
@@ -221,8 +221,8 @@ PARTS = {  # names of what there is with each robot, and with each fin
 
 @pytest.mark.fault(
     "samples",
-    "commands of joints and fins, and currents, with any extreme, wrong lengths, unknown names and bad stamps, while "
-    "running, paused, and after a reset with another robot, other fins and another body",
+    "commands of joints and fins, currents and wrenches, with any extreme, wrong lengths, unknown names, bad stamps, "
+    "while running, paused, and after a reset with another robot, other fins and another body",
     "refused, or acted on within the limits; the node publishes as before",
 )
 @pytest.mark.parametrize("factor", ["1.0", "0.0"])
@@ -241,7 +241,8 @@ def test_the_dynamics_node_stands_any_command(start, network, fresh_domain, tmp_
             for known in sets:
                 network.send(topic, JointState, for_names(JointState, known), node)
             network.send(topic, JointState, broken(JointState), node)
-        network.send("current", Vector3Stamped, [*extremes(Vector3Stamped), *stamped(Vector3Stamped())], node)
+        for topic, kind in {"current": Vector3Stamped, "external_wrench": WrenchStamped}.items():
+            network.send(topic, kind, [*extremes(kind), *stamped(kind())], node)
 
     def goes_on():
         swim.received["head_pose"].clear()

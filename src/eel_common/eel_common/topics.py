@@ -36,12 +36,14 @@ OWN = {  # relative names: below the swimmer's namespace
     "curvature_samples": "eel_msgs/msg/CurvatureSamples",
     "current": "geometry_msgs/msg/Vector3Stamped",
     "fin_command": "sensor_msgs/msg/JointState",
+    "external_wrench": "geometry_msgs/msg/WrenchStamped",
     "goal": "nav_msgs/msg/Path",
 }
 DIAGNOSTICS = "/diagnostics"
 GLOBAL = {"/clock": "rosgraph_msgs/msg/Clock", DIAGNOSTICS: "diagnostic_msgs/msg/DiagnosticArray"}
 LATCHED = ("body", "curvature_law", "goal")  # transient local
-INPUTS = ("curvature_samples", "joint_commands", "current", "fin_command")  # from controllers and sensors
+# From controllers and sensors.
+INPUTS = "curvature_samples", "joint_commands", "current", "fin_command", "external_wrench"
 SAMPLED = tuple(name for name in OWN if name not in (*LATCHED, *INPUTS))  # once a sample
 SENSORS = ("imu", "pressure", "depth", "velocity")  # of `SAMPLED`: at their own rates
 WHERE_ASKED_FOR = (*SENSORS, "joint_states", "fin_states", "motor_states", "flow_vectors")  # of `SAMPLED`: if there
@@ -49,7 +51,7 @@ SWIMMER = "head_pose"  # without publishers of this topic the swimmer has gone
 LATER_ENERGY_FIELDS = (  # missing in older bags
     *("flow_power", "fins_power", "damping_power", "elastic"),
     *(f"{part}_work" for part in ("actuator", "wake", "nose", "drag", "flow", "fins", "damping")),
-    *("appendages_power", "appendages_work"),
+    *("appendages_power", "appendages_work", "external_power", "external_work"),
 )
 ENERGY_FIELDS = (  # of the message EnergyLedger, in its order
     *("kinetic_body", "kinetic_fluid", "potential"),

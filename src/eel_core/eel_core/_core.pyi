@@ -240,13 +240,17 @@ class March:
         smoothly: bool,
         fin_angles: Sequence[tuple[Buffer, Buffer]] = ...,
         reference: Buffer | None = None,
+        wrenches: Sequence[tuple[Any, ...]] = ...,
     ) -> None:
         """What drives the body from now on. law: of R rows that are imposed, and M of the modes. breakpoints: ascending
         times [s] at which a derivative of the shape or of the flow jumps. ledger: the works are integrated too.
         current (3,) [m/s]: of the water, world. flow: how the water moves besides. smoothly: the motion goes on as
         before, so that the next step need not begin anew. fin_angles: what each servo of the fins is given, knots (n,)
         [s] and coefficients (n - 1, 4) of cubics [rad]. reference (S, R): what the servos of a robot follow, by the
-        factors of the imposed rows. `ValueError` for a law on another grid."""
+        factors of the imposed rows. wrenches, from outside: of each (node or None at X = 0, first station there or
+        behind, whether in the axes of the world, not of the section as base_link is turned, and torque [N m] and force
+        [N] as a function of the time that gives six numbers, or knots (n,) [s] and coefficients (n - 1, 4, 6)).
+        `ValueError` for a law on another grid."""
 
     def start(
         self, position: Buffer, orientation: Buffer, twist: Buffer, x: Buffer | None = None, rate: Buffer | None = None

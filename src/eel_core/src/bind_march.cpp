@@ -131,7 +131,7 @@ void bind_marches(py::module_& module)
              py::arg("planar"), py::arg("modes") = std::shared_ptr<Modes>())
         .def("follow", method(&PyMarch::follow), needed("law"), py::arg("breakpoints"), needed("bounds"),
              py::arg("ledger"), py::arg("current"), py::arg("flow"), py::arg("smoothly"),
-             py::arg("fin_angles") = py::list(), py::arg("reference") = py::none())
+             py::arg("fin_angles") = py::list(), py::arg("reference") = py::none(), py::arg("wrenches") = py::list())
         .def("start", method(&PyMarch::start), py::arg("position"), py::arg("orientation"), py::arg("twist"),
              py::arg("x") = py::none(), py::arg("rate") = py::none())
         .def("set_state", method(&PyMarch::set_state), py::arg("position"), py::arg("orientation"), py::arg("twist"))

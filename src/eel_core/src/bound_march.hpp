@@ -85,7 +85,8 @@ class PyMarch {
     }
     void follow(const std::shared_ptr<LawOnGrid>& law, std::vector<double> breakpoints,
                 const std::shared_ptr<StepBounds>& bounds, bool ledger, const py::object& current,
-                std::shared_ptr<Flow> flow, bool smoothly, const py::list& fin_angles, const py::object& reference)
+                std::shared_ptr<Flow> flow, bool smoothly, const py::list& fin_angles, const py::object& reference,
+                const py::list& wrenches)
     {
         const InUse in_use(in_use_);
         check_fits(*law, march_.swimmer());
@@ -98,6 +99,8 @@ class PyMarch {
             const auto [knots, coefficients] = each.cast<std::pair<py::object, py::object>>();
             settings.law.fins.push_back(cubics_from<double>(knots, coefficients));
         }
+        for (const py::handle each : wrenches)
+            settings.law.wrenches.push_back(wrench_from(each.cast<py::tuple>(), march_.swimmer().grid.nodes));
         if (const Modes* const modes = march_.modes()) {
             settings.first_mode = law->tables->rows() - modes->modes;
             const std::size_t imposed = modes->servos.size() * settings.first_mode;

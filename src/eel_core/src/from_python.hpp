@@ -9,10 +9,12 @@
 #include <bit>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "eel_core/algebra/cubics.hpp"
+#include "eel_core/law.hpp"
 #include "eel_core/march/axes.hpp"
 #include "eel_core/model/swimmer.hpp"
 
@@ -173,6 +175,26 @@ Cubics<Value> cubics_from(const py::handle& knots, const py::handle& coefficient
             next += Parts::count;
         }
     return cubics;
+}
+
+// A wrench from outside: (node or None at X = 0, first station there or behind, whether in the axes of the world, and
+// torque and force as a function of the time that gives six numbers, or as knots and coefficients (n - 1, 4, 6)).
+inline ExternalWrench wrench_from(const py::tuple& given, std::size_t nodes)
+{
+    if (given.size() != 4 && given.size() != 5) throw py::value_error("a wrench must have four parts or five");
+    const auto node = given[0].cast<std::optional<std::size_t>>();
+    if (node && *node >= nodes) throw py::value_error("wrenches must have a node of the grid");
+    ExternalWrench wrench{node.value_or(Appendage::nose), given[1].cast<std::size_t>(), given[2].cast<bool>(), {}};
+    if (given.size() == 4)
+        wrench.at = [function = py::object(given[3])](double time) {
+            const py::gil_scoped_acquire locked;
+            return twist_of(function(time).cast<std::array<double, 6>>().data());
+        };
+    else
+        wrench.at = [cubics = cubics_from<Wrench<Space, double>>(given[3], given[4])](double time) {
+            return half_turn(cubics.at(time)[0]);
+        };
+    return wrench;
 }
 
 inline std::vector<Ramp> ramps_from(const py::handle& ramps)

@@ -21,7 +21,7 @@ from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.simulation.sampled_swimmers import SampledSwimmers
 
 import eel_core
-from eel_dynamics import Scene, Simulation
+from eel_dynamics import ExternalWrench, Scene, Simulation
 from eel_gaits import falling, straight
 
 HANGS_AFTER = 120.0  # s
@@ -132,6 +132,13 @@ def _swim() -> None:
         simulation.advance(0.03)
         simulation._march.core.to_blame(False)
         simulation.observe()
+    pulls = (
+        ExternalWrench(1.0, ((1, 0, 0), (0, 1, 0)), time=(0.0, 0.1)),
+        ExternalWrench(0.3, torque=lambda t: (0, 0, t)),
+    )
+    simulation = Simulation(law=straight(), wrenches=pulls, stations=5)
+    simulation.apply_wrench(0.0, (0.1, 0.0, 0.0), frame="world")
+    simulation.advance(0.05)
     setup = Simulation(scene=Scene(planar=True, ledger=False), stations=5).setup
     swimmers, rows = SampledSwimmers(2, x, None, setup, 2), np.zeros((2, 6, 5))
     rows[:, 3] = x

@@ -25,6 +25,9 @@ numbers, as functions of X, or by the roundness s of the section, s = min(a, b) 
     k = 2 max(a, b) (1.98 - 0.78 s) broadside, 2 min(a, b) (1.0 + 0.2 s) along the long axis
     M_f times 1 - (1 - C_a) s^2 on both axes;  n_1 = -1/2 rho_f k5 |V| V1 of the links, k5 = c_s pi a b / p
 
+Wrenches from outside, `wrenches`, do virtual work on the twist of their section: their generalised forces are the
+derivatives of that power.
+
 The base of the tail, -1/2 rho_f c_b A(l) V1|V1| at X = l, and the appendages are point forces by their velocity.
 
 Frames: the axes of the head at the instant, about the head, unless a name says `section` or `world`. Velocities are
@@ -134,6 +137,7 @@ class Reference:
         self.net = (self.displaced - mass) * settings.weight  # kg/m
         self.height = 0.0  # m, of the head
         self.fins = ()  # (fin, angle [rad] of a time [s])
+        self.wrenches = ()  # (X [m], whether in axes of the world, torque and force (6,) of a time [s])
         self.flow = None  # u (N, 3) [m/s] of places (N, 3) [m] and a time [s], world; both may be complex
         self.pose = SimpleNamespace(position=np.zeros(3), axes=np.eye(3), time=0.0)  # of the head in the world
         base = np.pi * float(body.half_height(at_tail)[0] * body.half_width(at_tail)[0]) * hull.base_drag  # m^2
@@ -287,6 +291,23 @@ class Reference:
             )
         return found
 
+    # -- wrenches from outside --------------------------------------------------------------------------------------
+    def external_wrenches(self, K):
+        """Of each wrench its X and its torque and force (6,), axes of its section."""
+        R, _ = self.configuration(K)
+        found = []
+        for x, in_world, given in self.wrenches:
+            own = np.reshape(given(self.pose.time), (2, 3))
+            if in_world:
+                own = own @ self.pose.axes @ self.space.evaluate(R.reshape(-1, 9), x)[0].reshape(3, 3)
+            found.append((x, own.ravel()))
+        return found
+
+    def external_power(self, K, K_rate, mu):
+        """Their power (W) on the twists of their sections, which are linear in K_rate and mu."""
+        eta = self.twists(K, K_rate, np.asarray(mu, float))
+        return sum(self.space.evaluate(eta, x)[0] @ own for x, own in self.external_wrenches(K))
+
     # -- energy, momentum, balance ----------------------------------------------------------------------------------
     def energies(self, K, K_rate, mu):
         """Kinetic energy of body and of fluid, eqs (16), (36), for each head twist of mu (..., 6)."""
@@ -403,6 +424,8 @@ class Reference:
         load += self.space.weights @ np.concatenate([torque + np.cross(r, force), force], axis=1)
         if self.flow is not None:
             load += self.flow_force(K, K_rate, mu)
+        if self.wrenches:
+            load += [self.external_power(K, 0 * K, unit) for unit in np.eye(6)]
         if self.fins:
             by_rate = [self.fin_wrench(K, K_rate, K_acceleration, mu, unit) for unit in (still, *np.eye(6))]
             load += by_rate[0]
@@ -466,6 +489,11 @@ class Reference:
             behind = (self.space.x > fin.station)[:, None]
             n_sum = n_sum - behind * fin_force
             passed.append(behind * np.cross(arm, fin_force))
+        for x, own in self.external_wrenches(K):
+            axes = self.space.evaluate(R.reshape(-1, 9), x)[0].reshape(3, 3)
+            behind = (self.space.x > x)[:, None]
+            n_sum = n_sum - behind * (axes @ own[3:])
+            passed.append(behind * (axes @ own[:3]))
         c_slope = rates[0] + rates[2] + np.cross(v[0], p_f) + np.cross(v[1], p_b) - np.cross(t1, n_sum)
         c_sum = integrate(c_slope - to_axes(resistive_torque) - hung) - sum(passed)  # c + V1 sigma_f
         force, torque = to_section(n_sum - V1 * p_f), to_section(c_sum - V1 * sigma_f)
@@ -476,6 +504,7 @@ class Reference:
                 tail_residual -= np.concatenate(
                     [(np.cross(point.arm, point.force)) @ point.axes, point.force @ point.axes]
                 )
+        tail_residual -= sum((own for x, own in self.external_wrenches(K) if x == self.length), np.zeros(6))
         flux = V1 * p_f
         if self.scene.tail_pressure == "distributed":
             force, flux, tail_energy = force + energy[:, None] * E1, flux - energy[:, None] * t1, 0.0
@@ -502,6 +531,7 @@ class Reference:
             @ np.sum(resistive_torque * true[:, :3] + resistive_force * true[:, 3:], axis=1)
             + points[0].velocity @ points[0].force,
             appendages_power=sum(point.velocity @ point.force for point in points[1:]),
+            external_power=self.external_power(K, K_rate, mu),
             point_wrench=np.array(
                 [[*(np.cross(each.arm, each.force) @ each.axes), *(each.force @ each.axes)] for each in points]
             ),
@@ -534,7 +564,7 @@ class Reference:
             drift = world.T @ current
             mu[3:] -= drift  # relative to the water
             self.up, self.height = world[2], state[2]
-            if self.flow is not None or self.fins:
+            if self.flow is not None or self.fins or self.wrenches:
                 self.pose = SimpleNamespace(position=state[:3], axes=world, time=time)
             mu_rate = self.acceleration(*law.curvature(time, self.space.x), mu)
             mu_rate[3:] -= np.cross(mu[:3], drift)

@@ -220,6 +220,8 @@ class BentReference(Reference):
                 moved_point.velocity @ point.force
                 for point, moved_point in zip(points, self.point_forces(K, shape, np.zeros(6)), strict=True)
             )
+            if self.wrenches:
+                work += self.external_power(K, shape, np.zeros(6))
             loads.append(work + wake @ self.at_tail(moved))
         return np.array(loads)
 
@@ -244,6 +246,8 @@ class BentReference(Reference):
         head += self.space.weights @ np.concatenate([hung + np.cross(r, net), net], axis=1)
         if self.flow is not None:
             head += self.flow_force(K, K_rate, mu)
+        if self.wrenches:
+            head = head + [self.external_power(K, 0 * K, unit) for unit in np.eye(6)]
         head = head - self.momentum_rate(K, K_rate, fields[2], mu, still)
         pose = self.moved(step * np.asarray(mu), step)
         moved = self.mode_momenta(K + step * K_rate, K_rate + step * fields[2], mu.astype(complex)).imag / STEP

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from eel_common.ros.testing.service_call import answer_of
 from eel_gaits.ros.messages import law_to_message, samples_to_message, stamp_of
-from geometry_msgs.msg import Vector3Stamped
+from geometry_msgs.msg import Vector3Stamped, WrenchStamped
 from nav_msgs.msg import Odometry
 from rclpy.duration import Duration
 from rclpy.qos import qos_profile_sensor_data
@@ -58,6 +58,14 @@ def current(time):
     yield message
 
 
+def wrenches(time):
+    for frame, size in (("base_link", 0.1), ("thruster", 0.3)):
+        message = WrenchStamped()
+        message.header.stamp, message.header.frame_id = stamp_of(time), frame
+        message.wrench.force.y = size * bend(time)
+        yield message
+
+
 SAMPLED = [("curvature_samples", CurvatureSamples, LOSSLESS, curvature)]
 CASES = {
     "samples": ((), SAMPLED),
@@ -71,6 +79,10 @@ CASES = {
         [("joint_commands", JointState, LOSSLESS, angles(name)) for name in ("joint_1", "joint_5")],
     ),
     "fins with a law": ((f"fins:={RUDDER}",), [("fin_command", JointState, LOSSLESS, angles("left"))]),
+    "wrenches with a law": (
+        ("wrench_frames:=[thruster 0.5]",),
+        [("external_wrench", WrenchStamped, LOSSLESS, wrenches)],
+    ),
     "current with a law": ((), [("current", Vector3Stamped, qos_profile_sensor_data, current)]),
 }
 
@@ -92,7 +104,7 @@ def runs_of(swim):
 
 @pytest.mark.fault(
     "time",
-    "resets in the midst of a run in lockstep with samples, commands of joints or fins, or currents",
+    "resets in the midst of a run in lockstep with samples, commands of joints or fins, currents, or wrenches",
     "no run goes on before its first message; each is the first one again, to the last bit",
 )
 @pytest.mark.parametrize("case", CASES)

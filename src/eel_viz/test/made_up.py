@@ -137,10 +137,11 @@ class Swimmer:
             "damping_power": -0.02 * ramp,
             "elastic": 0.03 * (1 + ramp),
             "appendages_power": -0.01 * ramp,
+            "external_power": 0.06 * ramp,
             **{
                 f"{part}_work": 0.1 * k * t
                 for k, part in enumerate(
-                    ("actuator", "wake", "nose", "drag", "flow", "fins", "damping", "appendages"), 1
+                    ("actuator", "wake", "nose", "drag", "flow", "fins", "damping", "appendages", "external"), 1
                 )
             },
         }

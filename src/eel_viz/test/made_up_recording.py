@@ -72,7 +72,16 @@ def record(
             ((energy,), (load,)) = (logged[stamp].pop(name) for name in ("energy", "hydrodynamic_load"))
             logged[stamp].pop("flow_vectors")
             nothing = dict.fromkeys(
-                ("flow_power", "fins_power", "damping_power", "appendages_power", "potential", "elastic"), 0.0
+                (
+                    "flow_power",
+                    "fins_power",
+                    "damping_power",
+                    "appendages_power",
+                    "external_power",
+                    "potential",
+                    "elastic",
+                ),
+                0.0,
             )
             logged[stamp] |= {"energy": (energy | nothing,), "hydrodynamic_load": (replace(load, fins=np.zeros(0)),)}
         for method, arguments in logged[stamp].items():

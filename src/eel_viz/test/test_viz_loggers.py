@@ -120,7 +120,7 @@ def test_way_points_that_come_before_the_body_get_its_size(given, reach, tmp_pat
 def test_scalars_are_exact_and_complete(made):
     path, samples = made
     powers = ("actuator_power", "wake_power", "nose_power", "drag_power")
-    besides = ("flow_power", "fins_power", "damping_power", "appendages_power")
+    besides = ("flow_power", "fins_power", "damping_power", "appendages_power", "external_power")
     expected = {
         entities.POSITION: given(samples, "head_pose", lambda pose: pose.position),
         entities.ORIENTATION: given(samples, "head_pose", lambda pose: pose.orientation),

@@ -155,6 +155,7 @@ EEL_CORE_INLINE inline Wrench<M, double> accelerating_load(const Swimmer& swimme
     if constexpr (!M::planar)
         if (!work.fins.empty()) left += wrench_of_fins(swimmer, work.shape_acceleration, work);
     if (!work.appendages.empty()) left += work.appendage_load;
+    if (work.has_external) left += work.external_load;
     return left;
 }
 
@@ -183,6 +184,7 @@ void find_accelerations(const Swimmer& swimmer, Workspace<M>& work)
     if constexpr (!M::planar)
         if (!work.fins.empty()) work.balance = work.balance - wrench_of_fins(swimmer, work.acceleration, work);
     if (!work.appendages.empty()) work.balance = work.balance - work.appendage_load;
+    if (work.has_external) work.balance = work.balance - work.external_load;
 }
 
 }  // namespace eel_core

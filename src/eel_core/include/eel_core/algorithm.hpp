@@ -58,6 +58,8 @@ bool find_motion(const Swimmer& swimmer, const LawOnGrid& law, const Water& wate
     set_velocities(swimmer, work.twist, work);
     if (work.flowing) set_flow_load(swimmer, work);
     find_loads(swimmer, work);
+    work.has_external = !law.wrenches.empty();
+    if (work.has_external) find_external_loads(law, time, work);
     if (swimmer.weighs()) set_weight(swimmer, height_in(water, time, y), work);
     if constexpr (!M::planar)
         if (!work.fins.empty()) find_fin_loads(swimmer, law, time, y, work);
@@ -81,7 +83,8 @@ template <class M>
 EEL_CORE_INLINE inline Powers powers_of_loads(const Swimmer& swimmer, const Workspace<M>& work)
 {
     Powers powers{
-        0.0, work.tail_speed * work.tail_energy, work.nose_force * work.twist.linear.x, work.drag_power, 0.0, 0.0, 0.0};
+        0.0, work.tail_speed * work.tail_energy, work.nose_force * work.twist.linear.x, work.drag_power, 0.0, 0.0, 0.0,
+        0.0};
     if (work.flowing) {
         powers[1] += dot(work.tail.linear, work.flow.node(swimmer.grid.nodes - 1).u);
         powers[3] += drag_power_of_flow(swimmer, work);
@@ -93,11 +96,12 @@ EEL_CORE_INLINE inline Powers powers_of_loads(const Swimmer& swimmer, const Work
         const auto [own, of_base] = appendage_powers(swimmer, work);
         powers[3] += of_base, powers[6] = own;
     }
+    if (work.has_external) powers[7] = external_power(work);
     return powers;
 }
 
-// Powers [W] of actuators, wake, nose, drag, flow, fins and appendages, in the motion held by `work`, with the
-// acceleration of the head, eq. (60). Not inlined, so that every caller gets the same bits.
+// Powers [W] of actuators, wake, nose, drag, flow, fins, appendages and wrenches from outside, in the motion held by
+// `work`, with the acceleration of the head, eq. (60). Not inlined, so that every caller gets the same bits.
 template <class M>
 EEL_CORE_APART Powers find_powers(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
 {

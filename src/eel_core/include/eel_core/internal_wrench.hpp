@@ -5,10 +5,12 @@
 
 #include "eel_core/accelerations.hpp"
 #include "eel_core/loads/appendages.hpp"
+#include "eel_core/loads/external_wrenches.hpp"
 
 namespace eel_core {
 
-using Powers = std::array<double, 7>;  // [W], of actuators, wake, nose, drag, flow, fins and appendages
+// [W], of actuators, wake, nose, drag, flow, fins, appendages and wrenches from outside
+using Powers = std::array<double, 8>;
 
 // The wrench on the part of the body behind a section, w_tail - integral from X to the tail of the density, about the
 // section and in its axes; computed from the `integral` from the nose to X.
@@ -82,6 +84,7 @@ double power_of_shape(const Swimmer& swimmer, const Workspace<M>& work)
                      dot(work.shape_velocity.node(node), fin.whole);
         }
     if (!work.appendages.empty()) power -= shape_power_of_appendages(swimmer, work);
+    if (work.has_external) power -= shape_power_of_external(work);
     return power;
 }
 

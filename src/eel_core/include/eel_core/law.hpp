@@ -13,6 +13,7 @@
 
 #include "eel_core/algebra/field.hpp"
 #include "eel_core/algebra/rotation.hpp"
+#include "eel_core/model/external_wrench.hpp"
 #include "eel_core/model/fin.hpp"
 
 namespace eel_core {
@@ -218,7 +219,8 @@ struct LawOnGrid {
     double origin = 0.0;  // [s], simulation time of the law's own t = 0
     std::vector<Wave> waves;
     Quintic segment, blend;
-    std::vector<AngleLaw> fins;  // given angles of the fins' servos; none: 0
+    std::vector<AngleLaw> fins;            // given angles of the fins' servos; none: 0
+    std::vector<ExternalWrench> wrenches;  // from outside
 
     // Factors of the rows at `time` [s].
     void set_factors(double time, std::vector<Jet>& factor) const

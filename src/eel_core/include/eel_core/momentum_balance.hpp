@@ -9,7 +9,8 @@
 //     rate of P' = F - m_o (Omega x V)_1 E1 + m_o V1 (Omega x E1)
 //     rate of L  = T - V x (P' - m_o V1 E1)
 //
-// in components along the head's present axes, of vectors of the world; (T, F): wake, drag and weight.
+// in components along the head's present axes, of vectors of the world; (T, F): wake, drag, weight and wrenches from
+// outside.
 #pragma once
 
 #include "eel_core/loads/tail_and_nose.hpp"
@@ -99,6 +100,7 @@ EEL_CORE_INLINE inline Momentum<M, double> momentum_rate_from_loads(const Swimme
     if constexpr (!M::planar)
         if (!work.fins.empty()) rate += work.fin_load;
     if (!work.appendages.empty()) rate += work.appendage_load;
+    if (work.has_external) rate += work.external_load;
     return rate;
 }
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sudden changes of torques and flows given over time: steps end there, and are short in between.
+"""Sudden changes of torques, wrenches and flows given over time: steps end there, and are short in between.
 
 A step is chosen by its error at a few instants, and would pass over anything that begins and ends between them. So
 given functions are sampled beforehand, at one random instant in each `STEP`. A change is sudden if cubics through four
@@ -19,6 +19,7 @@ from eel_dynamics.model.flow.flow import Flow, parts_of
 from eel_dynamics.model.flow.functions import FlowField
 from eel_dynamics.model.robot.actuators import Torque
 from eel_dynamics.model.robot.robot import Robot
+from eel_dynamics.model.wrenches.external_wrench import ExternalWrench
 
 GAPS = 1.0 / 4.0, 1.0 / 16.0, 1.0 / 128.0  # s
 LONGEST = 2.0  # s: no step passes over a longer change
@@ -49,8 +50,10 @@ def sudden_changes(
     orientation: tuple[float, ...],
     length: float,
     until: float,
+    wrenches: tuple[ExternalWrench, ...] = (),
 ) -> frozenset[float]:
-    """Times [s] at which torques and flows begin or end to change suddenly, before `until` [s] (0: all of tables).
+    """Times [s] at which torques, flows and functions among `wrenches` begin or end to change suddenly, before `until`
+    [s] (0: all of tables).
 
     A flow is sampled along a straight body of this `length` [m], at its start.
     """
@@ -63,11 +66,19 @@ def sudden_changes(
     for field in given_flows(flow):
         with suppress(ValueError):  # the run itself reports bad values
             found |= changes_of(partial(_velocities, field, places), 0.0, until)
+    for wrench in wrenches:
+        if wrench.is_function:
+            with suppress(ValueError):
+                found |= changes_of(partial(_wrenches, wrench), 0.0, min(until, MOST_LOOKS * STEP))
     return frozenset(found)
 
 
 def _torques(torque: Torque, times: np.ndarray) -> np.ndarray:
     return torque.at(times)[:, None]
+
+
+def _wrenches(wrench: ExternalWrench, times: np.ndarray) -> np.ndarray:
+    return np.array([wrench.at(time) for time in times.tolist()])
 
 
 def _velocities(field: FlowField, places: np.ndarray, times: np.ndarray) -> np.ndarray:

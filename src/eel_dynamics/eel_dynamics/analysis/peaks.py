@@ -94,9 +94,9 @@ def greatest_torque_of(run) -> tuple[float, float, float]:
 
 
 def depends_on_its_start(run) -> bool:
-    """Whether the head's motion at an instant does not determine the rest of `run`: a flow has its own time, robots and
-    fins have states of their own."""
-    return run.flow is not None or run.robot is not None or bool(run.fins)
+    """Whether the head's motion at an instant does not determine the rest of `run`: a flow and wrenches have their own
+    time, robots and fins have states of their own."""
+    return run.flow is not None or run.robot is not None or bool(run.fins) or bool(run.wrenches)
 
 
 def _around(place: int, count: int) -> slice:

@@ -21,6 +21,7 @@ from eel_dynamics.model.flow.flow import Flow
 from eel_dynamics.model.robot.joint import Joint
 from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.model.wrenches.external_wrench import ExternalWrench
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.run_data import ObservedArrays
 from eel_dynamics.runs.run_picture import lines_of_batch, picture_of_batch
@@ -71,6 +72,7 @@ class Batch(ObservedArrays):
     flows: tuple[Flow | None, ...] = ()
     robots: tuple[Robot | None, ...] = ()
     fins: tuple[tuple[Fin, ...], ...] = ()  #: of each swimmer; arrays are padded with 0 up to F
+    wrenches: tuple[tuple[ExternalWrench, ...], ...] = ()  #: from outside, of each swimmer
     _arrays: dict[str, np.ndarray] = field(default_factory=dict)  # all arrays, as from `storage.variables.arrays_of`
     _energy_at_start: np.ndarray | None = None  # (B,) J
 

@@ -30,8 +30,11 @@ STATES = {"positions": 3, "orientations": 4, "twists": 6}  # sizes of rows
 ONE = {several: one for one, several in OF_EACH.items()} | {name: name[:-1] for name in STATES}
 
 
-def swimmers_of(stations: Any, most_evaluations: Any, accuracy: Any, fins: Any, **given: Any) -> list[Swimmer]:
-    """The B swimmers from these arguments of `simulate_batch`. given: the others of `KINDS` and `STATES`.
+def swimmers_of(
+    stations: Any, most_evaluations: Any, accuracy: Any, parts: dict[str, Any], **given: Any
+) -> list[Swimmer]:
+    """The B swimmers from these arguments of `simulate_batch`. parts: fins and wrenches; given: the others of `KINDS`
+    and `STATES`.
 
     A value is for all swimmers, or a sequence of B values (for `STATES` the rows of an array (B, .)). A sequence of
     length 1 counts as one for all. `ValueError` names a bad argument and the swimmer's number.
@@ -40,7 +43,7 @@ def swimmers_of(stations: Any, most_evaluations: Any, accuracy: Any, fins: Any, 
     rows = _broadcast(
         {name: _several(name, given[name], kind) for name, kind in KINDS.items()}
         | {"accuracy": [*map(Accuracy.of, accuracy if isinstance(accuracy, (list, tuple)) else [accuracy])]}
-        | {"fins": _lists(fins)}
+        | {name: _lists(each) for name, each in parts.items()}
         | {name: _rows(name, given[name], size) for name, size in STATES.items()}
     )
     most = positive("most_evaluations", most_evaluations, "per simulated second")
@@ -84,10 +87,10 @@ def _several(name: str, values, kind: type | tuple[type, ...]) -> list:
     return [checked_instance(f"{name}[{index}]", value, kind) for index, value in enumerate(values)]
 
 
-def _lists(fins) -> list:
-    """The fins of each swimmer. If all items are lists or None, each is one swimmer's; pairs are tuples."""
-    several = isinstance(fins, (list, tuple)) and fins and all(isinstance(each, (list, type(None))) for each in fins)
-    return list(fins) if several else [fins]
+def _lists(parts) -> list:
+    """The parts of each swimmer. If all items are lists or None, each is one swimmer's; pairs of fins are tuples."""
+    several = isinstance(parts, (list, tuple)) and parts and all(isinstance(each, (list, type(None))) for each in parts)
+    return list(parts) if several else [parts]
 
 
 def _rows(name: str, values, size: int) -> list[np.ndarray]:

@@ -60,6 +60,7 @@ def simulate_batch(
     flows: Any = None,
     robots: Any = None,
     fins: Any = None,
+    wrenches: Any = None,
 ) -> Batch:
     """Simulate B swimmers for `duration` [s] each, with samples every `sample_period` [s] from t = 0 on.
 
@@ -81,13 +82,14 @@ def simulate_batch(
         most_evaluations: for each swimmer, as in `simulate`.
         flows, robots: one for all, or a sequence of B flows, robots, or None. With a `FlowField` swimmers run one at a
             time.
-        fins: as in `simulate` for all; or a list of B entries, each a list or None.
+        fins, wrenches: as in `simulate` for all; or a list of B entries, each a list or None. With wrenches that are
+            functions swimmers run one at a time.
     """
     swimmers = swimmers_of(
         [0.0] if stations is None else stations,
         most_evaluations,
         accuracy,
-        fins,
+        {"fins": fins, "wrenches": wrenches},
         laws=laws,
         bodies=Body.boyer2010() if bodies is None else bodies,
         scenes=Scene() if scenes is None else scenes,

@@ -25,8 +25,10 @@ from eel_dynamics.runs.scene_file import SUFFIXES, load_scene, swim_of
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, until_settled
 from eel_dynamics.runs.swim import Swim
 
-CHANGES = "--scene", "--body", "--flow", "--robot", "--fins", "--duration", "--accuracy", "--sample-period"
-FIELDS = "body", "flow", "robot", "fins", "duration", "accuracy", "sample_period", "stations"  # keys of a scene file
+OF_PARTS = "--scene", "--body", "--flow", "--robot", "--fins", "--wrenches"
+CHANGES = *OF_PARTS, "--duration", "--accuracy", "--sample-period"
+PARTS = "body", "flow", "robot", "fins", "wrenches"
+FIELDS = *PARTS, "duration", "accuracy", "sample_period", "stations"  # keys of a scene file
 
 
 def add_options(parser: Parser, *options: str, **defaults: Any) -> None:
@@ -190,6 +192,12 @@ OPTIONS = {  # the arguments for argparse
         "metavar": "FINS",
         "help": "pair, left or right with numbers, as 'pair station=0.5 area=0.0015 aspect_ratio=2.5 k_p=4 k_d=0.5 "
         "time_constant=0.05', several with ' + ' between: docs/howto/fins.md",
+    },
+    "--wrenches": {
+        "default": "",
+        "metavar": "WRENCHES",
+        "help": "wrenches from outside in the axes of their section or the world, as 'section station=0 force=2,0,0', "
+        "several with ' + ' between: docs/howto/tow.md",
     },
     "--body": {
         "default": "boyer2010",

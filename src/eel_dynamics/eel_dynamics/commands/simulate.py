@@ -84,7 +84,7 @@ def _add_options(parser: Parser) -> None:
     duration = None, f"{DURATION:g}; of a file: all of it; of midlines: {UNTIL_SETTLED}"
     add_options(
         parser, "--scale", "--duration", "--accuracy", "--bare", "--body", "--scene", "--flow", "--robot", "--fins",
-        "--sample-period",
+        "--wrenches", "--sample-period",
         duration=duration, accuracy=(None, STANDARD),
         body=(None, f"boyer2010; with --midlines {EEL}, as long as the swimmer in the film"),
     )  # fmt: skip

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Inputs of a run: body, fins, robot, scene and flow. They are set up in NumPy; the core marches them in time."""
+"""Inputs of a run: body, fins, robot, wrenches, scene and flow. They are set up in NumPy; the core marches them."""
 
 from eel_dynamics.model.body.appendages import Appendage
 from eel_dynamics.model.body.body import Body
@@ -14,10 +14,12 @@ from eel_dynamics.model.robot.joint import Joint
 from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.model.robot.urdf_writer import Urdf, urdf_of
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.model.wrenches.external_wrench import ExternalWrench
 
 __all__ = [
     "Appendage",
     "Body",
+    "ExternalWrench",
     "Fin",
     "Flow",
     "FlowField",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads the commands of a robot's joints and of fins from messages (sensor_msgs/JointState).
+"""Reads the commands of a robot's joints and of fins from messages (sensor_msgs/JointState), and wrenches from outside.
 
 A joint is driven by position, velocity or effort, or several of them. A joint for which a message has no value
 goes on as before: its values are NaN, or an array is shorter than `name`, as the joint's interfaces (the parameter
@@ -7,11 +7,12 @@ goes on as before: its values are NaN, or an array is shorter than `name`, as th
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from eel_common.quantity import checked_choice
-from eel_common.wording import shown
+from eel_common.wording import not_one_of, shown
+from geometry_msgs.msg import WrenchStamped
 from sensor_msgs.msg import JointState
 
 from eel_dynamics.model.robot.robot import Robot
@@ -99,3 +100,21 @@ def fin_command_from_message(message: JointState, now: float) -> tuple[float, di
             f"{len(message.position)} positions"
         )
     return stamped(message.header.stamp, now), dict(zip(message.name, message.position, strict=True))
+
+
+def wrench_from_message(
+    message: WrenchStamped, frames: Collection[str], head: str, now: float
+) -> tuple[float, str, tuple[float, ...]]:
+    """Stamp [s], frame, and force [N] and torque [N m] (6,) of a `message` that comes at simulation time `now` [s].
+
+    An empty frame id is that of the `head`. `ValueError` names what does not fit.
+    """
+    frame, stamp = message.header.frame_id or head, stamped(message.header.stamp, now)
+    if frame not in frames:
+        raise ValueError(not_one_of("header.frame_id", frame, tuple(frames)))
+    parts = {"force": message.wrench.force, "torque": message.wrench.torque}
+    rows = {name: [float(getattr(vector, axis)) for axis in "xyz"] for name, vector in parts.items()}
+    for name, row in rows.items():
+        if not all(map(math.isfinite, row)):
+            raise ValueError(f"wrench.{name} must be finite, got {shown(row)}")
+    return stamp, frame, (*rows["force"], *rows["torque"])

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The subscriptions to commands of joints and fins, and to currents."""
+"""The subscriptions to commands of joints and fins, to currents, and to wrenches from outside."""
 
 from collections.abc import Callable
 from typing import Any
 
 from eel_common.ros.qos import keep_all
 from eel_common.ros.serving import ServedNode
-from geometry_msgs.msg import Vector3Stamped
+from geometry_msgs.msg import Vector3Stamped, WrenchStamped
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
@@ -29,4 +29,5 @@ def subscribe_to_commands(node: ServedNode, run: RunLoop) -> None:
     inputs = run.inputs
     for queue in (inputs.joints, inputs.fins):
         node.create_subscription(JointState, queue.topic, receiver(queue), keep_all(reliable=True))
+    node.create_subscription(WrenchStamped, inputs.wrenches.topic, receiver(inputs.wrenches), keep_all(reliable=True))
     node.create_subscription(Vector3Stamped, inputs.current.topic, receiver(inputs.current), SENSOR)

@@ -34,6 +34,7 @@ from eel_dynamics.model.flow.flow import lattice_around, velocities_at
 from eel_dynamics.model.robot.actuators import current_by_torque, most_torque
 from eel_dynamics.model.robot.joint_signs import OF_SECTIONS, message_signs
 from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
+from eel_dynamics.ros.wrench_frames import poses_at, wrench_frames
 from eel_dynamics.runs.exchange.message_fields import FIELDS, LINEAR, OF_JOINTS, SIGNED
 from eel_dynamics.runs.exchange.messages_of_run import fields_of_fins, fields_of_joints, numbers_of_appendages, outline
 from eel_dynamics.simulation.observations import Snapshot
@@ -85,8 +86,10 @@ class SampleMessages:
             vectors = msg.FlowVectors(position=zero, velocity=zero)
             vectors.header.frame_id = world
             topics["flow_vectors"] = vectors, world
-        stations = len(x) if parameters.publish_tf_stations else 0
-        children = [head, *(f"{section}_{k}" for k in range(stations))]
+        self._tf_stations = len(x) if parameters.publish_tf_stations else 0
+        frames = {frame: station for frame, station in wrench_frames(parameters).items() if frame != head}
+        self._wrench_stations = np.array([*frames.values()])
+        children = [head, *(f"{section}_{k}" for k in range(self._tf_stations)), *frames]
         transforms = [TransformStamped(child_frame_id=child) for child in children]
         for transform in transforms:
             transform.header.frame_id = world
@@ -183,10 +186,13 @@ class SampleMessages:
     def _fill_transform(self, numbers: Numbers, snapshot: Snapshot) -> None:
         numbers["transforms[0].transform.translation"][:] = snapshot.position
         numbers["transforms[0].transform.rotation"][:] = snapshot.orientation
-        if "transforms[1].transform.rotation" not in numbers:
-            return
-        positions, rotations = snapshot.backbone, with_section_axes(snapshot.section_orientation)
-        for k, (position, rotation) in enumerate(zip(positions, rotations, strict=True), start=1):
+        poses: list[Any] = []
+        if self._tf_stations:
+            poses += zip(snapshot.backbone, with_section_axes(snapshot.section_orientation), strict=True)
+        if self._wrench_stations.size:
+            found = poses_at(self._wrench_stations, snapshot.x, snapshot.backbone, snapshot.section_orientation)
+            poses += zip(*found, strict=True)
+        for k, (position, rotation) in enumerate(poses, start=1):
             numbers[f"transforms[{k}].transform.translation"][:] = position
             numbers[f"transforms[{k}].transform.rotation"][:] = rotation
 

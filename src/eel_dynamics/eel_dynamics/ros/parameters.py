@@ -101,6 +101,20 @@ class DynamicsParameters(Quantities):
         "time_constant=0.05), several with ' + ' between; angle=commanded follows fin_command; empty: none",
         **LATER,
     )
+    wrenches: str = quantity(
+        "",
+        "",
+        "wrenches from outside: section or world with numbers (section station=0 force=2,0,0), several with ' + ' "
+        "between; empty: none",
+        **LATER,
+    )
+    wrench_frames: tuple[str, ...] = quantity(
+        ("",),
+        "",
+        "frames of external_wrench besides head_frame: NAME X, with X in m from the head, axes turned as those of "
+        "head_frame; on /tf too",
+        **LATER,
+    )
     default_transition: float = quantity(1.0, "s", "blending time of a law that names none", 0.0, 1e4, exclusive=True)
     initial_position: tuple[float, ...] = quantity(
         (0.0, 0.0, 0.0), "m", "of the head at the start, in the world frame", **LATER
@@ -166,8 +180,8 @@ class DynamicsParameters(Quantities):
         ("",),
         "",
         "inputs that a run at real_time_factor 0 waits for: curvature_law, curvature_samples, joint_commands, "
-        "fin_command, current; /NAME for one joint or fin, and a period in s behind a space where it is not 1/rate; "
-        "empty: what has come once",
+        "fin_command, current, external_wrench; /NAME for one joint, fin or frame, and a period in s behind a space "
+        "where it is not 1/rate; empty: what has come once",
         **LATER,
     )
     subscriber_timeout: float = quantity(

@@ -9,7 +9,9 @@ from eel_dynamics.model.fins.text import fins_from_text
 from eel_dynamics.model.flow.text import flow_from_text
 from eel_dynamics.model.robot.robot import Robot, robot_of
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.model.wrenches.text import wrenches_from_text
 from eel_dynamics.ros.parameters import DynamicsParameters
+from eel_dynamics.ros.wrench_frames import stations_of, wrench_frames
 from eel_dynamics.sensors.sensor import SensorSettings
 from eel_dynamics.sensors.suite import check_settings, places_of
 from eel_dynamics.simulation.simulation import Simulation
@@ -36,6 +38,7 @@ def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene, sen
         flow=flow_from_text(parameters.flow),
         fins=fins_from_text(parameters.fins),
         sensors=places,
+        wrenches=(*wrenches_from_text(parameters.wrenches), *stations_of(wrench_frames(parameters))),
     )
 
 

@@ -64,6 +64,7 @@ class Status:
             **run.output.errors.values,
             **run.inputs.joints.values(),
             **run.inputs.fins.values(),
+            **run.inputs.wrenches.values(),
             **(run.output.saturation.values() if run.output.saturation is not None else {}),
             "samples_published": run.samples_published,
             "publishers_of_laws": publishers_of_laws,

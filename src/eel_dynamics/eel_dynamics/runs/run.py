@@ -136,7 +136,7 @@ class Run(SensedRun):
         """The run of the swimmer that a bag holds, from the topics of the dynamics node.
 
         namespace: the swimmer's; None: that of the only one. body, scene: those of the node; by default the body of the
-        topic `body`, and `Scene()`, as no topic tells the scene, nor flow and fins. robot: that of the node, or its
+        topic `body`, and `Scene()`, as no topic tells scene, flow, fins and wrenches. robot: that of the node, or its
         name or file; the run then has the motion of its joints. Topics that the bag lacks leave their fields None; the
         head's acceleration and the centre of mass come from splines. `steps`, `evaluations` and `nodes` are 0.
         `ValueError` in one line where the bag holds no run; `ImportError` without the package eel_viz.

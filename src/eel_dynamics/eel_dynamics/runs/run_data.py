@@ -22,6 +22,7 @@ from eel_dynamics.model.flow.flow import Flow
 from eel_dynamics.model.initial_state import checked_state
 from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.model.wrenches.external_wrench import ExternalWrench
 from eel_dynamics.runs.storage.variables import ENERGY, LEDGER, OWN, fields_of_arrays
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import Snapshot
@@ -81,6 +82,7 @@ class RunData(ObservedArrays):
     error_estimate: ErrorEstimate | None = None  #: None if not requested, or for fewer than two samples
     flow: Flow | None = None  #: of the water; always in REP-103 axes
     fins: tuple[Fin, ...] = ()
+    wrenches: tuple[ExternalWrench, ...] = ()  #: from outside
     robot: Robot | None = None  #: the joints' arrays are None without one
     axes: str = REP103  #: axes of world and head: "rep103" (x forward, y left, z up), or "paper"
 
@@ -88,9 +90,10 @@ class RunData(ObservedArrays):
     def of(cls, setup: Any, time: np.ndarray, arrays: dict[str, np.ndarray], **others: Any) -> Self:
         """The run with these `arrays` (`storage.variables.arrays_of`) at `time` (T,) [s].
 
-        setup: has the body, the scene and the stations x, and perhaps a flow, a robot, fins. others: further fields.
+        setup: has the body, the scene and the stations x, and perhaps a flow, a robot, fins, wrenches. others: further
+        fields.
         """
-        own = {"body": setup.body, "scene": setup.scene, "flow": None, "robot": None, "fins": ()}
+        own = {"body": setup.body, "scene": setup.scene, "flow": None, "robot": None, "fins": (), "wrenches": ()}
         own |= {name: getattr(setup, name, none) for name, none in own.items()}
         return cls(**own, **fields_of_arrays(arrays | {"time": time, "x": setup.x}, own["robot"]), **others)
 
@@ -178,8 +181,8 @@ class RunData(ObservedArrays):
 
     @property
     def swimmer(self) -> dict[str, Any]:
-        """The arguments of `Simulation` and `simulate` from the run: body, scene, flow, robot and fins."""
-        return {name: getattr(self, name) for name in ("body", "scene", "flow", "robot", "fins")}
+        """The arguments of `Simulation` and `simulate` from the run: body, scene, flow, robot, fins and wrenches."""
+        return {name: getattr(self, name) for name in ("body", "scene", "flow", "robot", "fins", "wrenches")}
 
     def setup_at(
         self, sample: int, x: np.ndarray, accuracy: Accuracy, most_evaluations: float = ANY
@@ -192,7 +195,7 @@ class RunData(ObservedArrays):
         orientation = run.orientation[sample] / np.linalg.norm(run.orientation[sample])
         start = checked_state(bool(run.scene.planar), run.position[sample], orientation, run.twist[sample])
         how = start, DEFAULT_TRANSITION, most_evaluations
-        return SimulationSetup(run.body, run.scene, accuracy, x, *how, run.flow, run.robot, run.fins)
+        return SimulationSetup(run.body, run.scene, accuracy, x, *how, run.flow, run.robot, run.fins, run.wrenches)
 
     @property
     def body_mass(self) -> float:

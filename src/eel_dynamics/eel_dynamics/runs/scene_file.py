@@ -12,6 +12,7 @@ Its keys are the names of the nodes' parameters, below `/**: ros__parameters:` o
     initial_linear_velocity: [0.3, 0, 0]
     flow: shear velocity=0.1,0,0 width=0.5    # several are joined by " + "
     fins: pair station=0.5 area=0.0015 aspect_ratio=2.5   # likewise
+    wrenches: world station=1 force=-0.5,0,0              # from outside, likewise
     robot: eight_servos       # or a file; its body is the scene's unless another is given
 
 A new key is a line of `WORDS`.
@@ -39,6 +40,7 @@ from eel_dynamics.model.fins.text import fins_from_text, text_of_fins
 from eel_dynamics.model.flow.text import flow_from_text, text_of_flow
 from eel_dynamics.model.robot.robot import robot_of
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.model.wrenches.text import text_of_wrenches, wrenches_from_text
 from eel_dynamics.runs.settled_duration import until_settled
 from eel_dynamics.runs.swim import AT_REST, Swim
 
@@ -181,6 +183,10 @@ WORDS: dict[str, Word] = {  # robot before body, as a given body replaces the ro
     "fins": Word(
         lambda swim, value: {"fins": fins_from_text(checked_instance("fins", value, str))},
         lambda swim: text_of_fins(swim.fins) or None,
+    ),
+    "wrenches": Word(
+        lambda swim, value: {"wrenches": wrenches_from_text(checked_instance("wrenches", value, str))},
+        lambda swim: text_of_wrenches(swim.wrenches) or None,
     ),
     "flow": Word(
         lambda swim, value: {"flow": flow_from_text(checked_instance("flow", value, str))},

@@ -51,7 +51,7 @@ def settling_time(law: Any, setup: SimulationSetup) -> float:
     drift = setup.current * period  # m
 
     def settled(seen: Observations, done: np.ndarray) -> bool:
-        """Whether the gait has settled after the `done` (n, 7) [J] works of n - 1 periods."""
+        """Whether the gait has settled after the `done` (n, 8) [J] works of n - 1 periods."""
         count = len(done) - 1
         window = (count + 1) // 2
         if window < FEWEST or (count - window) * period < last_ramp * (1.0 - 1e-9):

@@ -16,6 +16,7 @@ from eel_dynamics.model.body.body import Body
 from eel_dynamics.model.flow.flow import Flow
 from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.model.wrenches.external_wrench import ExternalWrench
 from eel_dynamics.runs.motions import Motion
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.swim_request import SwimRequest
@@ -44,6 +45,7 @@ def simulate(
     flow: Flow | None = None,
     robot: Robot | None = None,
     fins: Iterable[Any] | None = None,
+    wrenches: Iterable[ExternalWrench] | None = None,
 ) -> Run:
     """Simulate `law` for `duration` [s], with samples every `sample_period` [s] from t = 0 on.
 
@@ -72,6 +74,7 @@ def simulate(
         robot: joints, tails or muscles that move dynamically. The law is then the reference of its servos, and
             `Run.joint_angle` and the like are their motion; None: the law is imposed.
         fins: a list of `Fin`, and of pairs of them (`Fin.pair`); None: none.
+        wrenches: a list of `ExternalWrench`, which act from outside: tows, tethers, thrusters; None: none.
     """
     setup = SimulationSetup.of(
         body=body,
@@ -84,6 +87,7 @@ def simulate(
         flow=flow,
         robot=robot,
         fins=fins,
+        wrenches=wrenches,
         most_evaluations=most_evaluations,
     )
     request = SwimRequest.of(Run, law, setup, duration, sample_period, load, estimate)

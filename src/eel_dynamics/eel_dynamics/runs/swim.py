@@ -13,12 +13,14 @@ from eel_dynamics.model.flow.flow import Flow
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.model.wrenches.external_wrench import ExternalWrench
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.simulate import simulate
 from eel_dynamics.simulation.simulation import Simulation
 
 AT_REST = InitialState(np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), np.zeros(6))
-OF_SWIMMER = "body", "scene", "accuracy", "stations", "flow", "robot", "fins"  # arguments of `Simulation`
+# Arguments of `Simulation`.
+OF_SWIMMER = "body", "scene", "accuracy", "stations", "flow", "robot", "fins", "wrenches"
 
 
 class Swim(NamedTuple):
@@ -38,6 +40,7 @@ class Swim(NamedTuple):
     gait: Settings | None = None  # the settings of the gait that gave the law, if one did
     body_file: str = ""  # the body's file, if any
     robot_file: str = ""  # the robot's file, if any
+    wrenches: tuple[ExternalWrench, ...] = ()
 
     def run(self, **how: Any) -> Run:
         """The run. how: further or changed arguments of `simulate`. `SimulationStopped` if it cannot go on."""

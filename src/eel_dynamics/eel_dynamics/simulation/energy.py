@@ -3,7 +3,7 @@
 
     d/dt (kinetic_body + kinetic_fluid + potential + elastic) =
         actuator_power + wake_power + nose_power + drag_power + flow_power + fins_power + appendages_power
-        + damping_power
+        + external_power + damping_power
 
 A positive power feeds energy into body and water. The power of the wake is V1(l) T_f(l). It is positive where the tail
 leads, which is a limit of the theory. The power of the nose includes that of its added mass, so kinetic_fluid does not
@@ -16,7 +16,8 @@ moves through it: kinetic_fluid is the integral of T_f + p . U, and flow_power t
 powers of the rate of u at the fixed place and of the undisturbed pressure. It is 0 without a flow.
 
 fins_power is that of the fins' lift, drag and added mass, whose energy is no part of kinetic_fluid; 0 without fins.
-appendages_power is that of the body's appendages; 0 without any.
+appendages_power is that of the body's appendages, external_power that of wrenches from outside (`ExternalWrench`), by
+the velocities relative to the current; 0 without any.
 
 Of a robot, the actuators are its motors, its muscles, and what imposes the curvature that no joint makes; its rotors
 are part of kinetic_body. elastic is the energy of its springs, damping_power that of its dampers and of friction; both
@@ -30,7 +31,8 @@ import numpy as np
 
 from eel_dynamics.model.equality import EqualByFields
 
-WORKS = "actuator", "wake", "nose", "drag", "flow", "fins", "appendages"  # that have powers and works, as in eel_core
+# That have powers and works, as in eel_core.
+WORKS = "actuator", "wake", "nose", "drag", "flow", "fins", "appendages", "external"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -50,6 +52,7 @@ class EnergyLedger(EqualByFields):
     flow_power: Annotated[np.ndarray, "W", "power of the water's own motion, 0 without a flow"]
     fins_power: Annotated[np.ndarray, "W", "power of the fins' forces, 0 without fins"]
     appendages_power: Annotated[np.ndarray, "W", "power of the appendages' drag, 0 without any"]
+    external_power: Annotated[np.ndarray, "W", "power of wrenches from outside, 0 without any"]
     residual: Annotated[np.ndarray, "J", "change of all energy since the start less the works"]
     actuator_work: Annotated[np.ndarray, "J", "work of the actuators since the start"]
     wake_work: Annotated[np.ndarray, "J", "work of the wake since the start"]
@@ -58,6 +61,7 @@ class EnergyLedger(EqualByFields):
     flow_work: Annotated[np.ndarray, "J", "work of the water's own motion since the start"]
     fins_work: Annotated[np.ndarray, "J", "work of the fins' forces since the start"]
     appendages_work: Annotated[np.ndarray, "J", "work of the appendages' drag since the start"]
+    external_work: Annotated[np.ndarray, "J", "work of wrenches from outside since the start"]
     elastic: Annotated[np.ndarray, "J", "elastic energy of a robot's springs, 0 without a robot"]
     damping_power: Annotated[np.ndarray, "W", "power of a robot's dampers, 0 without a robot"]
     damping_work: Annotated[np.ndarray, "J", "work of a robot's dampers since the start"]
@@ -78,10 +82,9 @@ class EnergyLedger(EqualByFields):
     def of(energies: Any, powers: Any, works: Any, start: Any, robot: Any = None) -> "EnergyLedger":
         """A ledger from its numbers.
 
-        energies (T, 3) [J]: kinetic of body and of water, potential. powers (T, 7) [W] and works (T, 7) [J]: of
-        actuators, wake, nose, drag, flow, fins and appendages. start [J]: the sum of the energies at the start. robot
-        (T, 3): elastic energy [J], power [W] and work [J] of the dampers; None: 0. Of an instant without the dimension
-        T.
+        energies (T, 3) [J]: kinetic of body and of water, potential. powers (T, 8) [W] and works (T, 8) [J]: of
+        `WORKS`. start [J]: the sum of the energies at the start. robot (T, 3): elastic energy [J], power [W] and work
+        [J] of the dampers; None: 0. Of an instant without the dimension T.
         """
         columns: Any = np.ndarray.tolist if energies.ndim == 1 else np.ndarray.transpose
         robot = np.zeros(energies.shape) if robot is None else robot

@@ -5,6 +5,7 @@ A robot, whose joints, tails and muscles bend by themselves, takes the steps of 
 `Accuracy.method`.
 """
 
+import math
 import threading
 from collections.abc import Callable
 from copy import copy, deepcopy
@@ -24,6 +25,7 @@ from eel_dynamics.model.fins.fins import given_angles
 from eel_dynamics.model.flow.flow import Flow
 from eel_dynamics.model.initial_state import InitialState, time_scale
 from eel_dynamics.model.robot.robot import Robot
+from eel_dynamics.model.wrenches.external_wrench import ExternalWrench, core_wrenches, next_jump
 from eel_dynamics.simulation.bending.joint_motion import JointMotion
 from eel_dynamics.simulation.bending.modes_on_grid import ModesOnGrid
 from eel_dynamics.simulation.discretisation import discretise
@@ -74,6 +76,8 @@ class March:
         self.setup, self.time, self._time_scale = setup, 0.0, setup.time_scale
         self._needs = setup.shape_needs(law)
         self._commands: dict[str, float] = {}  # rad, of fins
+        self._held: dict[float, ExternalWrench] = {}  # by station [m]: applied, until others are
+        self._next_jump = math.inf  # s, of a wrench from outside
         self._reference = np.zeros((0, 0))  # what the servos of a robot follow, by the law's factors
         wanted = setup.grid_for(self._needs)
         self.core = eel_core.March(*self._on_grid(wanted if settings is None else settings.at_least(wanted)))
@@ -146,6 +150,17 @@ class March:
         self._commands = self._commands | commands
         self._hand_over_law()
 
+    def apply_wrench(self, wrench: ExternalWrench):
+        """Hold a constant `wrench` from now on, in place of the one that was held at its station."""
+        if all(each.station != wrench.station for each in self.setup.wrenches):  # a panel is to end there
+            self.setup = replace(self.setup, wrenches=(*self.setup.wrenches, ExternalWrench(wrench.station)))
+        self._held = self._held | {wrench.station: wrench}
+        edges = self.setup.grid_for(self._needs).edges
+        if edges == self.settings.edges:
+            self._hand_over_law()
+        else:
+            self._change_grid(self.settings._replace(edges=edges))
+
     def command(
         self, joint: str, position: float | None = None, velocity: float | None = None, effort: float | None = None
     ) -> None:
@@ -194,7 +209,14 @@ class March:
             law, self._reference = self.robot.law(follower, self.discretisation.tabulation)
         steps, water = (breakpoints, self._bounds, bool(setup.scene.ledger)), (setup.current, setup.core_flow)
         angles = given_angles(setup.fins, self._commands)
-        self.core.follow(law, *steps, *water, smoothly, angles, self._reference)
+        self.core.follow(law, *steps, *water, smoothly, angles, self._reference, self._wrenches())
+
+    def _wrenches(self) -> list[Any]:
+        """The wrenches from outside for the core, up to the next that jumps."""
+        setup, wrenches = self.setup, (*self.setup.wrenches, *self._held.values())
+        self._next_jump = next_jump(wrenches, self.time)
+        where = setup.body, self.discretisation.grid, setup.x
+        return core_wrenches(wrenches, *where, self.time, bool(setup.scene.planar)) if wrenches else []
 
     # -- march
 
@@ -219,16 +241,19 @@ class March:
         return True
 
     def _pass_event(self) -> float:
-        """Change the source of curvature where that is due at the present; the next time [s] of such a change.
+        """Change the source of curvature, and wrenches that jump, where that is due at present; the next time [s] of
+        such a change.
 
         From one pair of samples to the next the curvature has two continuous derivatives, and the motion goes on
         smoothly: the rate of the momentum depends on the curvature and its rate.
         """
         follower, before = self.follower, self.follower.between_samples
         follower.pass_event(self.time, lambda waves: self._fit(ShapeNeeds(waves), coarser=not follower.blending))
-        if follower.law_on_grid is not self.law_on_grid:
+        if self.time >= self._next_jump:
+            self._hand_over_law()
+        elif follower.law_on_grid is not self.law_on_grid:
             self._hand_over_law(smoothly=before and follower.between_samples)
-        return follower.next_event(self.time)
+        return min(follower.next_event(self.time), self._next_jump)
 
     def record(self, times: np.ndarray, wrench: bool, load: bool, look=None, enough=None) -> tuple:
         """As `Simulation.record`. enough(out, works): asked after each sample with the works so far, whether to end."""

@@ -61,7 +61,9 @@ class Observations:
     )
     center_of_mass = Observed("time world", "m", "centre of mass, world")
     energies = Observed("time energy", "J", "kinetic of body and of water, potential")
-    powers = Observed("time power", "W", "of actuators, wake, nose, drag, flow, fins and appendages")
+    powers = Observed(
+        "time power", "W", "of actuators, wake, nose, drag, flow, fins, appendages and wrenches from outside"
+    )
     closure = Observed("time closure", "N m, N", "what is left at the nose of the internal torque and force")
     backbone = Observed("time station world", "m", "backbone, world")
     section_orientation = Observed("time station quaternion", "1", "world from section, x y z w")
@@ -125,7 +127,7 @@ SENSORS = tuple(name for name in OBSERVED if name.startswith("sensor_"))
 class Snapshot(Observations):
     """One instant: the quantities have no dimension "time", and are None where they were not asked for.
 
-    The arrays are views: copy what is to be kept. ledger: the works (6,) [J] since the start, and the energy [J] there.
+    The arrays are views: copy what is to be kept. ledger: the works (8,) [J] since the start, and the energy [J] there.
     joints: the `JointMotion` of the instant. sensors: how many there are.
 
     Attributes:

@@ -13,6 +13,7 @@ from eel_dynamics.model.body.grid import Grid
 from eel_dynamics.model.fins.fins import Fin
 from eel_dynamics.model.flow.flow import Flow
 from eel_dynamics.model.initial_state import InitialState
+from eel_dynamics.model.wrenches.external_wrench import ExternalWrench
 from eel_dynamics.simulation.bending.joint_motion import JointMotion
 from eel_dynamics.simulation.discretisation import Discretisation
 from eel_dynamics.simulation.error_meter import ErrorMeter
@@ -52,6 +53,11 @@ class Present:
     def fins(self) -> tuple[Fin, ...]:
         """The fins, each of a pair by itself."""
         return self._setup.fins
+
+    @property
+    def wrenches(self) -> tuple[ExternalWrench, ...]:
+        """The wrenches from outside that were given at the start, without those that are applied."""
+        return self._setup.wrenches
 
     @property
     def grid(self) -> Grid:
@@ -125,7 +131,7 @@ class Present:
 
     @property
     def works(self) -> np.ndarray:
-        """(7,) J of actuators, wake, nose, drag, flow, fins and appendages since the start."""
+        """(8,) J of `energy.WORKS` since the start."""
         return np.array(self._march.core.works)
 
     @property

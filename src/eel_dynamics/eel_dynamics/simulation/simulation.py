@@ -25,6 +25,7 @@ from eel_dynamics.model.initial_state import checked_state
 from eel_dynamics.model.robot.actuators import Servo
 from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.model.wrenches.external_wrench import ExternalWrench, check_wrench
 from eel_dynamics.simulation.error_meter import ErrorMeter
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Observations
@@ -58,6 +59,7 @@ class Simulation(Present):
         fins: a list of `Fin`, and of pairs of them; None: none.
         sensors: X (S,) [m] of the stations that move sensors (`Snapshot.sensor_twist` and others), rising or not; a
             snapshot has them in rising order, each once.
+        wrenches: a list of `ExternalWrench`, which act from outside, after a reset too; None: none.
     """
 
     def __init__(
@@ -77,6 +79,7 @@ class Simulation(Present):
         robot: Robot | None = None,
         fins: Iterable[Any] | None = None,
         sensors: ArrayLike = (),
+        wrenches: Iterable[ExternalWrench] | None = None,
     ) -> None:
         self._setup = setup = SimulationSetup.of(
             body=body,
@@ -90,6 +93,7 @@ class Simulation(Present):
             robot=robot,
             fins=fins,
             sensors=sensors,
+            wrenches=wrenches,
             most_evaluations=most_evaluations,
             default_transition=default_transition,
         )
@@ -190,6 +194,41 @@ class Simulation(Present):
         angles = checked_commands(self._setup.fins, commands)
         self._on_both(lambda march: march.command_fins(angles))
 
+    def apply_wrench(
+        self,
+        station: float,
+        force: ArrayLike = (0.0, 0.0, 0.0),
+        torque: ArrayLike = (0.0, 0.0, 0.0),
+        frame: str = "section",
+    ) -> None:
+        """Have a wrench from outside act on the section at `station` [m], from the present time on.
+
+        It replaces the one that was applied there before, and holds until another does; zero ends it. Those of
+        `wrenches` go on beside it. A reset forgets it. A first one at a station inside the body makes a new grid,
+        unless one of the `wrenches` has that station.
+
+        Args:
+            station: X [m], 0 at the head.
+            force: (3,) [N], on the section's centre.
+            torque: (3,) [N m], about it.
+            frame: their axes, "section" (x forward, y left, z up, as the section is turned) or "world".
+
+        `ValueError` for what does not fit.
+        """
+        wrench = self.check_wrench(station, force, torque, frame)
+        self._on_both(lambda march: march.apply_wrench(wrench))
+        self._meter.due = True
+
+    def check_wrench(
+        self, station: float, force: ArrayLike, torque: ArrayLike, frame: str = "section"
+    ) -> ExternalWrench:
+        """The wrench of these arguments of `apply_wrench`; `ValueError` as there."""
+        wrench = ExternalWrench(station, force, torque, frame)
+        if wrench.is_function:
+            raise ValueError("applied force and torque must be three numbers, got a function: it goes with wrenches")
+        check_wrench(wrench, self.body, bool(self.scene.planar))
+        return wrench
+
     def command(
         self, joint: str, *, position: float | None = None, velocity: float | None = None, effort: float | None = None
     ) -> None:
@@ -240,7 +279,8 @@ class Simulation(Present):
         if accuracy is not None:
             setup = replace(setup, accuracy=Accuracy.of(accuracy))
         other._setup, other.robot = setup, setup.robot
-        other._march = self._march.copy_with(replace(setup, flow=self._march.setup.flow))
+        own = self._march.setup
+        other._march = self._march.copy_with(replace(setup, flow=own.flow, wrenches=own.wrenches))
         other._meter = ErrorMeter(other._march, False)
         other.currents = deepcopy(self.currents)
         return other
@@ -298,7 +338,7 @@ class Simulation(Present):
     ) -> tuple[Observations, np.ndarray, int, SimulationStopped | None]:
         """March through `times` (T,) [s] under the law in force, and observe each.
 
-        Returns the observations, the works (T, 7) [J] of actuators, wake, nose, drag, flow, fins and appendages, the
+        Returns the observations, the works (T, 8) [J] of `energy.WORKS`, the
         number of good instants, and what stopped the march, or None. look(time [s]) is called every few milliseconds.
         After a bad instant the simulation must be reset. `ValueError` for times that are not finite, or fall.
         """

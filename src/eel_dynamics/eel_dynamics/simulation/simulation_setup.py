@@ -27,6 +27,7 @@ from eel_dynamics.model.initial_state import InitialState, checked_state, time_s
 from eel_dynamics.model.robot.compiled import ModeTable, mode_table
 from eel_dynamics.model.robot.robot import Robot, checked_robot
 from eel_dynamics.model.scene import Scene, checked_scene
+from eel_dynamics.model.wrenches.external_wrench import ExternalWrench, checked_wrenches, instants_of
 
 FITTING = 1e-6  # part of the body's length by which the rows of a law may be shorter or longer
 
@@ -45,6 +46,7 @@ class SimulationSetup(EqualByFields):
     flow: Flow | None
     robot: Robot | None
     fins: tuple[Fin, ...]
+    wrenches: tuple[ExternalWrench, ...] = ()
     sensors: tuple[float, ...] = ()  # m, X of those that are observed, rising
     until: float = 0.0  # s, up to which functions of time are looked at beforehand; 0: they are not
 
@@ -62,6 +64,7 @@ class SimulationSetup(EqualByFields):
         robot=None,
         fins=None,
         sensors=(),
+        wrenches=None,
         most_evaluations=MOST_EVALUATIONS,
         default_transition=DEFAULT_TRANSITION,
     ) -> "SimulationSetup":
@@ -70,13 +73,14 @@ class SimulationSetup(EqualByFields):
         body = checked_body(robot.body if body is None and robot is not None else body)
         scene, accuracy, x = checked_scene(scene), Accuracy.of(accuracy), checked_stations(stations, body.length)
         start = _checked_start(scene, position, orientation, twist, flow)
-        fins = checked_fins(fins, body, scene)
+        fins, wrenches = checked_fins(fins, body, scene), checked_wrenches(wrenches, body, bool(scene.planar))
         if robot is not None:
             mode_table(robot, body, bool(scene.planar))
         most_evaluations = positive("most_evaluations", most_evaluations, "per simulated second")
         transition = positive("default_transition", default_transition, "s")
         where = checked_sensors(sensors, body.length)
-        return SimulationSetup(body, scene, accuracy, x, start, transition, most_evaluations, flow, robot, fins, where)
+        how = start, transition, most_evaluations
+        return SimulationSetup(body, scene, accuracy, x, *how, flow, robot, fins, wrenches, where)
 
     def starting(self, position, orientation, twist, flow) -> "SimulationSetup":
         """The same from another start, in other water. `ValueError` as of `of`."""
@@ -92,9 +96,8 @@ class SimulationSetup(EqualByFields):
         return changed
 
     def __hash__(self) -> int:  # type: ignore[override]
-        return hash(
-            (self.body, self.scene, self.accuracy, self.x.tobytes(), self.flow, self.robot, self.fins, self.sensors)
-        )
+        water, parts = (self.scene, self.flow), (self.robot, self.fins, self.wrenches, self.sensors)
+        return hash((self.body, self.accuracy, self.x.tobytes(), *water, *parts))
 
     def __deepcopy__(self, memo: dict) -> "SimulationSetup":
         return self
@@ -114,22 +117,24 @@ class SimulationSetup(EqualByFields):
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Times [s] at which a derivative of the flow, of the fins' angles or of muscles' moments jumps, or what is
-        given over time changes suddenly."""
+        """Times [s] at which a derivative of the flow, of the fins' angles, of muscles' moments or of a wrench from
+        outside jumps, or what is given over time changes suddenly."""
         of_flow = () if self.flow is None else self.flow.traits.breakpoints
         of_robot = () if self.robot is None else self.robot.ramp_ends
-        return *of_flow, *knots_of(self.fins), *of_robot, *self.sudden_changes
+        return *of_flow, *knots_of(self.fins), *of_robot, *instants_of(self.wrenches), *self.sudden_changes
 
     @cached_property
     def sudden_changes(self) -> frozenset[float]:
         """As `sudden_changes`."""
         place, turn, _ = (tuple(each.tolist()) for each in self.initial_state)
-        return sudden_changes(self.robot, self.flow, place, turn, self.body.length, self.until)
+        return sudden_changes(self.robot, self.flow, place, turn, self.body.length, self.until, self.wrenches)
 
     @property
     def longest_step(self) -> float:
-        """The longest step [s] that sees torques that are functions; infinite where these are looked at beforehand."""
-        unseen = not self.until and any(torque.time is None for torque in given_torques(self.robot))
+        """The longest step [s] that sees torques and wrenches that are functions; infinite where these are looked at
+        beforehand."""
+        functions = any(torque.time is None for torque in given_torques(self.robot))
+        unseen = not self.until and (functions or any(wrench.is_function for wrench in self.wrenches))
         return UNSEEN if unseen else np.inf
 
     @property
@@ -138,11 +143,13 @@ class SimulationSetup(EqualByFields):
         return min(servo_time(self.fins), np.inf if self.flow is None else self.flow.traits.time_scale)
 
     def grid_for(self, needs: ShapeNeeds) -> GridSettings:
-        """The settings of the grid for the `needs` of a law, and those of the flow."""
+        """The settings of the grid for the `needs` of a law, and those of the flow, with panels that end at fins and
+        at wrenches from outside."""
         if self.flow is not None:
             needs = needs._replace(waves=max(needs.waves, self.body.length / self.flow.traits.shortest_wave))
         of_modes = () if self.modes is None else self.modes.edges
-        edges = tuple(sorted({*of_modes, *edges_of(self.body, self.fins, of_modes)}))
+        stations = (each.station for each in (*self.fins, *self.wrenches))
+        edges = tuple(sorted({*of_modes, *edges_of(self.body, stations, of_modes)}))
         return GridSettings(self.settings.points_per_length(needs.waves), self.settings.kinks, needs.knots, edges)
 
     @cached_property

@@ -104,7 +104,7 @@ def first_bad_sample(
 ) -> tuple[int, str, float] | None:
     """The first bad sample of the first `done` ones: its index, the quantity and its value. None where all are good.
 
-    out: `Observations`. works (T, 7) [J]. start [J]: the energy at the start. floor [J]: energy that counts as
+    out: `Observations`. works (T, 8) [J]. start [J]: the energy at the start. floor [J]: energy that counts as
     none; where it is infinite, the ledger is not checked. robot (T, 3): as of `EnergyLedger.of`.
     """
     with np.errstate(over="ignore", invalid="ignore"):

@@ -147,4 +147,5 @@ def _physics(swim: Swim) -> tuple[Any, ...]:
         scene = replace(scene, nose=False)
     if scene.planar:
         scene = replace(scene, metacentric_height=0.0)
-    return scene, swim.flow, swim.law, swim.robot, swim.body, swim.fins, *(row.tobytes() for row in swim.start)
+    parts = swim.flow, swim.robot, swim.fins, swim.wrenches
+    return scene, swim.law, swim.body, *parts, *(row.tobytes() for row in swim.start)

@@ -42,6 +42,7 @@ def key_of(points: list[Swim], how: SwimSettings) -> str:
         content.update(repr(own).encode())
         content.update(np.asarray(point.stations, dtype=float).tobytes())
         content.update(_content_of_flow(point.flow) + repr(point.fins).encode())
+        content.update(repr(plain_of(point.wrenches)).encode() if point.wrenches else b"")
         content.update(_content_of_robot(point.robot, point.body))
         content.update(np.concatenate(point.start).tobytes())
     return content.hexdigest()[:32]

@@ -35,6 +35,7 @@ SERIES = {  # entity: (name, colour) of each value
         ("fins", colours.FIN),
         ("dampers", colours.SPRINGS),
         ("appendages", colours.APPENDAGE),
+        ("outside", colours.EXTERNAL),
     ),
     entities.KINETIC: (("body", colours.PLAIN), ("water", colours.FORCE)),
     entities.STORED: (("weight", colours.FLOW), ("springs", colours.SPRINGS)),
@@ -43,7 +44,7 @@ SERIES = {  # entity: (name, colour) of each value
 
 
 BESIDES = {  # curves that begin with the first non-zero value
-    entities.POWER_BESIDES: ("flow_power", "fins_power", "damping_power", "appendages_power"),
+    entities.POWER_BESIDES: ("flow_power", "fins_power", "damping_power", "appendages_power", "external_power"),
     entities.STORED: ("potential", "elastic"),
 }
 

@@ -24,6 +24,7 @@ COURSE = (150, 232, 196)  # mint: way points of a goal
 SPRINGS = (0, 150, 136)  # teal: springs and dampers of joints
 FIN = (140, 214, 110)  # lime: fins, and their power
 APPENDAGE = (170, 150, 200)  # lilac: appendages, and their power
+EXTERNAL = (250, 190, 190)  # pink: the power of wrenches from outside
 OTHER = (244, 244, 240)  # white: the run that is laid over this one
 PLAIN = (190, 196, 202)  # a single quantity in its plot
 GREY = (150, 155, 160)  # no data

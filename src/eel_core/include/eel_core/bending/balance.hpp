@@ -121,6 +121,8 @@ class BentBody {
         }
         if (work.flowing) set_flow_load(*swimmer_, work);
         find_loads(*swimmer_, work);
+        work.has_external = !law_->wrenches.empty();
+        if (work.has_external) find_external_loads(*law_, time_, work);
         if (swimmer_->weighs()) set_weight(*swimmer_, 0.0, work);  // the energy is set by observations
         if constexpr (!M::planar)
             if (!work.fins.empty()) find_fin_loads(*swimmer_, *law_, time_, state_, work);
@@ -243,6 +245,7 @@ class BentBody {
                 columns.work_of(m, load_) + dot(own.omega.node(tail), torque) + dot(own.velocity.node(tail), force);
         }
         if (!work.appendages.empty()) add_appendages();
+        if (work.has_external) add_external();
     }
 
     EEL_CORE_APART void add_appendages()
@@ -254,6 +257,13 @@ class BentBody {
             for (std::size_t m = 0; m < modes_->modes; ++m)
                 mode_load_[m] += columns.work_at(node, m, {cross(now.arm, now.force), now.force});
         }
+    }
+
+    EEL_CORE_APART void add_external()
+    {
+        for (const ExternalLoad<M>& now : work.external)
+            for (std::size_t m = 0; now.node != Appendage::nose && m < modes_->modes; ++m)
+                mode_load_[m] += columns.work_at(now.node, m, now.wrench);
     }
 
     // Terms of the flow and the fins in the rates of the modes' momenta.

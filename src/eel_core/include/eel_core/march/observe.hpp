@@ -248,6 +248,7 @@ class Observer {
             if (!work.fins.empty())  // those ahead of a station, and at it, are no part of what lies behind
                 integral = integral - fins_ahead(swimmer_, work, k, &Fin::station_behind);
             if (!work.appendages.empty()) integral = integral - appendages_ahead(swimmer_, work, k);
+            if (work.has_external) integral = integral - external_ahead(work, k);
             const auto wrench =
                 internal_wrench<Space>(swimmer_, work, integral, frame, here.position[k], swimmer_.at_station[k],
                                        frame.local(through_water(work, here)[k]), frame.local(here.omega[k]));

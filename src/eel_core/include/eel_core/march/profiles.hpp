@@ -18,7 +18,7 @@ struct Profiles {
         head_acceleration,    // (T, 6) rad/s^2, m/s^2, true acceleration of the head, its axes
         center_of_mass,       // (T, 3) m, world
         energies,             // (T, 3) J, kinetic of body and of water, potential
-        powers,               // (T, 7) W, actuators, wake, nose, drag, flow, fins, appendages
+        powers,               // (T, 8) W, actuators, wake, nose, drag, flow, fins, appendages, wrenches from outside
         closure,              // (T, 2) N m, N: what is left of the internal wrench at the nose
         backbone,             // (T, M, 3) m, world
         section_orientation,  // (T, M, 4) x y z w, world from section
@@ -40,7 +40,7 @@ struct Profiles {
         sensor_water,         // (T, S, 3) m/s, velocity of the water over ground, without the swimmer
         quantities
     };
-    static constexpr std::size_t width_of[quantities] = {3, 4, 6, 6, 3, 3, 7, 2, 3, 4, 3, 3, 3,
+    static constexpr std::size_t width_of[quantities] = {3, 4, 6, 6, 3, 3, 8, 2, 3, 4, 3, 3, 3,
                                                          3, 3, 3, 3, 3, 3, 1, 3, 3, 4, 6, 6, 3};
 
     std::size_t samples, stations, fins, sensors;

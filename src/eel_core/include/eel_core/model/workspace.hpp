@@ -89,11 +89,16 @@ struct Workspace {
     std::array<Row, speeds> speed;          // see `Speed`
     Row friction_laminar, friction_excess;  // [kg/m/s], friction per V1 from the laminar law, with the drag of the
                                             // links; and the turbulent excess
-    Row turbulent_share;             // of the friction, 0 to 1
-    Row turbulent_weight;            // [m], integration weights of the excess
-    std::array<Row, 4> load_weight;  // [m], of the other loads, with signs; none for `axial`
-    std::vector<Kink> kinks;         // the first `kink_count` are valid
+    Row turbulent_share;                    // of the friction, 0 to 1
+    Row turbulent_weight;                   // [m], integration weights of the excess
+    std::array<Row, 4> load_weight;         // [m], of the other loads, with signs; none for `axial`
+    std::vector<Kink> kinks;                // the first `kink_count` are valid
     std::size_t kink_count = 0;
+
+    // Where wrenches act from outside (`has_external`):
+    bool has_external = false;
+    std::vector<ExternalLoad<M>> external;
+    Wrench<M, double> external_load{};  // their sum
 
     // Of the whole body:
     Frame<M, double> head;                    // axes of the head in the world

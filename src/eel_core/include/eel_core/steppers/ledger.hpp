@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Works of actuators, wake, nose, drag, flow, fins and appendages: integrals of their powers, from the Lobatto points
-// of each step.
+// Works of actuators, wake, nose, drag, flow, fins, appendages and wrenches from outside: integrals of their powers,
+// from the Lobatto points of each step.
 #pragma once
 
 #include "eel_core/internal_wrench.hpp"
 
 namespace eel_core {
 
-using WorkDone = Powers;  // [J], of actuators, wake, nose, drag, flow, fins and appendages since the start
+using WorkDone = Powers;  // [J], since the start
 
 // Lobatto's points, as fractions of the step.
 inline constexpr std::array<double, 4> lobatto{0.0, 0.276393202250021030, 0.723606797749978970, 1.0};
@@ -37,13 +37,16 @@ struct StepPowers {
     WorkDone works_until(const WorkDone& start, double length, double theta) const
     {
         static constexpr auto cubic = lagrange_cubics();
-        WorkDone result = start;
+        std::array<double, 4> share;
         for (std::size_t i = 0; i < 4; ++i) {
             double power = theta, weight = 0.0;
             for (std::size_t j = 0; j < 4; ++j, power *= theta)
                 weight += cubic[i][j] * power / static_cast<double>(j + 1);
-            for (std::size_t k = 0; k < result.size(); ++k) result[k] += length * weight * at[i][k];
+            share[i] = length * weight;
         }
+        WorkDone result = start;
+        for (std::size_t k = 0; k < result.size(); ++k)
+            for (std::size_t i = 0; i < 4; ++i) result[k] += share[i] * at[i][k];
         return result;
     }
 };

@@ -8,6 +8,7 @@ sweep; the induced drag; beyond the stall the drag of a plate across the stream;
 """
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -224,12 +225,16 @@ def servos_of(fins: tuple[Fin, ...]) -> list[tuple[Any, ...]]:
     return list(dict.fromkeys(fin.servo for fin in fins))
 
 
-def edges_of(body: Body, fins: tuple[Fin, ...], known: tuple[float, ...] = ()) -> tuple[float, ...]:
-    """X [m] at which panels must end for the fins: those not within `APART` of a kink of the body, or of `known`."""
-    stations = {fin.station for fin in fins}
-    ends = (*body.panel_ends, *known)
-    near = [x for x in stations if min(abs(x - end) for end in ends) < APART * body.length]
-    return tuple(sorted(stations - set(near)))
+def edges_of(body: Body, stations: Iterable[float], known: tuple[float, ...] = ()) -> tuple[float, ...]:
+    """X [m] at which panels must end for point loads at `stations`: those not within `APART` of a kink of the body, of
+    `known`, or of each other."""
+    ends, near = [0.0, *body.panel_ends, *known], APART * body.length
+    edges: list[float] = []
+    for station in sorted({*stations}):
+        if min(abs(station - end) for end in ends) >= near:
+            edges.append(station)
+            ends.append(station)
+    return tuple(edges)
 
 
 def core_fins(

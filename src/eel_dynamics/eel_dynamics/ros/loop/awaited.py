@@ -22,8 +22,10 @@ from eel_common.ros.loop.diagnostics import Report
 from eel_common.wording import not_one_of, shown
 
 LAW, SAMPLES, JOINTS, FINS, CURRENT = "curvature_law", "curvature_samples", "joint_commands", "fin_command", "current"
-INPUTS = (LAW, SAMPLES, JOINTS, FINS, CURRENT)
+WRENCH = "external_wrench"
+INPUTS = (LAW, SAMPLES, JOINTS, FINS, CURRENT, WRENCH)
 MESSAGES = {LAW: "law", SAMPLES: "curvature sample", JOINTS: "joint command", FINS: "fin command", CURRENT: "current"}
+MESSAGES |= {WRENCH: "external wrench"}
 ALL = ""  # in place of a joint's or a fin's name: any
 ECHO = 5.0  # s after a reset, within which messages that were sent before it may come
 SETTLING = 0.5  # s of wall time in which timers see the clock at 0, from where their periods count

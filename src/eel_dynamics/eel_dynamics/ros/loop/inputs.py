@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What comes to a swimmer besides laws: commands of joints and fins, and currents; and what of all a run waits for."""
+"""What comes to a swimmer besides laws: commands of joints and fins, currents, wrenches; and what a run waits for."""
 
 from eel_common.ros.loop.diagnostics import Report
 
 from eel_dynamics.model.fins.fins import commanded_names
 from eel_dynamics.ros.command_messages import interfaces_of
-from eel_dynamics.ros.loop.awaited import FINS, JOINTS, Awaited, wanted_inputs
+from eel_dynamics.ros.loop.awaited import FINS, JOINTS, WRENCH, Awaited, wanted_inputs
 from eel_dynamics.ros.loop.command_queue import STAND_IN, FinCommands, JointCommands
 from eel_dynamics.ros.loop.current_taker import Currents
+from eel_dynamics.ros.loop.wrench_taker import ExternalWrenches
 from eel_dynamics.ros.parameters import DynamicsParameters
+from eel_dynamics.ros.wrench_frames import wrench_frames
 from eel_dynamics.simulation.simulation import Simulation
 
 
@@ -16,7 +18,8 @@ class Inputs:
     """The inputs of a `simulation`, by the parameters `values`.
 
     Attributes:
-        joints: JointCommands. fins: FinCommands. current: Currents. queues: all three.
+        joints: JointCommands. fins: FinCommands. current: Currents. wrenches: ExternalWrenches. queues:
+            all of them.
         awaited: Awaited.
         acted: the number of times that commands have taken effect since the last sample.
     """
@@ -26,15 +29,17 @@ class Inputs:
         self.joints = JointCommands(self.awaited, lockstep, report)
         self.fins = FinCommands(self.awaited, lockstep, report)
         self.current = Currents(self.awaited, lockstep, report, values.world_frame)
-        self.queues = self.joints, self.fins, self.current
+        self.wrenches = ExternalWrenches(self.awaited, lockstep, report)
+        self.queues = self.joints, self.fins, self.current, self.wrenches
         self.begin(simulation, values)
 
     def begin(self, simulation: Simulation, values: DynamicsParameters) -> None:
-        """Begin at time 0 of a `simulation`, which may be another one, without commands and currents so far."""
+        """Begin at time 0 of a `simulation`, which may be another one, before anything has come."""
         self.joints.begin(simulation, interfaces_of(simulation.robot, values.command_interfaces))
         self.fins.begin(simulation)
         self.current.begin(simulation)
-        self.awaited.begin(values.wait_for, parts_of(simulation), 1.0 / values.rate)
+        self.wrenches.begin(simulation, values)
+        self.awaited.begin(values.wait_for, parts_of(simulation, values), 1.0 / values.rate)
         if self.awaited.names(JOINTS) and not simulation.ready:
             simulation.adopt(STAND_IN)  # a controller manager begins to command once time goes on
         self.acted = 0
@@ -49,13 +54,14 @@ class Inputs:
             self.acted += queue.act()
 
 
-def parts_of(simulation: Simulation) -> dict[str, tuple[str, ...]]:
-    """Names of the joints and fins of a `simulation` that can be commanded, by topic."""
-    robot = simulation.robot
-    return {JOINTS: () if robot is None else robot.driven_names, FINS: commanded_names(simulation.fins)}
+def parts_of(simulation: Simulation, values: DynamicsParameters) -> dict[str, tuple[str, ...]]:
+    """Names of the joints and fins of a `simulation` that can be commanded, and frames of wrenches, by topic."""
+    robot, fins = simulation.robot, commanded_names(simulation.fins)
+    joints = () if robot is None else robot.driven_names
+    return {JOINTS: joints, FINS: fins, WRENCH: tuple(wrench_frames(values))}
 
 
 def check_inputs(simulation: Simulation, values: DynamicsParameters) -> None:
     """`ValueError` for parameters `values` of inputs that do not fit a `simulation`."""
     interfaces_of(simulation.robot, values.command_interfaces)
-    wanted_inputs(values.wait_for, parts_of(simulation))
+    wanted_inputs(values.wait_for, parts_of(simulation, values))

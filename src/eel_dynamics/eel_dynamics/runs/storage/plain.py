@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Laws, bodies, scenes, settings, flows, fins, errors and their estimates as values for JSON, and back.
+"""Laws, bodies, scenes, settings, flows, fins, wrenches, errors and their estimates as values for JSON, and back.
 
 A body whose half-axes are the user's functions is stored with polynomials through their squares, as no file holds code.
 Everything else comes back equal.
@@ -35,6 +35,7 @@ from eel_dynamics.model.flow.plain import flow_of, plain_of_flow
 from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.model.robot.robot_file import plain_of_robot, robot_arguments
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.model.wrenches.external_wrench import ExternalWrench, plain_wrench
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 HALF_AXES = ("half_width", "half_height")
@@ -59,6 +60,8 @@ def plain_of(value: Any) -> Any:
         return _plain_body(value)
     if isinstance(value, Flow):
         return plain_of_flow(value)
+    if isinstance(value, ExternalWrench):
+        return plain_wrench(value)
     if isinstance(value, tuple):
         return [plain_of(each) for each in value]
     if isinstance(value, SimulationStopped):
@@ -125,6 +128,11 @@ def fins_of(plain: Sequence[dict[str, Any]] | None) -> tuple[Fin, ...]:
     return tuple(Fin(**each | {"angle": angle}) for each, angle in zip(plain or (), held, strict=True))
 
 
+def wrenches_of(plain: Sequence[dict[str, Any]] | None) -> tuple[ExternalWrench, ...]:
+    """The wrenches from outside that have become plain values."""
+    return tuple(ExternalWrench(**each) for each in plain or ())
+
+
 def stop_of(plain: dict[str, Any] | None) -> SimulationStopped | None:
     """The error from its plain values."""
     if plain is None:
@@ -147,6 +155,7 @@ READERS: dict[str, Callable[[Any], Any]] = {  # field of a run: reader of its pl
     "error_estimate": lambda plain: plain and ErrorEstimate(**plain),
     "flow": flow_of,
     "fins": fins_of,
+    "wrenches": wrenches_of,
 }
 
 

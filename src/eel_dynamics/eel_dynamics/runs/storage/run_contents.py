@@ -18,6 +18,7 @@ OF_EACH = {  # fields of a run: fields of a batch with a value per swimmer
     "flow": "flows",
     "robot": "robots",
     "fins": "fins",
+    "wrenches": "wrenches",
     "accuracy": "accuracies",
     "error_estimate": "error_estimates",
 }
@@ -64,7 +65,7 @@ def in_rep103_axes(contents: Contents) -> Contents:
 
 def contents_of_batch(batch: Any, arrays: dict[str, np.ndarray], energy_at_start: np.ndarray) -> Contents:
     """The contents of a `Batch` with all `arrays` of its swimmers."""
-    values = {name: plain.plain_of(getattr(batch, name)) for name in ("error_estimates", "flows", "fins")}
+    values = {name: plain.plain_of(getattr(batch, name)) for name in ("error_estimates", "flows", "fins", "wrenches")}
     values |= {name: plain.each_once(getattr(batch, name)) for name in ("laws", "bodies", "scenes", "accuracies")}
     values |= {"errors": plain.plain_of(batch.error), "stations": batch.backbone is not None}
     robots = map(plain.plain_robot, batch.robots, batch.bodies)

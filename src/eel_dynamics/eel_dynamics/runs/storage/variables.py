@@ -84,7 +84,7 @@ def arrays_of(
 ) -> dict[str, np.ndarray]:
     """The arrays of a run by their names in `VARIABLES`, except time and x, without those that were not requested.
 
-    out, works (T, 7) [J], start [J]: the observations, the works since the start and the energy there. joints: the
+    out, works (T, 8) [J], start [J]: the observations, the works since the start and the energy there. joints: the
     motion of a robot's joints. done: number of valid instants.
     """
     arrays = {name: array[:done] for name, array in out.arrays().items() if name not in SENSORS}
@@ -112,7 +112,7 @@ def fields_of_arrays(arrays: dict[str, np.ndarray], robot: Any) -> dict[str, Any
     if ENERGY + "residual" in arrays:
         none = np.zeros_like(arrays[ENERGY + "residual"])
         later = (
-            *(f"{part}_{what}" for part in ("flow", "fins", "appendages") for what in ("power", "work")),
+            *(f"{part}_{what}" for part in ("flow", "fins", "appendages", "external") for what in ("power", "work")),
             *OF_LEDGER,
         )
         absent = {name: none for name in later if ENERGY + name not in arrays}
