@@ -167,7 +167,7 @@ TEST(Algorithm, AccelerationsAndWrenchAreThoseOfTheReference)
     const auto& [mass, added2, added3, inertia1, inertia2, inertia3_, added_roll] = reference::section;
     const Section<double> section{mass, added2, added3, inertia1, inertia2, inertia3_, added_roll};
     const auto& [drag2, drag3_, drag_roll] = reference::drag;
-    swimmer->sections.inertia = constant(section), swimmer->tail = section;
+    swimmer->sections.inertial = constant(section), swimmer->tail = section;
     swimmer->sections.resistance = constant(DragSection<double>{drag2, drag3_, drag_roll, 0.0, 0.0, 0.0, 0.0});
     swimmer->resistive = true;
     const LawOnGrid law = bending(reference::bend);

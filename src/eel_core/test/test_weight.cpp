@@ -17,15 +17,15 @@ Swimmer swimmer()
     Swimmer swimmer;
     swimmer.grid.nodes = nodes, swimmer.grid.blocks = blocks_of(nodes), swimmer.grid.widest = nodes;
     Sections& sections = swimmer.sections;
-    sections.inertia = Field<Section<double>>(swimmer.grid.blocks);
+    sections.inertial = Field<Section<double>>(swimmer.grid.blocks);
     sections.lever = sections.net = swimmer.grid.weight = Row(swimmer.grid.blocks);
     for (std::size_t i = 0; i < nodes; ++i) {
         const double s = static_cast<double>(i);
         swimmer.grid.weight.row(0)[i] = 0.1 + 0.01 * s;
-        sections.inertia.row(0)[i] = 2.0 - 0.1 * s;  // mass
+        sections.inertial.row(0)[i] = 2.0 - 0.1 * s;  // mass
         sections.lever.row(0)[i] = 0.02 - 0.003 * s;
         sections.net.row(0)[i] = 0.1 * s - 0.3;
-        for (const std::size_t moment : {3u, 4u, 5u}) sections.inertia.row(moment)[i] = 0.01 + 0.002 * s;
+        for (const std::size_t moment : {3u, 4u, 5u}) sections.inertial.row(moment)[i] = 0.01 + 0.002 * s;
     }
     swimmer.righting = swimmer.gravity = 9.8;
     swimmer.offset = true;

@@ -35,7 +35,7 @@ inline void orient_sections(const Swimmer& swimmer, const LawOnGrid& law, Worksp
         before = {last(q.x), last(q.y), last(q.z), last(q.w)};
         const Frame3<Lanes> frame = q.frame();
         const Vector2<Lanes> rate = law.combine_both(law.tables->node, work.factor, 1, k);
-        work.quaternion.store(k, q);
+        work.orientation.store(k, q);
         work.frame.store(k, frame);
         work.curvature_rate.store(k, rate);
         work.integrand.store(k, {turning(frame, rate), frame.t1()});

@@ -157,7 +157,7 @@ class Observer {
         swimmer_.to_station.integrate(work.frame, 0, Vector3<double>{}, work.position, here.position);
         for (std::size_t i = 0; i < swimmer_.stations; ++i)
             if (const std::size_t nodes = swimmer_.nodes_before[i]; nodes > 0)
-                Components<Quaternion<double>>::each(work.quaternion.node(nodes - 1),
+                Components<Quaternion<double>>::each(work.orientation.node(nodes - 1),
                                                      [&](std::size_t c, double value) { here.base.row(c)[i] = value; });
         for (std::size_t k = 0; k < blocks(); ++k) {
             const Vector2<Lanes> curvature = law.combine_both(law.tables->station, work.factor, 0, k);

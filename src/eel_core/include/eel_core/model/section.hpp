@@ -101,13 +101,13 @@ struct DragSection {
 
 // The sections at the nodes, or at the stations.
 struct Sections {
-    Field<Section<double>> inertia;
+    Field<Section<double>> inertial;
     Row lever;      // [kg], m h of the weight; see weight.hpp
     Row net;        // [kg/m], mass of displaced water minus body, if bodies have weight
     Row displaced;  // [kg/m], of the water that the section displaces
     Field<DragSection<double>> resistance;
 
-    Section<Lanes> operator[](std::size_t k) const { return inertia[k]; }
+    Section<Lanes> operator[](std::size_t k) const { return inertial[k]; }
     DragSection<Lanes> drag(std::size_t k) const { return resistance[k]; }
 };
 

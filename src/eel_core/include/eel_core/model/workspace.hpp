@@ -36,7 +36,7 @@ struct Workspace {
     explicit Workspace(const Swimmer& swimmer)
     {
         const std::size_t n = swimmer.grid.blocks;
-        frame = Field<Frame<M, double>>(n), turn = quaternion = Field<Quaternion<double>>(n),
+        frame = Field<Frame<M, double>>(n), turn = orientation = Field<Quaternion<double>>(n),
         position = Field<Vector<M, double>>(n);
         shape_omega = omega = Field<Angular<M, double>>(n), shape_velocity = velocity = Field<Vector<M, double>>(n),
         curvature_rate = Field<Vector2<double>>(n);
@@ -53,14 +53,15 @@ struct Workspace {
 
     // Along the body, in the axes of the head, about the head:
     Field<Frame<M, double>> frame;            // t1, t2, t3 of the sections
-    Field<Quaternion<double>> quaternion;     // the same orientation, only in space
+    Field<Quaternion<double>> orientation;    // the same orientation, only in space
     Field<Quaternion<double>> turn;           // rotation from the previous node to this one, only in space
     Field<Vector<M, double>> position;        // r [m]
     Field<Angular<M, double>> shape_omega;    // [rad/s], due only to the change of shape
     Field<Vector<M, double>> shape_velocity;  // [m/s], likewise
     Field<Angular<M, double>> omega;          // [rad/s], including the head's motion, like the next
     Field<Vector<M, double>> velocity;        // [m/s]
-    Field<Vector2<double>> curvature_rate;    // Kdot [rad/m/s], pitch and yaw
+    Field<Vector2<double>> curvature_rate;    // Kdot [rad/m/s], pitch and yaw; with modes the imposed part alone until
+                                              // the accelerations are known
     Field<Wrench<M, double>> integrand;
     Accelerations<M> shape_acceleration, acceleration;  // without and with the head's acceleration
     // The balance: wrench needed for the motion minus loads, per length, about the head; without the jumps at kinks.
