@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Takes a controller's samples in the thread of the run loop: a turn of the executor costs twice as much as a sample.
+"""Takes a controller's samples in the run loop's thread: one turn of the executor costs twice as much as a sample.
 
 The loop waits for samples and requests together, in a wait set of its own, as `rclpy.wait_for_message` does.
 """
@@ -21,10 +21,10 @@ BATCH = 1000  # samples taken from one subscription at once
 
 
 class CurvatureInbox:
-    """The subscriptions of `node` to samples, and what wakes the run loop.
+    """The subscriptions of `node` to samples; they wake the run loop.
 
-    There is one without loss, and from `look` on a second one, if some publisher is best-effort. That one takes the
-    samples of reliable publishers a second time; they are passed on once.
+    One is reliable. If some publisher is best-effort, `look` adds a best-effort one, which also takes the
+    samples of reliable publishers; each sample is passed on once.
     """
 
     def __init__(self, node: ServedNode, report: Report) -> None:
@@ -37,7 +37,7 @@ class CurvatureInbox:
         self._subscribe(reliable=True)
 
     def look(self) -> None:
-        """Look the publishers up, and subscribe a second time where one is best-effort; call this now and then."""
+        """Look up the publishers, and subscribe a second time if one is best-effort. Call this now and then."""
         offers = self._node.get_publishers_info_by_topic(self._node.resolve_topic_name(TOPIC))
         unreliable = any(each.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT for each in offers)
         if unreliable and len(self._subscriptions) == 1:
@@ -54,7 +54,7 @@ class CurvatureInbox:
     def take(self, now: float) -> Iterator[dict[str, Any]]:
         """The samples that have come at simulation time `now` [s], as the arguments of `Simulation.add_samples`.
 
-        One that cannot be read, or does not fit, is logged and left out.
+        An unreadable or unsuitable sample is logged and left out.
         """
         for subscription in self._subscriptions:
             for _ in range(BATCH):
@@ -74,7 +74,7 @@ class CurvatureInbox:
                     yield samples
 
     def wait(self, seconds: float) -> bool:
-        """Sleep until samples have come or `set` was called, at most `seconds`; whether one of them was the reason."""
+        """Sleep until samples come or `set` is called, at most `seconds`. Returns False after a time-out."""
         subscriptions = self._subscriptions  # the node's thread may add one at any moment
         if self._waited_for is not subscriptions:
             self._waited_for, sizes = subscriptions, (len(subscriptions), 1, 0, 0, 0, 0)
@@ -94,6 +94,6 @@ class CurvatureInbox:
         self._guard.trigger()
 
     def wake_callers(self) -> None:
-        """Let the executor look whether the requests that callbacks await are done."""
+        """Let the executor check whether the awaited requests are done."""
         if self._node.executor is not None:
             self._node.executor.wake()

@@ -25,16 +25,16 @@ SCENE, FLOW, USE_SIM_TIME = "scene.", "flow.", "use_sim_time"
 
 
 class Declaration:
-    """Declares all parameters of `node`; `ValueError` names one that does not fit.
+    """Declares all parameters of `node`; `ValueError` names an unsuitable one.
 
-    Changes during the run are checked. Some act at once. The others, and all of the scene, act at the next reset:
+    Changes during the run are checked. Some act at once. The others, and the whole scene, act at the next reset:
     `begin` makes them the present ones.
 
     Attributes:
         values: the present DynamicsParameters.
         scene: the present Scene.
-        sensors: the present settings of sensors, one of each of `KINDS`.
-        next_values, next_scene, next_sensors: those of the next reset.
+        sensors: the present settings of sensors, one for each of `KINDS`.
+        next_values, next_scene, next_sensors: the same from the next reset on.
     """
 
     def __init__(self, node: ParameterNode) -> None:
@@ -68,7 +68,7 @@ class Declaration:
 
     @property
     def next(self) -> tuple[DynamicsParameters, Scene, Sensors]:
-        """Those of the next reset."""
+        """Values, scene and sensors from the next reset on."""
         return self.next_values, self.next_scene, self.next_sensors
 
     @property
@@ -82,7 +82,7 @@ class Declaration:
         return f"acts {AT_RESET}" if later else ""
 
     def begin(self, values: DynamicsParameters, scene: Scene, sensors: Sensors) -> None:
-        """Make them the present ones, but for what has been changed since and acts at once."""
+        """Make them the present ones, except for later changes that act at once."""
         at_once = {name: getattr(self.values, name) for name in self._fields if self._acts_at_once(name)}
         self.values, self.scene, self.sensors = replace(values, **at_once), scene, sensors
 
@@ -123,7 +123,7 @@ class Declaration:
         return SetParametersResult(successful=True)
 
     def _check_clock(self, values: DynamicsParameters, use_sim_time: Any) -> None:
-        """`ValueError` where the node is to make /clock and to take its time from there."""
+        """`ValueError` if the node is told both to publish /clock and to follow it."""
         if use_sim_time is True and values.makes_clock:
             raise ValueError(
                 "use_sim_time must be false in the node that makes /clock, got true; with follow_clock:=true the node "
@@ -137,7 +137,7 @@ class Declaration:
 
 
 def with_flow_as_text(overrides: dict[str, Any]) -> dict[str, Any]:
-    """The `overrides` with those of a scene's file, flow.kind ... or flow.NAME.kind ..., as the parameter `flow`."""
+    """The `overrides`, with a scene file's flow.kind ... or flow.NAME.kind ... put into the parameter `flow`."""
     fields: dict[str, dict[str, Any]] = {}
     for name in [name for name in overrides if name.startswith(FLOW)]:
         part, _, field = name.removeprefix(FLOW).rpartition(".")
@@ -151,5 +151,5 @@ def with_flow_as_text(overrides: dict[str, Any]) -> dict[str, Any]:
 
 
 def _checked(of_scene: Mapping[str, Field[Any]], given: Mapping[str, Any]) -> dict[str, Any]:
-    """Those of the `given` values by parameter that are fields `of_scene`, by the name of the field."""
+    """The `given` parameters that are fields `of_scene`, by the field's name."""
     return {item.name: checked(item, given[name], name) for name, item in of_scene.items() if name in given}

@@ -25,7 +25,7 @@ from eel_msgs.msg import CurvatureLaw
 DEPTH = 10  # laws
 DROPPED = 1_000_000_000  # ns: a publisher's law that arrives after a later one is at most this much older
 SHOWN = reprlib.Repr()
-SHOWN.maxstring = 60  # characters of a refused law's name
+SHOWN.maxstring = 60  # characters shown of a refused law's name
 
 
 class LawSubscription:
@@ -55,7 +55,7 @@ class LawSubscription:
     def _is_outdated(self, info: Mapping[str, Any], subscription: int) -> bool:
         """Whether the other subscription has received a later law of the same publisher."""
         sent, count = info.get("source_timestamp"), info.get("publication_sequence_number")
-        if not sent or count is None:  # the middleware does not tell
+        if not sent or count is None:  # the middleware does not say
             return False
         self._newest[subscription] = sent, count
         others = (newest for other, newest in self._newest.items() if other != subscription)

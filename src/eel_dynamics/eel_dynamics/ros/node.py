@@ -50,9 +50,9 @@ from eel_dynamics.sensors.suite import KINDS
 from eel_msgs.srv import SetState, Step
 
 NAME = "dynamics"
-ABOUT = "Simulates the swimmer that the laws on curvature_law bend, and publishes how it moves."
+ABOUT = "Simulates a swimmer bent by the laws on curvature_law, and publishes its motion."
 SERVICE_QOS = QoSProfile(depth=1000)  # with ROS's default, more than ten simultaneous calls are lost silently
-LOOK_PERIOD = 0.2  # s between two looks at the state and at the publishers of /clock
+LOOK_PERIOD = 0.2  # s between checks of the state and of the publishers of /clock
 SERVICE_TIMEOUT = 1.0  # s within which a service answers
 CANNOT_START = 2  # exit status
 MOST_STEPS = 1_000_000  # samples of one call
@@ -63,7 +63,7 @@ class DynamicsNode(ParameterNode):
     """Topics, services and parameters of one simulation.
 
     Attributes:
-        failure: what ended the run loop, as text; empty if nothing did.
+        failure: why the run loop failed, as text; else empty.
     """
 
     def __init__(self) -> None:
@@ -78,7 +78,7 @@ class DynamicsNode(ParameterNode):
         self._status = Status(self.run_loop, self._report, self.parameters)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self._static: Any = None  # publisher of /tf_static
-        self._still: list[Any] = []  # what is published there
+        self._still: list[Any] = []  # its transforms
         self._ended: float | None = None  # s, steady clock: when the end of the run was seen
         self._laws = LawSubscription(self, self.run_loop, self._report)
         subscribe_to_commands(self, self.run_loop)
@@ -86,7 +86,7 @@ class DynamicsNode(ParameterNode):
         pace, requests = self.run_loop.pace, self.run_loop.requests
         self._followed_clock = ClockSubscription(self, pace, requests) if isinstance(pace, FollowedClock) else None
         self._other_nodes = OtherNodes(self, self.resolve_topic_name("head_pose"), Identity.own(), self._report)
-        self._holding, self._offers_clock = "", False  # what the run loop knows of the neighbours
+        self._holding, self._offers_clock = "", False  # what the run loop knows of other nodes
         self.create_subscription(DiagnosticArray, "/diagnostics", self._receive_diagnostics, 10)
         calls, steps = MutuallyExclusiveCallbackGroup(), ReentrantCallbackGroup()  # the calls are answered in order
         self._serve(Trigger, "reset", self._reset, calls)
@@ -99,7 +99,7 @@ class DynamicsNode(ParameterNode):
         self._thread.start()
 
     def _tell_of(self, robot: Robot | None) -> None:
-        """Log what has to be known of the `robot`."""
+        """Log the `robot`'s notes."""
         if robot is not None:
             for note in robot.notes:
                 self.get_logger().info(f"robot {robot.name}: {note}")
@@ -116,7 +116,7 @@ class DynamicsNode(ParameterNode):
         self._inbox.wake_callers()
 
     def look(self) -> bool:
-        """Check all that changes slowly. Whether the node goes on."""
+        """Check everything that changes slowly. Returns whether the node goes on."""
         if not self._thread.is_alive():
             return self._end()
         self._inbox.look()
@@ -130,7 +130,7 @@ class DynamicsNode(ParameterNode):
         return True
 
     def _end(self) -> bool:
-        """Whether the node goes on after the end of the run: until subscribers have received everything."""
+        """Returns whether the node goes on after the end of the run: until subscribers have received everything."""
         now = time.monotonic()
         if self._ended is None:
             self._ended = now
@@ -145,7 +145,7 @@ class DynamicsNode(ParameterNode):
         if self._ended is None:
             self._publish_diagnostics(final=True)
             self._diagnostics.wait_for_all_acked(Duration(seconds=SIGNAL_TIMEOUT))
-        if self._thread.is_alive():  # in the middle of a step: it may not lose its publishers
+        if self._thread.is_alive():  # in a step: it still needs its publishers
             exit_immediately(0)
         if self.run_loop.given_up:
             self.failure = self.failure or "the simulation stopped before its end"
@@ -166,7 +166,7 @@ class DynamicsNode(ParameterNode):
         self._holding, self._offers_clock = holding, offers
 
     def _publish_root(self) -> None:
-        """Publish where the world lies in the frame that swimmers share, and sensors on a rigid part of the body; later
+        """Publish the world's pose in the frame that swimmers share, and sensors on a rigid part of the body; later
         subscribers get it too."""
         values, still = self.parameters.values, list(self._sample_publishers.sensors.static)
         if values.root_frame and values.publish_tf:
@@ -231,7 +231,7 @@ class DynamicsNode(ParameterNode):
 
 
 async def answered(response: Any, answer: Answer, state: str) -> Any:
-    """The `response` of a service with the run loop's `answer`; `state`: what it is afterwards, as text."""
+    """The `response` of a service with the run loop's `answer`; `state`: the state afterwards, as text."""
     answer.deadline = time.monotonic() + SERVICE_TIMEOUT
     await answer
     done = answer.done.is_set()

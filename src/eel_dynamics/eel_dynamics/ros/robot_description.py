@@ -16,14 +16,14 @@ TOPIC = "robot_description"
 
 
 class RobotDescription:
-    """Publishes the URDF of a simulation's swimmer where it changes; later subscribers get it too."""
+    """Publishes the URDF of a simulation's swimmer when it changes; later subscribers get it too."""
 
     def __init__(self, node: ServedNode) -> None:
         self._node, self._text = node, ""
         self._publisher: Any = None
 
     def publish(self, simulation: Simulation, parameters: DynamicsParameters) -> None:
-        """Publish that of another `simulation`; a swimmer that no URDF holds is logged."""
+        """Publish the URDF of another `simulation`; a swimmer that has none is logged."""
         if not parameters.publish_robot_description:
             return
         try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Many robots of one kind side by side, whose joints are commanded: as `SampledSwimmers`, of bodies that bend."""
+"""Many robots of one kind with commanded joints, side by side: like `SampledSwimmers`, but with dynamic bending."""
 
 import os
 from collections.abc import Sequence
@@ -24,11 +24,11 @@ NO_LAW = Law(name="commands")
 
 
 class CommandedRobots:
-    """N robots. Each swims as a `Simulation` with the same commands, to the last bit, for any number of threads.
+    """N robots. Each equals a `Simulation` with the same commands to the last bit, for any number of threads.
 
     Args:
-        count: N. names: of the joints that are commanded. kind: "position", "velocity" or "torque".
-        setup: of all, with a robot. threads: how many march.
+        count: N. names: of the commanded joints. kind: "position", "velocity" or "torque".
+        setup: shared by all, with a robot. threads: their number.
 
     Attributes:
         heads: (13, N) position [m], orientation x y z w, angular velocity [rad/s] and velocity [m/s] of each.
@@ -44,7 +44,7 @@ class CommandedRobots:
         self.heads: Array = np.zeros((13, count))
         self.joints: Array = np.zeros((2, len(setup.robot.joints), count))
         self._threads, self._process = threads, 0
-        self._pool: ThreadPoolExecutor | None = None  # of that process: a fork has none of its threads
+        self._pool: ThreadPoolExecutor | None = None  # belongs to one process: a fork has none of its threads
 
     def __getstate__(self) -> dict[str, Any]:
         return self.__dict__ | {"_pool": None, "_process": 0}
@@ -52,17 +52,17 @@ class CommandedRobots:
     def start(self, index: int, position, orientation, twist, commands: Array, flow: Flow | None = None) -> None:
         """Put a robot at the start, at time 0, with springs at rest and these `commands` (n,) in force.
 
-        position, orientation, twist, flow: as of `Simulation`.
+        position, orientation, twist, flow: as in `Simulation`.
         """
         self._swims[index] = March(self.setup.starting(position, orientation, twist, flow), NO_LAW)
         self._command(index, commands)
         self._look(index)
 
     def wake(self) -> None:
-        """As of `SampledSwimmers`: there is nothing to do."""
+        """As in `SampledSwimmers`; nothing to do here."""
 
     def advance(self, times: Array, commands: Array, status: NDArray[np.int64]) -> dict[int, SimulationStopped]:
-        """March each robot to its own of the `times` (N,) [s] under its `commands` (N, n).
+        """March each robot to its own time of `times` (N,) [s] under its `commands` (N, n).
 
         status (N,): robots with `LEFT_OUT` stay. Returns why robots stopped, by their index.
         """
@@ -83,7 +83,7 @@ class CommandedRobots:
         return dict(sorted(stopped.items()))
 
     def observe(self, index: int, *, wrench: bool = True, load: bool = True) -> Snapshot:
-        """The snapshot of a robot at present, as of `Simulation.observe`."""
+        """The present snapshot of a robot, as from `Simulation.observe`."""
         return self._swims[index].observe(wrench=wrench, load=load)
 
     def evaluations(self, index: int) -> tuple[int, int, int]:

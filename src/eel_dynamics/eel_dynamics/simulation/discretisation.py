@@ -32,7 +32,7 @@ class Discretisation(NamedTuple):
 
     grid: Grid
     sections: SectionData  # at the nodes
-    swimmer: eel_core.Swimmer  # all of it, for the compiled mechanics
+    swimmer: eel_core.Swimmer  # the whole, for the core
     mass: float  # kg, of the body
     weight_time: float  # s
     tabulation: Tabulation
@@ -63,8 +63,8 @@ def _on_panels(
 ) -> Discretisation:
     """Many resolutions give the same `panels`: nodes fill blocks of eight.
 
-    stations, further: the bytes of the arrays of their X [m]; the latter are points at which laws are tabulated too.
-    sensors [m]: X that rise.
+    stations, further: X [m], as bytes of arrays; laws are tabulated at `further` too.
+    sensors: rising X [m].
     """
     x, grid = np.frombuffer(stations), Grid.of(panels)
     sections = sections_on(body, scene, grid)

@@ -3,7 +3,7 @@
 
 Both get the same laws and samples. Their distance is the estimate of the error (accuracy/error_estimate.py). A motion
 that is already known to others cannot be refined, so a missed target can only be reported. With a controller in the
-loop, the estimate is the error for the same curvature. It does not contain what the controller would have done with a
+loop, the estimate is the error for the same curvature. It leaves out how the controller would have responded to a
 more accurate observation.
 """
 
@@ -32,13 +32,13 @@ from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 COMPARED_EVERY = 0.1  # s of simulated time between two comparisons
-ROUND_OFF = 1e-9  # part of it
+ROUND_OFF = 1e-9  # relative
 REMEMBERED = 300  # comparisons from which the growth rate is taken: those of the last 30 s
 FAILURES = SimulationStopped, ValueError, ArithmeticError, MemoryError
 
 
 def on_another_grid(begun: Callable[[Accuracy], March], settings: Accuracy, nodes: int | None) -> March:
-    """The march that is `begun(settings)`; with more points along the body where its grid would have so many `nodes`.
+    """The march `begun(settings)`; with more points along the body if its grid would have exactly `nodes`.
 
     nodes: of another march's grid. They fill blocks, so that a few more points may give the same grid.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A flow that is a function of the user. It runs in Python: one swimmer at a time."""
+"""A flow defined by a user's function. It runs in Python: one swimmer at a time."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -18,7 +18,7 @@ Field = Callable[[np.ndarray, float], Any]
 
 @dataclass(frozen=True, kw_only=True)
 class LostFunction:
-    """Stands for the function of a saved flow: no file holds code. `ValueError` where it is called."""
+    """Placeholder for the function of a saved flow: files hold no code. A call raises `ValueError`."""
 
     name: str
 
@@ -28,19 +28,19 @@ class LostFunction:
 
 @dataclass(frozen=True)
 class FlowField(Flow):
-    """A flow from functions of places (n, 3) [m], world, and of a time [s].
+    """A flow from functions of places (n, 3) [m], world, and time [s].
 
     Args:
         function: u (n, 3) [m/s].
-        jacobian: du_i/dx_j (n, 3, 3) [1/s]; None: by central differences, of one call with 6 n places.
-        rate: du/dt at fixed places (n, 3) [m/s^2]; None: by central differences, of two calls.
+        jacobian: du_i/dx_j (n, 3, 3) [1/s]; None: by central differences, in one call with 6 n places.
+        rate: du/dt at fixed places (n, 3) [m/s^2]; None: by central differences, in two calls.
         name: in messages and files. A file holds the name alone.
-        step: [m], of the differences by place; their error goes with its square.
-        time_step: [s], of the differences by time.
+        step: [m], of the differences in space; their error is proportional to its square.
+        time_step: [s], of the differences in time.
         period: [s], shortest of u at a fixed place; it bounds the steps in time. None: not known.
         wave: [m], shortest wavelength of u; it bounds the distance of the nodes. None: not known.
 
-    `ValueError`, with the place and the time, for what is not finite or has the wrong shape, and for a vertical
+    `ValueError`, with the place and the time, for a value that is not finite or has the wrong shape, and for a vertical
     velocity in a planar scene.
     """
 

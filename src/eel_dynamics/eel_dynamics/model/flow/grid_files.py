@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Velocities on a grid, from data sets of xarray and from netCDF files.
 
-Variables of different dimensions are spread over all of them, and a file of HDF5 may state any shape: so the points are
+Variables are broadcast over all dimensions, and an HDF5 file may declare any shape, so the points are
 counted before a value is read. HDF5 (netCDF-4) is read by h5py.
 """
 
@@ -23,15 +23,15 @@ SECONDS = {"s": 1.0, "sec": 1.0, "second": 1.0, "min": 60.0, "minute": 60.0, "h"
            "millisecond": 1e-3, "microsecond": 1e-6, "nanosecond": 1e-9}  # fmt: skip
 MOST_POINTS = 3_000_000  # of the grid in a file: 72 MB, twice while it is checked
 MISSING = "_FillValue", "missing_value"
-ATTRIBUTES = "units", "positive", "scale_factor", "add_offset", *MISSING  # that are read
+ATTRIBUTES = "units", "positive", "scale_factor", "add_offset", *MISSING  # the ones read
 WITHOUT_VALUES = b"This is a netCDF dimension but not a netCDF variable"
 SPEEDS = "", "m/s", "m s-1", "m.s-1", "m s^-1", "m s**-1", "meter second-1"
 
 
 def read_grid(source: Any, velocity: tuple[str, str, str | None]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Velocities (T, X, Y, Z, 3) [m/s], and the points [s, m] of those axes that there are.
+    """Velocities (T, X, Y, Z, 3) [m/s], and the points [s, m] of the axes present.
 
-    source, velocity: as in `GriddedFlow.of`. `ValueError` for what does not fit, and for more points than
+    source, velocity: as in `GriddedFlow.of`. `ValueError` for bad input, and for more points than
     `MOST_POINTS`, unless a data set of xarray has as many itself.
     """
     if isinstance(source, (str, os.PathLike)):
@@ -109,7 +109,7 @@ class _Variable:
         return self._text("units")
 
     def _text(self, name: str) -> str:
-        """An attribute as a text; empty where there is none. What is not UTF-8 is escaped."""
+        """An attribute as text; empty if absent. Bytes that are not UTF-8 are escaped."""
         value = self.attributes.get(name, "")
         return (value.decode(errors="backslashreplace") if isinstance(value, bytes) else str(value)).strip()
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A flow that was measured or computed at the points of a grid."""
+"""A flow measured or computed on a grid."""
 
 import math
 from dataclasses import dataclass
@@ -17,19 +17,19 @@ from eel_dynamics.model.equality import EqualByFields
 from eel_dynamics.model.flow.flow import Flow, FlowTraits
 from eel_dynamics.model.flow.grid_files import AXES, read_grid
 
-ALONE = (0.0,)  # the points of an axis along which all is the same
-RESOLVED = 8.0  # points of a grid in the shortest wave that its cubics follow well
+ALONE = (0.0,)  # the points of an axis along which the flow is constant
+RESOLVED = 8.0  # grid points per shortest wave that the cubics resolve
 
 
 @dataclass(frozen=True, eq=False)
 class GriddedFlow(EqualByFields, Flow):
-    """A flow between the points of a grid: cubics of Catmull and Rom, with one continuous derivative.
+    """A flow on a grid, interpolated by Catmull-Rom cubics, with a continuous first derivative.
 
     Args:
         velocity: (T, X, Y, Z, 3) [m/s] at the points, of the axes that are given; the others are left out.
         time, x, y, z: points [s, m] of each axis, rising. Along an axis that is not given, or has one point, all is the
             same.
-        period: [s], shortest that u has at a fixed place; it bounds the steps. None: 8 intervals.
+        period: [s], shortest period of u at a fixed place; it bounds the time steps. None: 8 intervals.
         wave: [m], shortest wavelength of u; it bounds the distance of the nodes. None: 8 cells.
 
     Nothing is extrapolated: a swimmer that leaves the grid stops, and the times must cover the run. `of` reads

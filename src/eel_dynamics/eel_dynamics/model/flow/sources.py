@@ -15,15 +15,15 @@ from eel_dynamics.model.flow.flow import Flow, FlowTraits
 
 GRAVITY = 9.80665  # m/s^2, standard
 TURN = 2.0 * math.pi
-FEW_ROWS = 4.0  # of a table of velocities: so many intervals are a period
-FASTEST_SWIRL = 0.6382  # greatest speed of Lamb and Oseen's vortex, by Gamma / (2 pi r_c)
+FEW_ROWS = 4.0  # intervals of a velocity table per period
+FASTEST_SWIRL = 0.6382  # greatest speed of a Lamb-Oseen vortex / (Gamma / (2 pi r_c))
 
 
 @dataclass(frozen=True)
 class Uniform(Flow):
-    """Water that moves alike everywhere: with a `velocity` (3,) [m/s], or with rows (n, 3) of it at `time` (n,) [s].
+    """A flow uniform in space: constant `velocity` (3,) [m/s], or rows (n, 3) at `time` (n,) [s].
 
-    Between rows the velocity is a cubic spline, which begins and ends without acceleration; it is held before and
+    Between rows the velocity is a cubic spline, with zero acceleration at both ends; it is constant before and
     after them. `ValueError` names what does not fit. The exact shift of frame of `Scene.current` costs less.
     """
 
@@ -63,15 +63,15 @@ class Uniform(Flow):
 @documented
 @dataclass(frozen=True, kw_only=True)
 class Gust(Flow, Quantities):
-    """A gust that is the same everywhere: it grows and falls by the smooth ramp f_r of eq. (64)."""
+    """A gust uniform in space. It rises and falls by the smooth ramp f_r of eq. (64)."""
 
     vectors = ("velocity",)
 
     velocity: tuple[float, float, float] = quantity((0.1, 0.0, 0.0), "m/s", "of the water at its height")
-    start: float = quantity(0.0, "s", "when it begins")
-    rise: float = quantity(1.0, "s", "how long it grows", 0.0, exclusive=True)
-    hold: float = quantity(1.0, "s", "how long it blows at its height", 0.0)
-    fall: float = quantity(1.0, "s", "how long it falls", 0.0, exclusive=True)
+    start: float = quantity(0.0, "s", "time at which it begins")
+    rise: float = quantity(1.0, "s", "duration of the rise", 0.0, exclusive=True)
+    hold: float = quantity(1.0, "s", "duration at full strength", 0.0)
+    fall: float = quantity(1.0, "s", "duration of the fall", 0.0, exclusive=True)
 
     def sources(self, planar: bool) -> "list[eel_core.Source]":
         start, risen, falls, end = self.traits.breakpoints
@@ -88,7 +88,7 @@ class Gust(Flow, Quantities):
 class Shear(Flow, Quantities):
     """A shear layer: u = velocity tanh(d / width), d the distance from its middle plane; or u = velocity d / width.
 
-    The theory is that of irrotational flow: see the limits in docs/howto/flow.md.
+    The theory assumes irrotational flow: see the limits in docs/howto/flow.md.
     """
 
     vectors = "velocity", "across"
@@ -115,7 +115,7 @@ class Shear(Flow, Quantities):
 
 
 class _Vortices(Flow):
-    """What vortices about vertical axes share: the fields `circulation`, `core`, `drift`."""
+    """Base of vortices about vertical axes, with fields `circulation`, `core`, `drift`."""
 
     vectors = ("drift",)
 
@@ -133,7 +133,7 @@ class _Vortices(Flow):
 @documented
 @dataclass(frozen=True, kw_only=True)
 class Vortex(_Vortices, Quantities):
-    """A vortex of Lamb and Oseen about a vertical axis: u = Gamma / (2 pi r^2) (1 - exp(-r^2 / r_c^2)) (-y, x, 0)."""
+    """A Lamb-Oseen vortex about a vertical axis: u = Gamma / (2 pi r^2) (1 - exp(-r^2 / r_c^2)) (-y, x, 0)."""
 
     circulation: float = quantity(0.1, "m^2/s", "Gamma; > 0 turns from x to y")
     core: float = quantity(0.2, "m", "radius r_c of the core", 0.0, exclusive=True)
@@ -148,11 +148,11 @@ class Vortex(_Vortices, Quantities):
 @documented
 @dataclass(frozen=True, kw_only=True)
 class VortexStreet(_Vortices, Quantities):
-    """Two rows of vortices, staggered as behind a cylinder (von Karman), each as a `Vortex`.
+    """Two rows of vortices, staggered as behind a cylinder (von Karman); each is like a `Vortex`.
 
     Vortex number i of each row lies i `spacing` downstream of `start`; the right row lies half a spacing further. With
-    circulation > 0 the left row turns from y to x, as the wake of a body that is dragged; with < 0, of one that swims.
-    The vortices drift as told; they do not move each other.
+    circulation > 0 the left row turns from y to x, like the wake of a towed body; with < 0, of a swimming one.
+    The vortices drift at `drift`; they do not move each other.
     """
 
     circulation: float = quantity(0.1, "m^2/s", "size of Gamma of each vortex")
@@ -160,7 +160,7 @@ class VortexStreet(_Vortices, Quantities):
     spacing: float = quantity(1.0, "m", "between neighbours of a row", 0.0, exclusive=True)
     width: float = quantity(0.28, "m", "between the rows", 0.0)
     count: int = quantity(17, "", "vortices of each row", 1, 10_000, whole=True)
-    start: tuple[float, float, float] = quantity((0.0, 0.0, 0.0), "m", "point between the rows, where the left begins")
+    start: tuple[float, float, float] = quantity((0.0, 0.0, 0.0), "m", "point between the rows; the left begins there")
     downstream: tuple[float, float] = quantity((1.0, 0.0), "", "horizontal direction along the rows")
     drift: tuple[float, float, float] = quantity((0.0, 0.0, 0.0), "m/s", "velocity of all vortices")
 
@@ -181,17 +181,17 @@ class VortexStreet(_Vortices, Quantities):
 @documented
 @dataclass(frozen=True, kw_only=True)
 class Wave(Flow, Quantities):
-    """A wave on deep water, after Airy; the water at depth d moves on circles of radius amplitude exp(-k d).
+    """An Airy wave on deep water. At depth d the water moves on circles of radius amplitude exp(-k d).
 
     u = amplitude w exp(k (z - surface)) (cos p along the direction, sin p upwards), p = k s - w t + phase, w^2 = g k,
-    s the way along the direction.
+    s the distance along the direction.
     """
 
     in_plane = False
 
     amplitude: float = quantity(0.1, "m", "of the surface", 0.0)
     wavelength: float = quantity(5.0, "m", "2 pi / k", 0.0, exclusive=True)
-    direction: tuple[float, float] = quantity((1.0, 0.0), "", "horizontal direction in which it runs")
+    direction: tuple[float, float] = quantity((1.0, 0.0), "", "horizontal direction of propagation")
     surface: float = quantity(1.0, "m", "height z of the surface at rest, above the swimmer")
     phase: float = quantity(0.0, "rad", "p at t = 0 and s = 0")
 

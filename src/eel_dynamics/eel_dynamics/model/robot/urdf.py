@@ -2,15 +2,15 @@
 """A robot from a URDF: a straight chain of links joined by revolute joints, with the base link at the nose or the tail.
 
 Links become the body's sections, joints its joints. In the zero configuration the joints must lie on a line; the
-body's E1 runs along it from the nose to the tail, E3 is the base link's z. Of modules that are stacked along that z, as
-they are often drawn, E3 is the first joint's axis. A link's half-axes are half of the height
-and width of its collision shapes (or its visual ones), a mesh's follow from its moments of inertia. They change
+body's E1 runs along it from the nose to the tail, E3 is the base link's z. If modules are stacked along that z, as
+they often are, E3 is the first joint's axis. A link's half-axes are half of the height
+and width of its collision shapes (or its visual ones); a mesh's follow from its moments of inertia. They change
 smoothly from the middle of one link to that of the next; both ends are blunt. The hull numbers are those of a body of
-links (`Body.of_links`), whose `joints` a URDF does not tell. The body is homogeneous: its density is such that the mass
+links (`Body.of_links`), whose `joints` is not in a URDF. The body is homogeneous: its density is such that the mass
 is that of all links.
 
 Motors have the `servo`'s gains, with the joint's own effort and velocity as limits, and the reduction of a
-transmission. Angles keep the URDF's sign. What is not kept is listed, in the robot's `notes`.
+transmission. Angles keep the URDF's sign. The robot's `notes` list everything that is not kept.
 """
 
 import math
@@ -30,12 +30,12 @@ from eel_dynamics.model.robot.joint import LONGEST_NAME, Joint
 from eel_dynamics.model.robot.urdf_chain import ChainJoint, Link, UrdfChain
 from eel_dynamics.model.robot.urdf_elements import UNLIMITED, fail, float_of, name_of, number_of
 
-STRAIGHT = 0.02  # of the length: how far a joint may lie off the line
-UPRIGHT = 0.8  # part of the chain's direction along the base link's z from which that is not up
-BENT = 0.4  # tangent of the angle by which a link at an end may lead away from the line
+STRAIGHT = 0.02  # of the length: greatest distance of a joint from the line
+UPRIGHT = 0.8  # z component of the chain's direction beyond which the base link's z is not up
+BENT = 0.4  # tangent of the greatest angle between an end link and the line
 RULE = "at angles of 0 the robot must be straight"
-ALIGNED = 0.02  # rad: how far an axis may point off E2 or E3
-SAME = 1e-9  # of the length: places that are nearer are the same
+ALIGNED = 0.02  # rad: greatest angle between an axis and E2 or E3
+SAME = 1e-9  # of the length: nearer places count as one
 MASS_OFF = 0.05  # of a link's mass: a greater difference is noted
 UNUSED = ("gazebo", "ros2_control", "safety_controller", "calibration")
 
@@ -50,7 +50,7 @@ def robot_in_urdf(path: str | os.PathLike[str], servo: Servo | None = None, join
 
 
 class UrdfReader:
-    """Makes the arguments of a `Robot` of the root element of a URDF."""
+    """Makes the arguments of a `Robot` from the root element of a URDF."""
 
     def __init__(self, root: Element, servo: Servo, joints: Any) -> None:
         if root.tag != "robot":
@@ -73,7 +73,7 @@ class UrdfReader:
         self._places = [float(along @ joint.origin - self._nose) for joint in self._joints]
 
     def _check_straight(self, link: Link, joint: ChainJoint) -> None:
-        """Refuse a link at an end that leads away from the line, as its mass and its shapes do."""
+        """Refuse an end link whose mass and shapes lie off the line."""
         middles = [self._axes.T @ link.extent(self._axes).mean(axis=0), *([link.centre] if link.mass > 0.0 else [])]
         places = np.abs((np.array(middles) - joint.origin) @ self._axes.T)
         off = np.hypot(places[:, 1], places[:, 2])
@@ -115,7 +115,7 @@ class UrdfReader:
         places = self._places
         end = float(self._links[-1].extent(self._axes)[1, 0] - self._nose)
         for i, place in enumerate(places[1:]):
-            if abs(place - places[i]) < SAME * end:  # a link between two joints at one place, as of a universal joint
+            if abs(place - places[i]) < SAME * end:  # a link between two joints at one place, as in a universal joint
                 places[i + 1] = places[i]
         bounds = np.array([0.0, *places, end])
         spans = np.diff(bounds)

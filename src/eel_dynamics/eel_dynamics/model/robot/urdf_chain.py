@@ -26,7 +26,7 @@ class ChainJoint(NamedTuple):
 
 @dataclass
 class Link:
-    """A link with what is fixed to it, in the axes of the base link's zero configuration."""
+    """A link and everything fixed to it, in the axes of the base link's zero configuration."""
 
     element: Element
     mass: float = 0.0
@@ -44,7 +44,7 @@ class Link:
         return self.moment / self.mass
 
     def extent(self, axes: np.ndarray) -> np.ndarray:
-        """Least and greatest places (2, 3) of its shapes along the axes [m]; of a mesh, of the equal cylinder."""
+        """Least and greatest coordinates (2, 3) [m] of its shapes along the axes; for a mesh, of the equal cylinder."""
         if self.corners:
             turned = np.array([axes @ corner for box in self.corners for corner in product(*box.T)])
             return np.array([turned.min(axis=0), turned.max(axis=0)])
@@ -81,9 +81,9 @@ class UrdfChain:
     """The chain below the root element of a URDF.
 
     Attributes:
-        elements: those of the links, by name.
-        links, joints: from the base on; what is fixed to a link is part of it.
-        notes: what is not read.
+        elements: of the links, by name.
+        links, joints: from the base on; parts fixed to a link belong to it.
+        notes: what the reader ignores.
     """
 
     def __init__(self, root: Element) -> None:

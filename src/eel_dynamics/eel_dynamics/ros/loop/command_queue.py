@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Passes commands of a robot's joints and of fins, and currents, to the simulation at their times.
 
-A command is in force from its stamp on, or at once where it has none or a past one; the last one holds. Of those that
-begin at one instant the newest of each joint or fin is kept: what cannot act any more takes no room, and no time. One
-that is older than what has acted is left out.
+A command acts from its stamp on, or at once if the stamp is empty or past, until the next one. If several
+begin at one instant, only the newest for each joint or fin is kept, to save memory and time. A command
+older than one that has acted is left out.
 """
 
 import math
@@ -25,10 +25,10 @@ from eel_dynamics.ros.command_messages import Values, fin_command_from_message, 
 from eel_dynamics.ros.loop.awaited import FINS, JOINTS, MESSAGES, Awaited
 from eel_dynamics.simulation.simulation import Simulation
 
-IN_A_ROW = 4  # commands, from which on they are a stream
-LONGEST_WAY = 5.0  # s that a command may lie ahead of the simulation
-MOST_WAITING = 10_000  # instants ahead: 2 kHz for so long
-STAND_IN = Law(name="joint_commands")  # of a swimmer that is straight but for its commands
+IN_A_ROW = 4  # commands that make a stream
+LONGEST_WAY = 5.0  # s: furthest that a command may lie ahead of the simulation
+MOST_WAITING = 10_000  # instants ahead: 2 kHz for LONGEST_WAY
+STAND_IN = Law(name="joint_commands")  # of a swimmer that is straight except for its commands
 INSTANT = itemgetter(0)
 UNITS = {"position": "rad", "velocity": "rad/s", "effort": "N m"}
 
@@ -36,7 +36,7 @@ UNITS = {"position": "rad", "velocity": "rad/s", "effort": "N m"}
 class CommandQueue:
     """Commands for parts of the `simulation`, which may be replaced at a reset. For the run loop's thread.
 
-    awaited: of the run. lockstep: whether it waits for stamps.
+    awaited: the run's. lockstep: whether the run waits for stamps.
 
     Attributes:
         topic: where they come from; parts: that are commanded; hold: whether the same value again says nothing new.
@@ -52,20 +52,20 @@ class CommandQueue:
         self.simulation: Simulation
         self.names: tuple[str, ...] = ()
         self._waiting: list[tuple[float, dict[str, tuple[float, Any]]]] = []  # instant; stamp and value by name
-        self._present: Values = {}  # what the parts do
-        self._stamps: dict[str, float] = {}  # s, of what has acted
+        self._present: Values = {}  # in force
+        self._stamps: dict[str, float] = {}  # s, of commands that have acted
         self._arrivals: deque[float] = deque(maxlen=IN_A_ROW)  # s, simulation time: when the last commands came
 
     def read(self, message: Any) -> tuple[float, Values]:
-        """Stamp [s] and values of a `message`. `ValueError` names what does not fit the present swimmer."""
+        """Stamp [s] and values of a `message`. `ValueError` if they do not suit the present swimmer."""
         raise NotImplementedError
 
     def give(self, values: Values) -> None:
-        """Have parts do so from now on. `ValueError` names what does not fit."""
+        """Command parts from now on. `ValueError` names an unsuitable value."""
         raise NotImplementedError
 
     def add(self, stamp: float, values: Values) -> None:
-        """Queue what parts are to do from `stamp` [s] on. `ValueError` for a command that lies too far ahead."""
+        """Queue commands of parts from `stamp` [s] on. `ValueError` for a command that lies too far ahead."""
         now = self.simulation.time
         ahead = stamp - now
         if self._awaited.is_echo(self.topic, ahead):
@@ -84,7 +84,7 @@ class CommandQueue:
             self._awaited.come(self.topic, stamp, now, values if self._lockstep else ())
 
     def _queue(self, stamp: float, instant: float, values: Values, is_stamped: bool) -> None:
-        """Have the `values` act at an `instant` [s], but for those of parts that a newer `stamp` [s] has acted on."""
+        """Let the `values` act at an `instant` [s], except on parts where a newer `stamp` [s] has acted."""
         newer = {name: (stamp, value) for name, value in values.items() if stamp >= self._stamps.get(name, -math.inf)}
         for old in values.keys() - newer:
             than = f"t = {stamp:.9g} s is older than that of t = {self._stamps[old]:.9g} s"
@@ -110,7 +110,7 @@ class CommandQueue:
         self._report.begin(f"{kind} {self.topic}", f"a {MESSAGES[self.topic]} {text}")
 
     def next_instant(self, before: float) -> float:
-        """The time [s] of the next command, or the time `before` [s] that none precedes."""
+        """The time [s] of the next command, or `before` [s] if no command comes earlier."""
         return min(before, max(self._waiting[0][0], self.simulation.time)) if self._waiting else before
 
     def act(self) -> bool:

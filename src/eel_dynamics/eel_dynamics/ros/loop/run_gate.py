@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Finds what keeps a run from its next sample: another node, a failure, missing inputs or subscribers, or a pause."""
+"""Finds what holds back a run's next sample: another node, a failure, missing inputs or subscribers, or a pause."""
 
 import time
 from collections.abc import Callable
@@ -12,14 +12,14 @@ from eel_dynamics.simulation.simulation import Simulation
 
 
 class RunGate:
-    """What lets the next sample of a `simulation` through, or says why not.
+    """Lets the next sample of a `simulation` through, or says why not.
 
     publishers: of its samples. wanted: subscribers to wait for before the first sample.
 
     Attributes:
         simulation: may be replaced at a reset.
         failed: the simulation has stopped and waits for a reset.
-        held: why another node has the topics; empty if none has.
+        held: says which other node has the topics; empty if none has.
     """
 
     def __init__(self, simulation: Simulation, publishers: Publishers, wanted: int) -> None:
@@ -31,9 +31,9 @@ class RunGate:
         self._steps_left = 0
 
     def held_by(self, simulation_time: float, late: list[str], missing: Callable[[], list[str]]) -> str:
-        """What holds the run, as text, at `simulation_time` [s]; empty if there is none.
+        """What holds the run, as text, at `simulation_time` [s]; empty if nothing does.
 
-        late: inputs that have to come before the next sample. missing(): those of them that are still waited for; it is
+        late: inputs that must come before the next sample. missing(): the inputs still awaited; it is
         called once all else is there.
         """
         if self.held:
@@ -68,7 +68,7 @@ class RunGate:
         self.end_steps(simulation_time, "paused again" if paused else "the run was continued")
 
     def begin_steps(self, samples: int, steps: Answer, simulation_time: float) -> None:
-        """Let so many `samples` of a paused run through; `steps` is answered with the last of them."""
+        """Let this number of `samples` of a paused run through; `steps` is answered with the last one."""
         if not self._paused or self.failed or self._steps is not None:
             left = f"{self._steps_left} samples of another step are left"
             reason = "the simulation has stopped" if self.failed else left if self._paused else "the run is not paused"

@@ -17,7 +17,7 @@ class RunTotals:
         self._greatest = {"torque": 0.0, "force": 0.0}  # N m, N, over all stations and times
 
     def add(self, snapshot: Snapshot) -> None:
-        """Add the figures of a snapshot that `check_finite` has passed."""
+        """Add the figures of a snapshot that `check_finite` has accepted."""
         values = self._values
         if snapshot.energy is not None and snapshot.actuator_work is not None:
             residual = float(snapshot.energy.residual)
@@ -30,7 +30,7 @@ class RunTotals:
             self._greatest[name] = max(self._greatest[name], size)
 
     def values(self) -> dict[str, float]:
-        """The figures that this run computes, by name; of the closure also relative to the greatest value."""
+        """This run's figures by name; the closure also relative to the greatest value."""
         relative = {
             f"closure_{name}_relative": self._values[f"closure_{name}"] / greatest
             for name, greatest in self._greatest.items()
@@ -40,7 +40,7 @@ class RunTotals:
 
 
 def check_finite(snapshot: Snapshot) -> None:
-    """`SimulationStopped` if a value of a snapshot, or its energy residual, is not finite, before anybody gets it."""
+    """`SimulationStopped` if a value of a snapshot or its energy residual is not finite. Call it before publishing."""
     if not np.isfinite(snapshot.whole).all():
         for name, array in snapshot.arrays().items():
             _check(snapshot, name, array)

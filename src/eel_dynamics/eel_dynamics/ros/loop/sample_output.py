@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Publishes the samples of a run, and checks each: its totals, the model's limits, and the estimate of its error.
 
-While a run stands at its start, sample 0 is repeated. It is not published once more if all subscribers have had it.
+While a run stands at its start, sample 0 is repeated. The run does not publish it again if all subscribers have had it.
 """
 
 import math
@@ -38,22 +38,22 @@ class SampleOutput:
         self.saturation = self._watch()
         self._whole_snapshot_due = True
         self._start_shown = -math.inf  # s, steady clock: last sample 0
-        self._start_audience: dict[str, int] | None = None  # who had it
+        self._start_audience: dict[str, int] | None = None  # its subscribers
 
     def _watch(self) -> SaturationMonitor | None:
         return None if self._simulation.robot is None else SaturationMonitor(self._simulation, self._report)
 
     def request_whole_snapshot(self) -> None:
-        """Let the next snapshot hold everything that the totals use, even without subscribers."""
+        """Let the next snapshot hold all inputs of the totals, even without subscribers."""
         self._whole_snapshot_due = True
 
     def publish(self, sample: int, last: bool) -> None:
-        """Publish `sample` of the simulation's present time; `last`: of the run. `SimulationStopped` for a bad one."""
+        """Publish `sample` of the present time; `last`: whether it ends the run. `SimulationStopped` for a bad one."""
         whole, self._whole_snapshot_due = self._whole_snapshot_due or last, False
         self._publish(sample, whole)
 
     def _publish(self, sample: int, whole: bool) -> None:
-        """With `whole`, check everything that the totals use."""
+        """With `whole`, check all inputs of the totals."""
         parts, limit = self._publishers.wanted_parts(), self._parameters.values.torque_limit
         snapshot = self._simulation.observe(
             wrench=whole or parts["wrench"] or limit > 0.0,
@@ -62,7 +62,7 @@ class SampleOutput:
         check_finite(snapshot)
         stamp = nanoseconds(sample, self._parameters.values.rate)
         self.clock.reach(stamp)
-        self._publishers.publish(snapshot, stamp)  # a controller waits for it, and nobody for the rest
+        self._publishers.publish(snapshot, stamp)  # first: a controller waits for it
         self.totals.add(snapshot)
         if self.saturation is not None:
             self.saturation.add(snapshot)
@@ -72,7 +72,7 @@ class SampleOutput:
             self.errors.check()
 
     def end(self) -> None:
-        """Report what is left to report at the end of the run."""
+        """Make the last reports of the run."""
         self._limits.report_torque()
 
     # -- sample 0
@@ -88,17 +88,17 @@ class SampleOutput:
 
     @property
     def start_is_known(self) -> bool:
-        """Whether all subscribers have had sample 0 as it is."""
+        """Whether all subscribers have had the present sample 0."""
         return self._start_audience is not None and self._start_audience == self._publishers.audience()
 
     def forget_start(self) -> None:
-        """Sample 0 may be another one than what was published."""
+        """Sample 0 may differ from the published one."""
         self._start_audience = None
 
     # -- another state
 
     def change_state(self) -> None:
-        """Begin to check the limits anew: the head is elsewhere."""
+        """Check the limits afresh: the head has been moved."""
         self.forget_start()
         self._limits.end()
         self._limits = LimitsMonitor(self._simulation, self._report)

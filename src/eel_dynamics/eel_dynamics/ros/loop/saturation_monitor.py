@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which servos are at their limit of torque, and how long: for /diagnostics and the log.
+"""Finds which servos are at their torque limit, and for how long: for /diagnostics and the log.
 
-A step of a set point brings a servo to its limit for a moment, and a gait again and again: the first is not told, the
-second once.
+A step of a set point saturates a servo for a moment, which is not reported. A gait saturates it again and again, which
+is reported once.
 """
 
 from typing import Any
@@ -14,7 +14,7 @@ from eel_dynamics.model.robot.actuators import at_limit
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
 
-TOLD_AFTER, OVER_AFTER = 0.25, 1.5  # s at the limit at a stretch, and below it
+TOLD_AFTER, OVER_AFTER = 0.25, 1.5  # s without interruption: at the limit, and below it
 
 
 class SaturationMonitor:
@@ -30,7 +30,7 @@ class SaturationMonitor:
         self._below = 0.0  # s, for how long no servo has been at its limit
 
     def add(self, snapshot: Snapshot) -> None:
-        """Look at the motors of an instant."""
+        """Check the motors at an instant."""
         joints, step, robot = snapshot.joints, snapshot.time - self._time, self._simulation.robot
         assert robot is not None
         here = at_limit(robot.servos, joints["motor_torque"], joints["motor_power"])
@@ -50,6 +50,6 @@ class SaturationMonitor:
         self._report.end("saturated")
 
     def values(self) -> dict[str, Any]:
-        """How long each motor has been at its limit since the start, of those that were."""
+        """For each motor that was at its limit: how long since the start."""
         found = [f"{self._names[k]} {self._total[k]:.4g} s" for k in np.flatnonzero(self._total > 0.0)]
         return {"at_torque_limit": ", ".join(found)} if found else {}

@@ -23,7 +23,7 @@ class ServoLimit:
         self._simulation, self._own, self.present = simulation, simulation.robot, 0.0
 
     def change(self, limit: float) -> None:
-        """Have each servo give `limit` [N m] at most, at rest, from now on; 0: its own limit."""
+        """Limit each servo's torque at rest to `limit` [N m] from now on; 0: to its own limit."""
         self.present = limit
         if self._own is None or not has_servos(self._own):
             return  # a robot with servos comes with the next reset

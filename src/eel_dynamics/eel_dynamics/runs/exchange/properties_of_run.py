@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a recording says of its run as a whole, so that many recordings can be asked like a table."""
+"""Properties of a whole run in its recording, so that many recordings can be queried like a table."""
 
 import json
 from dataclasses import asdict
@@ -14,7 +14,7 @@ from eel_dynamics.runs.run_data import RunData
 from eel_dynamics.runs.storage.plain import plain_of
 from eel_dynamics.simulation.energy import WORKS
 
-DEAR = ("greatest_torque",)  # a measure that swims again; beside it the greatest of the samples
+DEAR = ("greatest_torque",)  # a measure that simulates again; replaced by the greatest sample
 Properties = dict[str, dict[str, Any]]  # numbers, texts and truths, by group and name
 
 
@@ -54,7 +54,7 @@ def properties_of_run(run: RunData) -> Properties:
 
 
 def _law(law: Law | SampledLaw) -> dict[str, Any]:
-    """Name, longest period and wavelength of a law's waves, and all of it as JSON; of measured rows the name alone."""
+    """Name, longest period and wavelength of a law's waves, and the law as JSON; for measured rows only the name."""
     if not isinstance(law, Law):
         return {"name": law.name}
     found: dict[str, Any] = {"name": law.name, "json": json.dumps(plain_of(law))}
@@ -65,6 +65,6 @@ def _law(law: Law | SampledLaw) -> dict[str, Any]:
 
 
 def _flat(values: dict[str, Any]) -> dict[str, Any]:
-    """Numbers, texts, truths and rows of numbers as they are, other values as text; None is left out."""
+    """Numbers, texts, booleans and rows of numbers unchanged, other values as text; None is left out."""
     plain = (bool, int, float, str, tuple)
     return {name: each if isinstance(each, plain) else str(each) for name, each in values.items() if each is not None}

@@ -44,7 +44,7 @@ def fields_of_bag(
     scene: Scene | None,
     robot: Robot | str | None = None,
 ) -> dict[str, Any]:
-    """The fields of `Run.from_bag`, whose arguments these are. `ValueError` and `ImportError` as there."""
+    """The fields of `Run.from_bag`, with the same arguments, `ValueError` and `ImportError`."""
     if body is not None:
         checked_body(body)
     if scene is not None:
@@ -64,10 +64,10 @@ def fields_of_bag(
 def fields_of_messages(
     messages: Iterable[tuple[str, object]], body: Body | None, scene: Scene | None, robot: Robot | None = None
 ) -> dict[str, Any]:
-    """The fields of the `Run` that `messages` (topic and message) tell of.
+    """The fields of the `Run` in `messages` (pairs of topic and message).
 
-    body, scene, robot: what the messages do not tell; None for the body of the topic `body`, `Scene()` and no robot.
-    `ValueError` where topics are missing.
+    body, scene, robot: they are not in the messages; None: the body of the topic `body`, `Scene()`, no robot.
+    `ValueError` if topics are missing.
     """
     once, samples = _collected(messages)
     missing = [topic for topic in NEEDED if not samples[topic]]
@@ -97,7 +97,7 @@ def fields_of_messages(
     joints = 0 if robot is None else len(robot.joints)
     found |= quantities_of(rows, station=len(found["x"]), fin=fins, joint=joints)
     found |= {name: found[name] * message_signs(robot) + 0.0 for name in SIGNED if found[name] is not None}
-    # No message tells the angle of a motor behind a series spring, nor how tails bend.
+    # No message holds the angle of a motor behind a series spring, or the bending of tails.
     stiff = robot is not None and not any(servo and servo.has_spring for servo in robot.servos)
     found |= {"robot": robot, "motor_angle": found["joint_angle"] if stiff else None}
     found["head_acceleration"] = _acceleration(found["time"], found["twist"])
@@ -108,9 +108,9 @@ def fields_of_messages(
 
 
 def _collected(messages: Iterable[tuple[str, Any]]) -> tuple[dict[str, Any], dict[str, dict[int, Any]]]:
-    """Messages of topics that come once (the last, all laws), and by topic those of the samples by stamp [ns].
+    """Messages of topics that come once (the last one; of laws all), and for each topic the samples by stamp [ns].
 
-    Of several of one stamp, as a node sends them that waits at its start, the last counts.
+    The last of several messages with one stamp counts: a node that waits at its start repeats them.
     """
     once: dict[str, Any] = {"curvature_law": []}
     samples: dict[str, dict[int, Any]] = {topic: {} for topic in (*NEEDED, *FURTHER, *OF_JOINTS)}
@@ -130,7 +130,7 @@ def _collected(messages: Iterable[tuple[str, Any]]) -> tuple[dict[str, Any], dic
 
 
 def _in_order(topic: str, message: Any, robot: Robot) -> Any:
-    """A message of joints whose joints are the robot's, in their order. `ValueError` where one is missing."""
+    """A message of joints, sorted in the robot's order. `ValueError` if a joint is missing."""
     missing = [joint.name for joint in robot.joints if joint.name not in message.name]
     if missing:
         raise ValueError(f"{topic} must have the robot's joints, got none of {', '.join(missing)}")
@@ -147,7 +147,7 @@ def _acceleration(time: np.ndarray, twist: np.ndarray) -> np.ndarray:
 
 
 def _energy(rows: dict[str, list[Any]], time: np.ndarray) -> EnergyLedger | None:
-    """The ledger. An older bag has fewer powers, or no works: they are those since its first sample."""
+    """The ledger. An older bag has fewer powers, or no works: these are integrated from its first sample."""
     if "energy" not in rows:
         return None
     first = rows["energy"][0]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the sensors of a node read, from a bag: the same values that `Run.imu` and the like give of a run."""
+"""Readings of a node's sensors, from a bag: the same values as `Run.imu` and its like for a run."""
 
 import os
 from collections.abc import Callable
@@ -13,12 +13,12 @@ from eel_dynamics.sensors.velocity import VelocityReadings
 
 
 def readings_from_bag(path: str | os.PathLike[str], namespace: str | None = None) -> dict[str, Any]:
-    """What sensors read by the topics of a bag, with the time [s] of each reading: `imu` (`ImuReadings`), `velocity`
+    """Readings of sensors in a bag, with the time [s] of each: `imu` (`ImuReadings`), `velocity`
     (`VelocityReadings`), `pressure` [Pa] and `depth` [m] below z = 0 as pairs (time (N,), values (N,)).
 
-    What the bag has not is left out. namespace: the swimmer's; None: that of the only one. Of several readings of one
-    stamp, as a node sends them that waits at its start, the last counts. Readings after a reset follow those before.
-    `ValueError` where the bag holds no swimmer; `ImportError` without the package eel_viz.
+    Topics missing in the bag are left out. namespace: the swimmer's; None: that of the only one. The last of several
+    readings with one stamp counts: a node that waits at its start repeats them. Readings after a reset follow those
+    before. `ValueError` where the bag holds no swimmer; `ImportError` without the package eel_viz.
     """
     found: dict[str, list[tuple[float, Any]]] = {}
     for topic, message in function_of_eel_viz("messages")(path, namespace):
