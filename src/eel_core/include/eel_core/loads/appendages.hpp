@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drag of appendages and of a blunt tail's base: of each a point wrench on the section at its X. Ours, not the paper's.
+// Drag of appendages and of a blunt tail's base, each a point wrench on the section at its X. Ours, not the paper's.
 //
 //     w = W(X) + Omega x r,  r = (0, y, z)        section axes; W: velocity through the water
 //     law "axis":   F_i = - drag_i |w_i| w_i      bars across the flow: each component by itself
@@ -43,7 +43,7 @@ EEL_CORE_APART void find_appendage_loads(const Swimmer& swimmer, Workspace<M>& w
         AppendageMotion<M>& now = work.appendages[i];
         const Vector<M, double> arm = in_motion(own.arm, M());
         Vector<M, double> w;
-        if (own.node == Appendage::nose) {  // the head's axes are those of the section
+        if (own.node == Appendage::nose) {  // the section has the head's axes
             const Vector<M, double> lever = cross(work.twist.angular, arm);
             now.arm = now.position = arm;
             now.velocity = work.twist.linear + lever, w = work.nose_through_water() + lever;
@@ -59,7 +59,7 @@ EEL_CORE_APART void find_appendage_loads(const Swimmer& swimmer, Workspace<M>& w
     }
 }
 
-// What the change of shape does against them [W].
+// Power [W] of the change of shape against the appendages' drag.
 template <class M>
 EEL_CORE_APART double shape_power_of_appendages(const Swimmer& swimmer, const Workspace<M>& work)
 {
@@ -84,7 +84,7 @@ EEL_CORE_APART std::array<double, 2> appendage_powers(const Swimmer& swimmer, co
     return sum;
 }
 
-// The wrench about the head of those that lie ahead of the stations of a block, or at them.
+// The wrench about the head of the appendages ahead of the stations of a block, or at them.
 EEL_CORE_APART inline Wrench<Space, Lanes> appendages_ahead(const Swimmer& swimmer, const Workspace<Space>& work,
                                                             std::size_t block)
 {

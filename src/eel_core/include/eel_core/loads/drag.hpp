@@ -4,12 +4,12 @@
 //     n = -1/2 rho_f (k1 V1|V1| + k5 |V| V1, k2 V2|V2|, k3 V3|V3|)        c1 = -1/2 rho_f k4 Omega1|Omega1|
 //
 // k1 is a friction law: model/friction.hpp. k5 is the drag of a robot's links, each a blunt body in oblique flow; ours,
-// not the paper's. |V| V1 has no kink where a component of V changes its sign alone, so it goes with the laminar part
+// not the paper's. |V| V1 has no kink where one component of V changes its sign, so it is added to the laminar part
 // of the friction. Another law of cross flow (k2, k3) or of roll (k4) is a change of
 // `resistive_load` here, of its kinks (drag_kinks.hpp), and of `sections_of` in
-// eel_dynamics/model/section_data.py. Where a speed changes its sign within a panel, the load has a kink there; `drag_kinks`
-// integrates it exactly. The nose's drag stands in tail_and_nose.hpp, that of fins in fins.hpp; march/missed.hpp knows
-// which coefficient each part of the drag goes with.
+// eel_dynamics/model/section_data.py. Where a speed changes its sign within a panel, the load has a kink there;
+// `drag_kinks` integrates it exactly. The nose's drag stands in tail_and_nose.hpp, that of fins in fins.hpp;
+// march/missed.hpp knows the coefficient of each part of the drag.
 #pragma once
 
 #include "eel_core/model/workspace.hpp"
@@ -31,7 +31,7 @@ struct LoadSigns {
     T excess;   // part of the turbulent law in the friction
     T lateral, vertical, roll;
 
-    // That of the load which changes its sign with a speed.
+    // The sign of the load that changes with the sign of a speed.
     T& of(Speed speed)
     {
         if (speed == Speed::lateral) return lateral;
@@ -40,7 +40,7 @@ struct LoadSigns {
     }
 };
 
-// THE resistive load, in section axes: per length, or integrated over the length that the signs are weighed by.
+// THE resistive load, in section axes: per length, or integrated if the signs are multiplied by quadrature weights.
 EEL_CORE_INLINE inline Wrench<Space, Lanes> resistive_load(const DragSection<Lanes>& section, Lanes laminar,
                                                            Lanes excess, const LoadSigns<Lanes>& sign,
                                                            const Vector3<Lanes>& v, Lanes roll)
@@ -56,7 +56,7 @@ inline Wrench<Plane, Lanes> resistive_load(const DragSection<Lanes>& section, La
             {-((sign.laminar * laminar + sign.excess * excess) * v.x), -(sign.lateral * section.drag2 * v.y * v.y)}};
 }
 
-// Speeds of the sections from a node on that `set_speeds` has found.
+// Speeds of the sections from a node on, found by `set_speeds`.
 inline Vector3<Lanes> speeds_from(const Workspace<Space>& work, std::size_t node)
 {
     return {work.speed[axial].from(node), work.speed[lateral].from(node), work.speed[vertical].from(node)};
@@ -69,7 +69,7 @@ inline Vector2<Lanes> speeds_from(const Workspace<Plane>& work, std::size_t node
 inline Lanes roll_from(const Workspace<Space>& work, std::size_t node) { return work.speed[roll].from(node); }
 inline Lanes roll_from(const Workspace<Plane>&, std::size_t) { return 0.0; }
 
-// The signs that the speeds have at a node; `share`: that of turbulence.
+// The signs of the speeds at a node; `share`: of turbulence.
 template <class M>
 LoadSigns<Lanes> local_signs(Lanes share, const Vector<M, Lanes>& v, Lanes roll)
 {

@@ -6,7 +6,7 @@
 //
 //     integral of s G = s_0 integral of G + sum_j jump_j (integral of G from X_j to the end),
 //
-// and the integrals to X_j come from the polynomial through the panel's nodes, as all others do.
+// and the integrals to X_j come from the polynomial through the panel's nodes, as all other integrals do.
 #pragma once
 
 #include <utility>
@@ -47,8 +47,8 @@ inline std::array<double, 2> value_and_slope(const Grid& grid, const Row& values
 // Fraction of the panel at which the values are zero, between node i and the one before it, which has the value
 // `before`.
 //
-// That of the quadratic through these two and a third node of the panel: an error e moves the load of V|V| by e^3. If
-// it has to be `exact`, that of the polynomial through all nodes, by Newton's method within a bracket.
+// From the quadratic through these two and a third node of the panel: an error e moves the load of V|V| by e^3. If
+// `exact`, from the polynomial through all nodes, by Newton's method within a bracket.
 inline double zero_between(const Grid& grid, const Row& values, std::size_t i, double before, bool exact)
 {
     const std::size_t first = grid.first[i], count = grid.count[i];
@@ -60,7 +60,7 @@ inline double zero_between(const Grid& grid, const Row& values, std::size_t i, d
     const double f = before, g = v[i], slope = (g - f) * by_step[i];
     const double bend = i + 1 < first + count ? ((v[i + 1] - g) * by_step[i + 1] - slope) * by_two[i]
                                               : (slope - (f - v[i - 2]) * by_step[i - 1]) * by_two[i - 1];
-    // f + b s + bend s^2 with s from the start on, in the form that does not cancel, where it goes as f and g do
+    // f + b s + bend s^2 with s from the start on, in the form without cancellation, where it is linear like f and g
     const double b = slope - bend * (end - start), steep = std::sqrt(std::max(b * b - 4.0 * bend * f, 0.0));
     double t = start - 2.0 * f / (b + (g > f ? steep : -steep));
     if (!(start < t && t < end)) t = std::min(std::max(start - f / slope, start), end);
@@ -77,7 +77,7 @@ inline double zero_between(const Grid& grid, const Row& values, std::size_t i, d
         else
             break;
         double step = -value / rise;
-        if (std::abs(step) < 1e-6) return std::min(std::max(t + step, start), end);  // the rest goes with its square
+        if (std::abs(step) < 1e-6) return std::min(std::max(t + step, start), end);  // error left: step^2
         if (t + step <= start && !start_is_node)
             step = start - t, start_is_node = true;
         else if (!(start < t + step && t + step < end) || std::abs(step) > 0.5 * std::abs(step_before_last))
@@ -102,7 +102,7 @@ inline void set_weights_ahead(const Grid& grid, std::size_t first, std::size_t c
     }
 }
 
-// Adds to these weights what they miss of the drag, where it is not smooth between the nodes. `missed`: of a `Swimmer`.
+// Corrects these weights for drag that is not smooth between the nodes. `missed`: of a `Swimmer`.
 inline void add_missed_weights(const std::vector<Row>& missed, std::size_t first, std::size_t count, double t,
                                std::vector<double>& weights)
 {
@@ -116,7 +116,7 @@ inline void add_missed_weights(const std::vector<Row>& missed, std::size_t first
     }
 }
 
-// Notes the kink where `speed` changes its sign before node i, and has the load's weights integrate it. A change below
+// Notes the kink where `speed` changes its sign before node i, and adapts the load's weights to it. A change below
 // `noise` is round-off.
 template <class M>
 void add_kink(const Swimmer& swimmer, Speed speed, std::size_t i, double at_nose, double noise, Workspace<M>& work)
@@ -145,7 +145,7 @@ void add_kink(const Swimmer& swimmer, Speed speed, std::size_t i, double at_nose
     }
 }
 
-// Signs of a block of values by their bits, where some values are round-off: these have the sign of the value before.
+// Signs of a block of values by their bits. Values that are round-off take the sign of the value before.
 struct CarriedSign {
     bool negative, known;  // of the last value so far
 
@@ -153,7 +153,7 @@ struct CarriedSign {
     {
         if (!known) {
             if (known_bits == 0) return negative = false, 0;
-            negative = (negative_bits & known_bits & (~known_bits + 1)) != 0;  // that of the first that is known
+            negative = (negative_bits & known_bits & (~known_bits + 1)) != 0;  // the first known sign
             known = true;
         }
         unsigned result = 0;
@@ -215,13 +215,13 @@ inline Lanes jump_behind(const Kink& kink, Lanes place)
     return select(place >= Lanes(static_cast<double>(kink.first) + kink.fraction), kink.jump, 0.0);
 }
 
-// What `add_jumps` works with: the resistance (minus the drag) whose sign is that of a speed, as if that were positive,
+// Input of `add_jumps`: the resistance (minus the drag) whose sign follows a speed, as if that speed were positive,
 // per length and about the head, at the nodes; and its integral from the nose to the stations.
 struct UnsignedResistance {
     Field<Wrench<Space, double>> density, integral;
 };
 
-// Adds what the jumps at the kinks give of the `integral` of the balance's density from the nose to the stations.
+// Adds the jumps at the kinks to the `integral` of the balance's density from the nose to the stations.
 inline void add_jumps(const Swimmer& swimmer, const Workspace<Space>& work, UnsignedResistance& own,
                       Field<Wrench<Space, double>>& integral)
 {

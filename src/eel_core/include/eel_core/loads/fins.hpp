@@ -13,7 +13,7 @@
 
 namespace eel_core {
 
-// sin of the incidence, rad: from where the stream begins to leave the plate, and where it has left it.
+// sin of the incidence, rad: at which the flow begins to separate from the plate, and has fully separated.
 inline constexpr double stall_begins = 0.29552020666133957, stall_ends = 0.56464247339503537;
 
 // f_r of eq. (64) in the sine of the incidence.
@@ -62,7 +62,7 @@ EEL_CORE_APART inline void place_fins(const Swimmer& swimmer, const LawOnGrid& l
     if (work.flowing) work.fin_flow.set(water, time, nose, work.head, work.fin_places, swimmer.fins.size());
 }
 
-// Adds what the added masses m_a y y^T, y = (r x e_n; e_n), are of the inertia; returns their momentum of the change of
+// Adds the added masses m_a y y^T, y = (r x e_n; e_n), to the inertia; returns their momentum of the change of
 // shape.
 EEL_CORE_APART inline Momentum<Space, double> add_fin_inertia(const Swimmer& swimmer, Workspace<Space>& work)
 {
@@ -158,7 +158,7 @@ EEL_CORE_APART inline Wrench<Space, double> wrench_of_fins(const Swimmer& swimme
 }
 
 // The wrench of the fins that lie ahead of the points of a block, or at them, about the head, or their momentum;
-// `behind`: what a fin knows of the points.
+// `behind`: for each fin, whether the points lie behind it.
 inline Wrench<Space, Lanes> fins_ahead(const Swimmer& swimmer, const Workspace<Space>& work, std::size_t block,
                                        std::size_t Fin::* behind,
                                        Vector3<double> FinMotion::* vector = &FinMotion::whole)
@@ -168,7 +168,7 @@ inline Wrench<Space, Lanes> fins_ahead(const Swimmer& swimmer, const Workspace<S
         [&](std::size_t i) { return at_fin(work.fins[i], work.fins[i].*vector); });
 }
 
-// Adds what the acceleration of the head is of the forces, where these are those without.
+// Adds the forces due to the head's acceleration to the forces without it.
 inline void accelerate_fins(const Swimmer& swimmer, const Twist<Space, double>& head, Workspace<Space>& work)
 {
     for (std::size_t i = 0; i < swimmer.fins.size(); ++i) {

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Water that moves by itself: what a flow u(x, t) adds to momentum, loads, balance and energy. Ours, not the paper's.
+// Moving water: what a flow u(x, t) adds to momentum, loads, balance and energy. Ours, not the paper's.
 //
 //     W = V - U,  p = M_f W,  T_f = 1/2 (J_f1 Omega1^2 + W . p)      U: u in section axes
 //
-// Drag, wake and nose see W for V, and the roll drag Omega1 - 1/2 t1 . curl u. Two forces per length are new: - g^T p,
-// and rho_f A a_u of the undisturbed pressure (Froude and Krylov); a_u = u_t + g u is the acceleration of the water.
-// The theory is that of irrotational u which varies little across a section. Without `flow_gradient` g is left out of
-// these two forces along the body.
+// Drag, wake and nose use W instead of V; the roll drag uses Omega1 - 1/2 t1 . curl u. Two forces per length are new: -
+// g^T p, and rho_f A a_u of the undisturbed pressure (Froude and Krylov); a_u = u_t + g u is the acceleration of the
+// water. The theory assumes an irrotational u that varies little across a section. Without `flow_gradient` g is left
+// out of these two forces along the body.
 #pragma once
 
 #include "eel_core/loads/drag.hpp"
 
 namespace eel_core {
 
-// Not inlined: still water runs the code that it would run without this file, to the last bit.
+// Not inlined: in still water the compiled code is the same as without this file, to the last bit.
 #define EEL_CORE_APART [[gnu::noinline]]
 
 // The flow along the body, in the shape and place that `work` and state y hold at `time` [s].
@@ -25,8 +25,8 @@ EEL_CORE_APART void set_flow(const Swimmer& swimmer, const Water& water, double 
     if (work.flowing) work.flow.set(water, time, nose, work.head, work.position, swimmer.grid.nodes);
 }
 
-// integral (r x q, q), q = M_f U: what the momentum of body and water lacks, as it is that of the motion through the
-// water.
+// integral (r x q, q), q = M_f U: missing in the momentum of body and water, which is computed from the motion through
+// the water.
 template <class M>
 EEL_CORE_APART Momentum<M, double> momentum_of_flow(const Swimmer& swimmer, const Workspace<M>& work)
 {
@@ -40,7 +40,7 @@ EEL_CORE_APART Momentum<M, double> momentum_of_flow(const Swimmer& swimmer, cons
     return total_of(sum);
 }
 
-// rho_f A g u - g^T p of a block: what the gradient of the flow gives of the force per length, about the head.
+// rho_f A g u - g^T p of a block: the part of the force per length due to the flow's gradient, about the head.
 template <class M>
 Wrench<M, Lanes> load_of_gradient(const Section<Lanes>& section, Lanes displaced, const Workspace<M>& work,
                                   std::size_t k)

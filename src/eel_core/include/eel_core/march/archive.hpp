@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What goes on, as bytes, for copies and checkpoints: a class hands its members to a `Writer` or to a `Reader`, in one
-// order, by `template <class Archive> void pass(Archive& archive)`.
+// The state of a march as bytes, for copies and checkpoints: a class hands its members to a `Writer` or to a `Reader`,
+// in one order, by `template <class Archive> void pass(Archive& archive)`.
 //
-// A sum of all bytes stands behind them, by Fowler, Noll and Vo's function FNV-1a. Bytes are of one kind of processor.
+// The FNV-1a checksum of all bytes follows them. Bytes suit one kind of processor.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ class Writer {
     {
         (put(parts), ...);
     }
-    // What must be the same where it is read.
+    // A value that must equal the reader's.
     void same(std::uint64_t number) { put(number); }
 
     std::string finished()
@@ -68,7 +68,7 @@ class Writer {
     std::string bytes_;
 };
 
-// Throws where the bytes are not those that a `Writer` has finished, for the same body by the same method.
+// Throws if the bytes were not written by a `Writer` for the same body and method.
 class Reader {
   public:
     static constexpr bool reads = true;

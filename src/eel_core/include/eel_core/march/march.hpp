@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A swimmer on its way: its state, what drives it, the steps it takes, and what is seen of it.
+// A marching swimmer: its state, its law and commands, its steps and its observations.
 #pragma once
 
 #include <memory>
@@ -13,11 +13,11 @@ namespace eel_core {
 
 using HeadMotion = std::array<double, 13>;  // see `March::head`
 
-// A copy goes on by itself: state, steps and work space are its own; swimmer, modes and law, which never change, are
+// A copy is independent: it has its own state, steps and work space; swimmer, modes and law, which never change, are
 // shared.
 class March {
   public:
-    // `modes`: of a body that bends by itself, whose steps have a method of their own; none: its shape is imposed.
+    // `modes`: of a body with dynamic bending, whose steps have their own method; none: the shape is imposed.
     March(std::shared_ptr<const Swimmer> swimmer, const Method& method, bool planar,
           std::shared_ptr<const Modes> modes = {})
         : swimmer_(std::move(swimmer)),
@@ -35,11 +35,11 @@ class March {
     CoordinateRow row() const { return modes_ ? CoordinateRow(*modes_) : CoordinateRow(); }
     Counts counts() const { return steps_.counts(); }
 
-    // Sets the nodes that are evaluated before a march comes back unfinished; returns what they were.
+    // Sets the number of nodes evaluated before a march returns unfinished; returns the old number.
     std::int64_t set_slice(std::int64_t nodes) { return std::exchange(slice_, nodes); }
 
-    // Goes on in another grid or by another method, with the same momentum of the head, and the same coordinates at the
-    // same rates. What drives the body must follow.
+    // Continues on another grid or by another method, with the same momentum of the head, and the same coordinates at
+    // the same rates. Call `follow` next.
     void change(std::shared_ptr<const Swimmer> swimmer, const Method& method, bool planar,
                 std::shared_ptr<const Modes> modes)
     {
@@ -51,7 +51,7 @@ class March {
 
     const MarchSettings& settings() const { return settings_; }
 
-    // Hands over all that goes on but what drives the body, which must follow first (`march/archive.hpp`).
+    // Archives the state and the commands. Before reading, call `follow` (`march/archive.hpp`).
     template <class Archive>
     void pass(Archive& archive)
     {
@@ -61,7 +61,7 @@ class March {
         steps_.pass(archive);
     }
 
-    // What drives the body from now on; commands hold. The next step begins anew, unless the motion goes on as before
+    // Sets law and actuators from now on; commands hold. The next step begins anew, unless the motion goes on as before
     // (`smoothly`).
     void follow(BentSettings settings, bool smoothly)
     {
@@ -71,7 +71,7 @@ class March {
         if (!smoothly) steps_.begin(settings_, now_);
     }
 
-    // Has a servo of a robot do so from now on, whatever the law; the next step begins anew.
+    // Commands a servo of a robot from now on, whatever the law; the next step begins anew.
     // A velocity moves the reference from where it is, or from the joint's angle where there is none.
     void command(std::size_t servo, Command command)
     {
@@ -89,7 +89,7 @@ class March {
         commands[servo] = command;
     }
 
-    // Stands at the start, at time 0, with these coordinates and rates, the momenta of the head's twist relative to the
+    // Resets to time 0, with these coordinates and rates, the momenta of the head's twist relative to the
     // water, and the fins' first angles. Returns all energy [J].
     double start(const Vector3<double>& position, const Quaternion<double>& orientation,
                  const Twist<Space, double>& twist, std::vector<double> x = {}, std::vector<double> rate = {})

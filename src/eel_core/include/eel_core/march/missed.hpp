@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the integral of the balance up to the stations misses of sections that are smooth only between a body's data.
+// Correction of the balance's integral up to the stations, for sections that are smooth only between a body's data.
 //
-// The wrench of a section is a sum of its numbers (`SectionPart`), each times the wrench that one of it gives in the
+// The wrench of a section is a sum of its numbers (`SectionPart`), each times its wrench per unit in the
 // motion. These unit wrenches are as smooth as the motion. So their values at the nodes, with the rows of
-// `Swimmer::missed`, give what is missed of each number's part.
+// `Swimmer::missed`, give the correction of each number's part.
 #pragma once
 
 #include "eel_core/internal_wrench.hpp"
@@ -83,7 +83,7 @@ class MissedWrench {
             store(Part::drag3, {0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0}, 0.0);
             store(Part::drag_roll, {0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0}, 0.0);
             if (swimmer.segmented) store(Part::segment, {}, sqrt(dot(v, v)));
-            if (swimmer.friction == Friction::taylor) {  // a root of a sum of squares: its derivatives by both parts
+            if (swimmer.friction == Friction::taylor) {  // a root of a sum of squares: derivatives with respect to both
                 const DragSection<Lanes> own = swimmer.sections.drag(k);
                 const Lanes all = axial_friction(own, swimmer.friction, v).laminar + 1e-300;
                 store(Part::laminar, {}, own.laminar * abs(v.x) / all);

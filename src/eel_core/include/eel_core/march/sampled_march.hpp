@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many swimmers of one kind, marched in one call over threads, each under a controller's samples of its own.
+// Many swimmers of one kind, marched in one call over threads, each with its own controller's samples.
 //
 // A control step takes one sample: the curvature at its end. Between two samples the curvature is the quintic that
-// meets value, rate and acceleration at both. At the start a swimmer is straight and at rest: what its first sample
-// differs by dies out in a blend. Swimmers share nothing that changes, so the number of threads changes no result.
+// meets value, rate and acceleration at both. At the start a swimmer is straight and at rest: its difference from
+// the first sample dies out in a blend. Swimmers share no mutable state, so the number of threads changes no result.
 #pragma once
 
 #include <unistd.h>
@@ -23,7 +23,7 @@ struct SampleWeights {
 };
 
 // result (rows_of_axis, columns) of the values (rows_of_axis, points), by the weights (points, columns), summed from
-// the first point to the last. The rows' sums do not wait for each other.
+// the first point to the last. The sums of the rows are independent.
 inline void tabulate(const double* weights, std::size_t points, std::size_t columns, const double* values,
                      double* result)
 {
@@ -44,7 +44,7 @@ inline void tabulate(const double* weights, std::size_t points, std::size_t colu
         put_sums(k, 0.0, [](const double* from) { return *from; }, [](double sum, double* to) { *to = sum; });
 }
 
-// What does not differ from swimmer to swimmer.
+// Data common to all swimmers.
 struct SampledKind {
     std::shared_ptr<const Swimmer> swimmer;
     Method method;
@@ -96,7 +96,7 @@ class SampledMarch {
         return march_.start(position, orientation, twist);
     }
 
-    // Marches to `time` [s], at which the sample has these `values`; or goes on where it came back unfinished.
+    // Marches to `time` [s], at which the sample has these `values`; or continues an unfinished march.
     Status advance(double time, const double* values)
     {
         if (!unfinished_) take_sample(time, values);
@@ -125,7 +125,7 @@ class SampledMarch {
         if (begins) {
             set_ends(law_.segment.of_start);
             begin_blend(start);
-        } else {  // what was the end is the start
+        } else {  // the old end is the new start
             std::swap(law_.segment.of_start, law_.segment.of_end);
             for (auto& rows : tables_->rows_of)
                 std::rotate(rows.begin(), rows.begin() + rows_of_axis, rows.begin() + axes_rows);
@@ -162,7 +162,7 @@ class SampledMarch {
                 tables_->set(axes_rows * axis + first + row, rows_of(axis) + row * columns());
     }
 
-    // Has the difference between the straight body and the first sample, whose rows are in `rows_`, die out.
+    // Blends from the straight body to the first sample, whose rows are in `rows_`.
     // Other blends are made in Python: `LawFollower` in eel_dynamics/curvature/law_follower.py.
     void begin_blend(double start)
     {
@@ -183,7 +183,7 @@ class SampledMarch {
             end_blend();
     }
 
-    // Lets the rows of the blend cost nothing.
+    // Removes the rows of the blend, so that they cost nothing.
     void end_blend()
     {
         law_.blend = {};
@@ -207,7 +207,7 @@ class SampledMarch {
     bool under_way_ = false, unfinished_ = false;
 };
 
-// In a fork the threads are not there: to end them would wait for ever.
+// A forked process has no threads: joining them would never return.
 struct EndThreads {
     pid_t process = getpid();
     void operator()(Threads* threads) const
@@ -229,13 +229,13 @@ class SampledMarches {
     std::size_t points() const { return points_; }
     SampledMarch& operator[](std::size_t index) { return marches_.at(index); }
 
-    // Hands over all that goes on.
+    // Archives the whole state.
     void pass(Writer& writer)
     {
         writer.same(size());
         for (SampledMarch& march : marches_) march.pass(writer);
     }
-    // Takes it over; `flows`: of each, as of its start. Nothing changes where it does not fit.
+    // Restores it; `flows`: of each swimmer, as at its start. Nothing changes if it does not fit.
     void pass(Reader& reader, const std::vector<std::shared_ptr<Flow>>& flows)
     {
         reader.same(size());
@@ -248,7 +248,7 @@ class SampledMarches {
     // Wakes the threads, as `advance` will be called soon.
     void wake() { threads_->wake(); }
 
-    // Marches each swimmer to its own of the `times` (N,) [s], where the sample has its `values` (N, 6, points).
+    // Marches each swimmer to its own time in `times` (N,) [s], where its sample has the `values` (N, 6, points).
     // `status` (N,): those below 0 are left out; afterwards how each came back. `heads` (13, N): position [m],
     // orientation, twist over ground [rad/s, m/s] of each that marched.
     void advance(const double* times, const double* values, std::int64_t* status, double* heads)

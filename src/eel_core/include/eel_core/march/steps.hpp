@@ -13,16 +13,16 @@ namespace eel_core {
 
 class Steps {
   public:
-    // modes: none where the shape is imposed. With them the steps have a method of their own.
+    // modes: none for an imposed shape. With modes the steps have their own method.
     Steps(const Swimmer& swimmer, const Method& method, bool planar, const Modes* modes)
         : swimmer_(&swimmer), stepper_(made(swimmer, method, planar, modes))
     {
     }
 
-    // Goes on as `last` would, which takes steps of another swimmer or by another method.
+    // Continues the march of `last`, which has another swimmer or another method.
     void take_over(Steps& last) { pace() = last.pace(); }
 
-    // Hands over what the next steps and the present follow from (`march/archive.hpp`).
+    // Archives the state that the next steps and the present depend on (`march/archive.hpp`).
     template <class Archive>
     void pass(Archive& archive)
     {
@@ -54,14 +54,14 @@ class Steps {
             stepper_);
     }
 
-    // Work space for what is observed: the stepper's own, unless that is for the plane.
+    // Work space for observations: the stepper's own, unless that is for the plane.
     Workspace<Space>& work()
     {
         if (auto* const imposed = std::get_if<Stepper<Space>>(&stepper_)) return imposed->work();
         if (auto* const bent = std::get_if<BentStepper<Space>>(&stepper_)) return bent->work();
         return observing_ ? *observing_ : observing_.emplace(*swimmer_);
     }
-    // What `find` gives of the stepper of a body with modes; without them: nothing.
+    // The result of `find` for the stepper of a body with modes; nothing without modes.
     template <class Result>
     Result of_modes(const auto& find)
     {
@@ -73,17 +73,17 @@ class Steps {
             stepper_);
     }
 
-    // Forgets what was before the first of all steps, which begins at present.
+    // Clears the history: the first step begins at present.
     void forget(const StepBounds& bounds, const Present& now) { pace().forget(now.state, bounds); }
     // Lets the next step begin at present.
     void begin(const BentSettings& settings, const Present& now)
     {
-        due_ = true;  // also where this fails
+        due_ = true;  // also if this fails
         std::visit([&](auto& stepper) { stepper.begin(settings, now); }, stepper_);
         due_ = false;
     }
 
-    // Has the last step of a body with modes end at present, where something is about to change.
+    // Ends the last step of a body with modes at present, before something changes.
     void end(BentSettings& settings, Present& now)
     {
         if (std::exchange(due_, true)) return;
@@ -98,7 +98,7 @@ class Steps {
     Status march(const BentSettings& settings, double time, Slice& slice, Present& now)
     {
         if (due_) begin(settings, now);
-        due_ = true;  // also where a flow or a torque throws that is a function
+        due_ = true;  // also if a user's flow or torque function throws
         return std::visit(
             [&](auto& stepper) {
                 const Status status = stepper.march(settings, time, slice);

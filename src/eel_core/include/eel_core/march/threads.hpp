@@ -22,7 +22,7 @@ class Threads {
     {
         try {
             for (std::size_t k = 1; k < count; ++k) helpers_.emplace_back([this, k] { help(k); });
-        } catch (...) {  // the system has no more: let those go that are there
+        } catch (...) {  // the system has no more: end those that were started
             call(State::ended);
             throw;
         }
@@ -31,7 +31,7 @@ class Threads {
     Threads(const Threads&) = delete;
     Threads& operator=(const Threads&) = delete;
 
-    // Wakes the helpers: they look out for a task that will come soon, and sleep again where none does.
+    // Wakes the helpers: they wait actively for a task, and sleep again if none comes soon.
     void wake() { call(State::expected); }
 
     // Calls `task`, which must not throw, with each of the numbers below `items` once; returns when all are done. A
@@ -66,7 +66,7 @@ class Threads {
         called_.notify_all();
     }
 
-    // Waits for a while until `come`: to wake from sleep takes as long as several items.
+    // Waits actively for a while until `come`: waking from sleep takes as long as several items.
     static void look_out(const auto& come)
     {
         using Clock = std::chrono::steady_clock;
@@ -81,7 +81,7 @@ class Threads {
         std::size_t end = 0;
     };
 
-    // Its own items, then what others have left.
+    // Its own items, then the remaining ones of others.
     void work(std::size_t own)
     {
         for (std::size_t k = 0; k < shares_.size(); ++k) {
