@@ -94,10 +94,10 @@ def test_a_body_that_turns_about_all_axes_feels_euler_s_equations():
     for index, station in enumerate((0.25, 0.8)):
         motion, r = Motion.of(seen, index), np.array([centre - station, 0.0, 0.0])
         sensor = Sensor(Imu(rate=1.0), Surroundings.of(ALONE, None), station)
-        force = sensor.readings(np.zeros(1), motion).specific_force[0]
+        force = sensor.reading(0.0, lambda motion=motion: motion).specific_force
         expected = np.array([0.0, 0.0, G]) + np.cross(alpha, r) + np.cross(omega, np.cross(omega, r))
         np.testing.assert_allclose(force, expected, rtol=0.0, atol=1e-10)
-        np.testing.assert_allclose(motion.acceleration[0, :3], alpha, rtol=0.0, atol=1e-10)
+        np.testing.assert_allclose(motion.acceleration[:3], alpha, rtol=0.0, atol=1e-10)
 
 
 @pytest.mark.parametrize("bends", ["by the law", "by itself"])
@@ -118,9 +118,9 @@ def test_the_acceleration_of_a_bending_body_is_the_second_difference_of_its_back
         out, *_ = simulation.record(times, False, False)
         second = (out.backbone[2] - 2.0 * out.backbone[1] + out.backbone[0]) / period**2
         for index in range(2):
-            motion = Motion.of(out, index)
-            acceleration = Rotation.from_quat(motion.orientation[1]).apply(motion.acceleration[1, 3:])
-            velocity = Rotation.from_quat(motion.orientation[1]).apply(motion.twist[1, 3:])
+            motion = Motion.of(out, index, 1)
+            acceleration = Rotation.from_quat(motion.orientation).apply(motion.acceleration[3:])
+            velocity = Rotation.from_quat(motion.orientation).apply(motion.twist[3:])
             first = (out.backbone[2, index] - out.backbone[0, index]) / (2.0 * period)
             size = np.linalg.norm(acceleration)
             assert size > 0.05

@@ -86,7 +86,7 @@ class Sensing:
         for name, (_, *parts) in self._suites[index].read(snapshot).items():
             settings = self._suites[index].sensors[name].settings
             seen = {Pressure: parts[1:], Encoders: parts[:2]}.get(type(settings), parts)  # the depth; no currents
-            numbers = np.concatenate([part.ravel() for part in seen if part is not None])
+            numbers = np.concatenate([np.atleast_1d(part) for part in seen if part is not None])
             heapq.heappush(waiting, (snapshot.time + settings.latency, next(self._count), self._rows[name], numbers))
         while waiting and waiting[0][0] <= snapshot.time + 1e-9:
             _, _, rows, numbers = heapq.heappop(waiting)

@@ -116,9 +116,8 @@ class Publishers:
         self._samples = self._samples + 1 if nanoseconds else 1
         for name in self._subscribed:
             self._send(self._channels[name], self._sample.fill(name, snapshot))
-        for name, message in self.sensors.due(snapshot, nanoseconds):
-            if self._channels[name].subscribers():
-                self._send(self._channels[name], message)
+        for name, message in self.sensors.due(snapshot, nanoseconds, lambda name: self._channels[name].subscribers()):
+            self._send(self._channels[name], message)
 
     def tick(self, nanoseconds: int) -> None:
         """Publish /clock, with simulation time `nanoseconds` [ns]."""

@@ -12,7 +12,6 @@ from itertools import count
 from typing import Any
 
 import numpy as np
-from eel_common.attitude import world_from_body
 from eel_common.ros.headers import frame_in
 from eel_common.ros.loop.serialised_message import SerialisedMessage
 from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped, TwistWithCovarianceStamped
@@ -70,8 +69,13 @@ class SensorMessages:
             self._messages[FRAMES] = SerialisedMessage(TFMessage(transforms=moving))
         self.kinds: dict[str, Any] = {topic: message.kind for topic, message in self._messages.items()}
 
-    def due(self, snapshot: Snapshot, nanoseconds: int) -> Iterator[tuple[str, bytes]]:
-        """Topic and message of all that is due at a sample [ns]. It must be given each sample; 0 begins anew."""
+    def due(
+        self, snapshot: Snapshot, nanoseconds: int, heard: Callable[[str], Any] = bool
+    ) -> Iterator[tuple[str, bytes]]:
+        """Topic and message of all that is due at a sample [ns]. It must be given each sample; 0 begins anew.
+
+        heard: whether a topic has subscribers. Messages of others are not made, but are read, so that noise goes on.
+        """
         if not self._messages:
             return
         if nanoseconds == 0:
@@ -80,11 +84,12 @@ class SensorMessages:
         for name, readings in self._suite.read(snapshot).items():
             late = round(self._suite.sensors[name].settings.latency * SECOND)
             for topic in _FILL[type(readings)](self, name, readings, snapshot):
-                entry = nanoseconds + late, next(self._count), topic, self._sealed(topic, nanoseconds)
-                heapq.heappush(self._due, entry)
+                if heard(topic):
+                    entry = nanoseconds + late, next(self._count), topic, self._sealed(topic, nanoseconds)
+                    heapq.heappush(self._due, entry)
         while self._due and self._due[0][0] <= nanoseconds:
             yield heapq.heappop(self._due)[2:]
-        if FRAMES in self._messages:
+        if FRAMES in self._messages and heard(FRAMES):
             self._fill_frames(snapshot)
             yield FRAMES, self._sealed(FRAMES, nanoseconds)
 
@@ -96,20 +101,20 @@ class SensorMessages:
 
     def _fill_imu(self, name: str, readings: ImuReadings, snapshot: Snapshot) -> tuple[str, ...]:
         numbers = self._messages[name].numbers
-        numbers["linear_acceleration"][:] = readings.specific_force[0]
-        numbers["angular_velocity"][:] = readings.angular_velocity[0]
+        numbers["linear_acceleration"][:] = readings.specific_force
+        numbers["angular_velocity"][:] = readings.angular_velocity
         if readings.orientation is not None:
-            numbers["orientation"][:] = readings.orientation[0]
+            numbers["orientation"][:] = readings.orientation
         return (name,)
 
     def _fill_pressure(self, name: str, readings: PressureReadings, snapshot: Snapshot) -> tuple[str, ...]:
         depth = name.replace("pressure", "depth")
-        self._messages[name].numbers[""][0] = readings.pressure[0]
-        self._messages[depth].numbers["pose.pose.position"][2] = self._around.surface - readings.depth[0]
+        self._messages[name].numbers[""][0] = readings.pressure
+        self._messages[depth].numbers["pose.pose.position"][2] = self._around.surface - readings.depth
         return name, depth
 
     def _fill_velocity(self, name: str, readings: VelocityReadings, snapshot: Snapshot) -> tuple[str, ...]:
-        self._messages[name].numbers["twist.twist.linear"][:] = readings.velocity[0]
+        self._messages[name].numbers["twist.twist.linear"][:] = readings.velocity
         return (name,)
 
     def _fill_joints(self, name: str, readings: JointReadings, snapshot: Snapshot) -> tuple[str, ...]:
@@ -117,7 +122,7 @@ class SensorMessages:
         torque, power = snapshot.joints["motor_torque"], snapshot.joints["motor_power"]
         robot = self._simulation.robot
         assert robot is not None
-        signed = readings.angle[0], readings.rate[0], snapshot.joints["joint_torque"], torque, readings.current[0]
+        signed = readings.angle, readings.rate, snapshot.joints["joint_torque"], torque, readings.current
         fields = *(states[name] for name in ("position", "velocity", "effort")), motors["torque"], motors["current"]
         for field, values in zip(fields, signed, strict=True):
             field[:] = message_signs(robot) * values + 0.0  # no minus zeros
@@ -126,14 +131,20 @@ class SensorMessages:
 
     def _fill_frames(self, snapshot: Snapshot) -> None:
         """From the head to each sensor."""
-        head, numbers = world_from_body(snapshot.orientation), self._messages[FRAMES].numbers
-        x, y, z, w = snapshot.orientation
-        inverse = np.array([[w, z, -y, -x], [-z, w, x, -y], [y, -x, w, -z], [x, y, z, w]])  # times a quaternion
+        numbers = self._messages[FRAMES].numbers
+        (x, y, z, w), places = snapshot.orientation.tolist(), snapshot.sensor_position - snapshot.position
         for k, place in enumerate(self._places):
-            numbers[f"transforms[{k}].transform.translation"][:] = (
-                snapshot.sensor_position[place] - snapshot.position
-            ) @ head
-            numbers[f"transforms[{k}].transform.rotation"][:] = inverse @ snapshot.sensor_orientation[place]
+            a, b, c = places[place].tolist()
+            p, q, r = 2.0 * (z * b - y * c), 2.0 * (x * c - z * a), 2.0 * (y * a - x * b)
+            turned = a + w * p + z * q - y * r, b + w * q + x * r - z * p, c + w * r + y * p - x * q
+            numbers[f"transforms[{k}].transform.translation"][:] = turned
+            a, b, c, d = snapshot.sensor_orientation[place].tolist()
+            numbers[f"transforms[{k}].transform.rotation"][:] = (  # the head's inverse, times it
+                w * a - d * x - y * c + z * b,
+                w * b - d * y - z * a + x * c,
+                w * c - d * z - x * b + y * a,
+                w * d + x * a + y * b + z * c,
+            )
 
 
 _FILL: dict[type, Callable[..., tuple[str, ...]]] = {

@@ -4,6 +4,7 @@
 A run keeps no motion of sensors, which may sit at any X: its swim is marched again for them, to the same bit.
 """
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -42,7 +43,8 @@ class SensedRun(RunData):
 
     def depth(self, station: float = 0.0, rate: float | None = None, **settings: Any) -> np.ndarray:
         """The depth (N,) [m] below the surface by the readings of `pressure`."""
-        return self.pressure(station, rate, **settings).depth
+        depth: np.ndarray = self.pressure(station, rate, **settings).depth
+        return depth
 
     def velocity(self, station: float = 0.0, rate: float | None = None, **settings: Any) -> VelocityReadings:
         """Readings of a velocity log at X = `station` [m] (`eel_dynamics.Velocity`)."""
@@ -56,7 +58,7 @@ class SensedRun(RunData):
         names = ("joint_angle", "joint_rate", "motor_torque")
         motion = joints_of(self.time, {name: getattr(self, name) for name in names}, self.robot)
         sensor = Sensor(kind, Surroundings.of(self.scene, self.flow), joints=motion.angle.shape[1])
-        readings: JointReadings = sensor.readings(self.time, motion)
+        readings: JointReadings = sensor.readings(self.time, lambda rows: JointReadings(*(e[rows] for e in motion)))
         return readings
 
     def _at(self, kind: type[SensorSettings], station: float, rate: float | None, settings: dict[str, Any]) -> Any:
@@ -67,7 +69,7 @@ class SensedRun(RunData):
         if place not in self._seen:
             self._seen[place] = seen_again(self, place)
         sensor = Sensor(made, Surroundings.of(self.scene, self.flow), place)
-        return sensor.readings(self.time, Motion.of(self._seen[place], 0))
+        return sensor.readings(self.time, partial(Motion.of, self._seen[place], 0))
 
     @property
     def _sample_rate(self) -> float:

@@ -7,19 +7,19 @@ A motor without a torque constant tells NaN.
 """
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from eel_common.quantity import documented, quantity
 
 from eel_dynamics.sensors.noise import Spread
-from eel_dynamics.sensors.sensor import SensorSettings, Surroundings
+from eel_dynamics.sensors.sensor import Components, SensorSettings, Surroundings
 
 
 class JointReadings(NamedTuple):
-    """Readings, or true values, of the joints of a robot, each (N, J)."""
+    """Readings, or true values, of the joints of a robot, each (N, J); (J,) of one reading."""
 
-    time: np.ndarray  # (N,) s
+    time: Any  # (N,) s
     angle: np.ndarray  # rad
     rate: np.ndarray  # rad/s
     current: np.ndarray  # A, of the motors
@@ -47,8 +47,8 @@ class Encoders(SensorSettings):
             (self.current_noise, self.current_bias, 0.0, joints),
         )
 
-    def read(self, time: np.ndarray, motion: JointReadings, around: Surroundings, errors: np.ndarray) -> JointReadings:
-        of_angle, of_rate, of_current = np.split(errors, 3, axis=1)
+    def read(self, time: Any, motion: JointReadings, around: Surroundings, errors: Components) -> JointReadings:
+        of_angle, of_rate, of_current = (each.T for each in np.split(np.array(errors), 3))
         angle, step = motion.angle + of_angle, self.resolution
         if step:
             angle = step * np.round(angle / step)

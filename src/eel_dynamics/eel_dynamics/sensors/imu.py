@@ -8,24 +8,23 @@ attitude filter within the unit, with an error that is a small rotation about ea
 """
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-import numpy as np
 from eel_common.quantity import documented, quantity
 
 from eel_dynamics.sensors.noise import Spread
-from eel_dynamics.sensors.sensor import Motion, StationedSettings, Surroundings
+from eel_dynamics.sensors.sensor import Components, Motion, StationedSettings, Surroundings, as_rows
 
 NONE = (0.0, 0.0, 0.0)
 
 
 class ImuReadings(NamedTuple):
-    """Readings of an IMU, in its axes."""
+    """Readings of an IMU, in its axes; of one reading without the dimension N, and tuples of floats."""
 
-    time: np.ndarray  # (N,) s
-    specific_force: np.ndarray  # (N, 3) m/s^2
-    angular_velocity: np.ndarray  # (N, 3) rad/s
-    orientation: np.ndarray | None  # (N, 4) x y z w, world from sensor
+    time: Any  # (N,) s
+    specific_force: Any  # (N, 3) m/s^2
+    angular_velocity: Any  # (N, 3) rad/s
+    orientation: Any  # (N, 4) x y z w, world from sensor; None where it gives none
 
 
 @documented
@@ -51,27 +50,28 @@ class Imu(StationedSettings):
             (self.orientation_noise, 0.0, 0.0, 3),
         )
 
-    def read(self, time: np.ndarray, motion: Motion, around: Surroundings, errors: np.ndarray) -> ImuReadings:
-        force = motion.acceleration[:, 3:] + around.gravity * up(motion.orientation) + errors[:, :3]
-        turned = turned_by(motion.orientation, errors[:, 6:]) if self.orientation else None
-        return ImuReadings(time, force, motion.twist[:, :3] + errors[:, 3:6], turned)
+    def read(self, time: Any, motion: Motion, around: Surroundings, errors: Components) -> ImuReadings:
+        (_, _, _, *acceleration), (*turning, _, _, _) = motion.acceleration, motion.twist
+        upward = up(motion.orientation)
+        force = [a + around.gravity * u + e for a, u, e in zip(acceleration, upward, errors[:3], strict=True)]
+        angular = [w + e for w, e in zip(turning, errors[3:6], strict=True)]
+        turned = as_rows(turned_by(motion.orientation, errors[6:])) if self.orientation else None
+        return ImuReadings(time, as_rows(force), as_rows(angular), turned)
 
 
-def up(orientation: np.ndarray) -> np.ndarray:
-    """The world's z (N, 3) in the axes of a frame, by its `orientation` (N, 4) x y z w, world from frame."""
-    x, y, z, w = orientation.T
-    return np.stack((2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)), axis=1)
+def up(orientation: Components) -> tuple[Any, Any, Any]:
+    """The world's z in the axes of a frame, by its `orientation` x y z w, world from frame."""
+    x, y, z, w = orientation
+    return 2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)
 
 
-def turned_by(orientation: np.ndarray, angles: np.ndarray) -> np.ndarray:
-    """Orientations (N, 4) x y z w, turned by small `angles` (N, 3) [rad] about their own axes."""
-    x, y, z, w = orientation.T
-    a, b, c = 0.5 * angles.T
-    d = np.sqrt(np.maximum(0.0, 1.0 - (a * a + b * b + c * c)))
-    rows = (
+def turned_by(orientation: Components, angles: Components) -> tuple[Any, Any, Any, Any]:
+    """An orientation x y z w, turned by small `angles` (3,) [rad] about its own axes."""
+    (x, y, z, w), (a, b, c) = orientation, (0.5 * angle for angle in angles)
+    d = abs(1.0 - (a * a + b * b + c * c)) ** 0.5
+    return (
         w * a + x * d + y * c - z * b,
         w * b - x * c + y * d + z * a,
         w * c + x * b - y * a + z * d,
         w * d - x * a - y * b - z * c,
     )
-    return np.stack(rows, axis=1)

@@ -8,9 +8,13 @@ sensor gives the same readings to the last bit however many are asked for at onc
 is noise * sqrt(period / tau) of the white noise, and walk * sqrt(tau / 3) of the walk.
 """
 
+import math
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
+
+BLOCK = 64  # readings whose normal numbers are drawn at once, where they are asked for one by one
 
 
 class Spread(NamedTuple):
@@ -28,16 +32,30 @@ class Spread(NamedTuple):
 
 
 class Errors:
-    """Draws the errors of one sensor, reading by reading. seed: numbers that no other sensor has."""
+    """Draws the errors of one sensor from its first reading on, all at once or one by one. seed: of no other sensor."""
 
     def __init__(self, spread: Spread, seed: tuple[int, ...]):
         self._spread, self._random = spread, np.random.default_rng(seed)
-        self._walked = np.zeros((1, len(spread.noise)))
+        self._each = [*zip(*(row.tolist() for row in spread), [0.0] * len(spread.noise), strict=True)]
+        self._normal, self._walks = self._drawn(), bool(spread.walk.any())
 
-    def draw(self, gaps: np.ndarray) -> np.ndarray:
-        """The errors (N, n) of the next readings; `gaps` (N,) [s]: from the reading before each, 0 of the first."""
-        normal = self._random.standard_normal((len(gaps), 2, len(self._spread.noise)))
-        steps = np.sqrt(gaps)[:, None] * self._spread.walk * normal[:, 1]
-        walked = np.cumsum(np.concatenate((self._walked, steps)), axis=0)
-        self._walked = walked[-1:]
-        return np.asarray(self._spread.bias + walked[1:] + self._spread.noise * normal[:, 0])
+    def all(self, gaps: np.ndarray) -> list[np.ndarray]:
+        """The errors n times (N,) of all readings; `gaps` (N,) [s]: from the reading before each, 0 of the first."""
+        noise, bias, walk = self._spread
+        normal = self._random.standard_normal((len(gaps), 2, len(noise)))
+        walked = np.cumsum(np.sqrt(gaps)[:, None] * walk * normal[:, 1], axis=0)
+        return [*(bias + walked + noise * normal[:, 0]).T]
+
+    def one(self, gap: float) -> list[float]:
+        """The errors (n,) of the next reading, `gap` [s] after the last."""
+        root, (white, steps) = math.sqrt(gap), next(self._normal)
+        if self._walks:
+            self._each = [
+                (noise, bias, walk, walked + root * walk * m)
+                for (noise, bias, walk, walked), m in zip(self._each, steps, strict=True)
+            ]
+        return [bias + walked + noise * n for (noise, bias, _, walked), n in zip(self._each, white, strict=True)]
+
+    def _drawn(self) -> Iterator[list[list[float]]]:
+        while True:
+            yield from self._random.standard_normal((BLOCK, 2, len(self._each))).tolist()

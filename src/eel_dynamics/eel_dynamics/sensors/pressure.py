@@ -9,21 +9,20 @@ model goes on above it, where the depth is negative.
 """
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-import numpy as np
 from eel_common.quantity import documented, quantity
 
 from eel_dynamics.sensors.noise import Spread
-from eel_dynamics.sensors.sensor import Motion, StationedSettings, Surroundings
+from eel_dynamics.sensors.sensor import Components, Motion, StationedSettings, Surroundings
 
 
 class PressureReadings(NamedTuple):
-    """Readings of a pressure gauge, each (N,)."""
+    """Readings of a pressure gauge, each (N,); floats of one reading."""
 
-    time: np.ndarray  # s
-    pressure: np.ndarray  # Pa
-    depth: np.ndarray  # m, below the surface
+    time: Any  # s
+    pressure: Any  # Pa
+    depth: Any  # m, below the surface
 
 
 @documented
@@ -41,8 +40,8 @@ class Pressure(StationedSettings):
     def spread(self, joints: int) -> Spread:
         return Spread.of((self.noise, self.bias, self.walk, 1))
 
-    def read(self, time: np.ndarray, motion: Motion, around: Surroundings, errors: np.ndarray) -> PressureReadings:
+    def read(self, time: Any, motion: Motion, around: Surroundings, errors: Components) -> PressureReadings:
         weight = around.density * around.gravity
-        gauge = weight * (around.surface - motion.position[:, 2]) + errors[:, 0]
-        depth = gauge / weight if weight else np.zeros_like(gauge)
+        gauge = weight * (around.surface - motion.position[2]) + errors[0]
+        depth = gauge / weight if weight else 0.0 * gauge
         return PressureReadings(time, self.surface_pressure + gauge, depth)

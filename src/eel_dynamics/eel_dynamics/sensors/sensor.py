@@ -7,6 +7,7 @@ eel_core/march/observe.hpp): its acceleration is the true one, of head, turning 
 """
 
 from abc import abstractmethod
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
@@ -17,24 +18,34 @@ from eel_dynamics.model.flow.flow import Flow
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.section_data import GRAVITY
 from eel_dynamics.sensors.noise import Errors, Spread
-from eel_dynamics.sensors.timing import Timing
+from eel_dynamics.sensors.timing import Timing, readings_among
 from eel_dynamics.simulation.observations import SENSORS, Observations, Snapshot
+
+SIZES = tuple(zip(SENSORS, (3, 4, 6, 6, 3), strict=True))  # numbers of each
+Components = Sequence[Any]  # of a vector: floats of one instant, or arrays (N,) of N
 
 
 class Motion(NamedTuple):
-    """The motion of one sensor at T instants, world and sensor axes, as of `Observations`."""
+    """The motion of one sensor, world and sensor axes, as of `Observations`: at one instant, or at N."""
 
-    position: np.ndarray
-    orientation: np.ndarray
-    twist: np.ndarray
-    acceleration: np.ndarray
-    water: np.ndarray
+    position: Components
+    orientation: Components
+    twist: Components
+    acceleration: Components
+    water: Components
 
     @staticmethod
-    def of(seen: Observations, index: int) -> "Motion":
-        """Of the sensor number `index` in what was `seen`: the samples of a run, or the one of a snapshot."""
-        rows = (getattr(seen, name) for name in SENSORS)
-        return Motion(*(row[None, index] if isinstance(seen, Snapshot) else row[:, index] for row in rows))
+    def of(seen: Observations, index: int, rows: Any = slice(None)) -> "Motion":
+        """Of the sensor number `index` in what was `seen`: at some `rows` of a run's samples, or in a snapshot."""
+        if isinstance(seen, Snapshot):
+            places = ((seen.places[name][0].start + index * n, n) for name, n in SIZES)
+            return Motion(*(seen.whole[begin : begin + n].tolist() for begin, n in places))
+        return Motion(*(getattr(seen, name)[rows, index].T for name in SENSORS))
+
+
+def as_rows(components: Components) -> Any:
+    """(3,) floats of one reading as a tuple; (N, 3) of several as an array."""
+    return np.stack(components, axis=1) if isinstance(components[0], np.ndarray) else tuple(components)
 
 
 class Surroundings(NamedTuple):
@@ -66,8 +77,8 @@ class SensorSettings(Quantities):
         """Of the errors of a reading, on a robot with so many joints."""
 
     @abstractmethod
-    def read(self, time: np.ndarray, motion: Any, around: Surroundings, errors: np.ndarray) -> Any:
-        """The readings at `time` (N,) [s], with these `errors` (N, n): a NamedTuple whose first field is their time."""
+    def read(self, time: Any, motion: Any, around: Surroundings, errors: Components) -> Any:
+        """The reading at `time` [s], or those at `time` (N,), with their `errors`: a NamedTuple, time first."""
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -78,7 +89,7 @@ class StationedSettings(SensorSettings):
 
 
 class Sensor:
-    """One sensor of a kind at X = `station` [m], or on all of a robot's `joints`, which reads as time goes on."""
+    """One sensor of a kind at X = `station` [m], or on all of a robot's `joints`: reads a run, or sample by sample."""
 
     def __init__(self, settings: SensorSettings, around: Surroundings, station: float = 0.0, joints: int = 0):
         self.settings, self.station, self._around, self._joints = settings, station, around, joints
@@ -90,8 +101,13 @@ class Sensor:
         seed = settings.seed, settings.number, round(self.station * 1e9)
         self._errors, self._timing = Errors(settings.spread(self._joints), seed), Timing(settings.rate)
 
-    def readings(self, times: np.ndarray, motion: Any) -> Any:
-        """The readings, N or none, at the next samples of a run. times (T,) [s], motion: of these samples."""
-        rows, gaps = self._timing.due(times)
-        here = motion if len(rows) == len(times) else type(motion)(*(each[rows] for each in motion))
-        return self.settings.read(times[rows], here, self._around, self._errors.draw(gaps))
+    def readings(self, times: np.ndarray, motion_at: Callable[[np.ndarray], Any]) -> Any:
+        """All readings of a run with samples at `times` (T,) [s]. motion_at: the motion at some, by indices."""
+        rows, gaps = readings_among(times, self.settings.rate)
+        self.begin()
+        return self.settings.read(times[rows], motion_at(rows), self._around, self._errors.all(gaps))
+
+    def reading(self, time: float, motion: Callable[[], Any]) -> Any:
+        """The reading at the next sample, at `time` [s]; None if none is due. motion: gives the present one."""
+        gap = self._timing.gap(time)
+        return None if gap is None else self.settings.read(time, motion(), self._around, self._errors.one(gap))

@@ -3,6 +3,7 @@
 
 import math
 from collections.abc import Iterable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -58,17 +59,15 @@ class SensorSuite:
             sensor.begin()
 
     def read(self, snapshot: Snapshot) -> dict[str, Any]:
-        """The readings, one each, of the sensors that read at the `snapshot`, which follows the last one."""
-        time, found = np.array([snapshot.time]), {}
+        """The readings of the sensors that read at the `snapshot`, by name. It follows the last one."""
+        found = {}
         for name, sensor in self.sensors.items():
             if name in self._index:
-                motion: Any = Motion.of(snapshot, self._index[name])
+                motion: Any = partial(Motion.of, snapshot, self._index[name])
             else:
-                joints = {of: row[None] for of, row in snapshot.joints.items()}
-                motion = joints_of(time, joints, self._robot)
-            readings = sensor.readings(time, motion)
-            if len(readings.time):
-                found[name] = readings
+                motion = partial(joints_of, snapshot.time, snapshot.joints, self._robot)
+            if (reading := sensor.reading(snapshot.time, motion)) is not None:
+                found[name] = reading
         return found
 
 
@@ -78,8 +77,8 @@ def places_of(settings: Iterable[SensorSettings]) -> tuple[float, ...]:
     return tuple(sorted({station for each in on_body for station in each.stations}))
 
 
-def joints_of(time: np.ndarray, arrays: dict[str, np.ndarray], robot: Robot | None) -> JointReadings:
-    """The true values of the joints of a `robot`, from the `arrays` (T, J) of a run or a snapshot by their names."""
+def joints_of(time: Any, arrays: dict[str, np.ndarray], robot: Robot | None) -> JointReadings:
+    """The true values of the joints of a `robot`, from `arrays` (T, J) of a run, or (J,) of a snapshot, by name."""
     by_torque = current_by_torque(robot.servos if robot else ())
     return JointReadings(time, arrays["joint_angle"], arrays["joint_rate"], arrays["motor_torque"] * by_torque)
 

@@ -5,20 +5,19 @@ Through the water is relative to the flow, current included, that there would be
 """
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-import numpy as np
 from eel_common.quantity import documented, quantity
 
 from eel_dynamics.sensors.noise import Spread
-from eel_dynamics.sensors.sensor import Motion, StationedSettings, Surroundings
+from eel_dynamics.sensors.sensor import Components, Motion, StationedSettings, Surroundings, as_rows
 
 
 class VelocityReadings(NamedTuple):
-    """Readings of a velocity log, in its axes."""
+    """Readings of a velocity log, in its axes; of one reading without the dimension N, and a tuple of floats."""
 
-    time: np.ndarray  # (N,) s
-    velocity: np.ndarray  # (N, 3) m/s
+    time: Any  # (N,) s
+    velocity: Any  # (N, 3) m/s
 
 
 @documented
@@ -36,6 +35,8 @@ class Velocity(StationedSettings):
     def spread(self, joints: int) -> Spread:
         return Spread.of((self.noise, self.bias, self.walk, 3))
 
-    def read(self, time: np.ndarray, motion: Motion, around: Surroundings, errors: np.ndarray) -> VelocityReadings:
-        moved = motion.twist[:, 3:] - motion.water if self.through_water else motion.twist[:, 3:]
-        return VelocityReadings(time, moved + errors)
+    def read(self, time: Any, motion: Motion, around: Surroundings, errors: Components) -> VelocityReadings:
+        water = motion.water if self.through_water else (0.0, 0.0, 0.0)
+        return VelocityReadings(
+            time, as_rows([v - u + e for v, u, e in zip(motion.twist[3:], water, errors, strict=True)])
+        )
