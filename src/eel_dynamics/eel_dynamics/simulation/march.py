@@ -165,13 +165,13 @@ class March:
         self, joint: str, position: float | None = None, velocity: float | None = None, effort: float | None = None
     ) -> None:
         """As `Simulation.command`."""
-        assert self.setup.modes is not None and self.setup.robot is not None
-        servo, sign = self.setup.modes.servo_of(joint)
-        kinds = {"position": position, "velocity": velocity, "effort": effort}
-        kind = next((name for name, value in kinds.items() if value is not None), "law")
-        numbers = (sign * (value or 0.0) for value in kinds.values())
-        limits = self.setup.robot.joint(joint).limits or (-np.inf, np.inf)
-        self.core.command(servo, kind, *numbers, *sorted(sign * limit for limit in limits))
+        assert self.setup.modes is not None
+        servo, sign, low, high = self.setup.modes.driven[joint]
+        kind = "law" if effort is None else "effort"
+        if position is not None or velocity is not None:
+            kind = "velocity" if position is None else "position"
+        angle, rate, torque = sign * (position or 0.0), sign * (velocity or 0.0), sign * (effort or 0.0)
+        self.core.command(servo, kind, angle, rate, torque, low, high)
 
     def _fit(self, needs: ShapeNeeds, coarser: bool = False):
         """Make the grid fine enough for the `needs`; `coarser` where it is much finer."""

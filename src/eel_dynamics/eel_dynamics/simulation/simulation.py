@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from eel_common.quantity import checked_instance, checked_row, is_finite, number, positive
+from eel_common.quantity import LARGEST, checked_instance, checked_row, is_finite, number, positive
 from eel_common.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
@@ -241,15 +241,21 @@ class Simulation(Present):
         `ValueError` for an unknown joint, one without a servo, or a number that is not finite.
         """
         self.check_driven(joint)
-        given = {"position": position, "velocity": velocity, "effort": effort}
-        wanted = {
-            name: number(f"{name} of joint {shown(joint)}", value) for name, value in given.items() if value is not None
-        }
-        self._on_both(lambda march: march.command(joint, **wanted))
+        given = ("position", position), ("velocity", velocity), ("effort", effort)
+        values = [
+            value
+            if value is None or (type(value) is float and -LARGEST <= value <= LARGEST)  # as of a message
+            else number(f"{name} of joint {shown(joint)}", value)
+            for name, value in given
+        ]
+        self._on_both(lambda march: march.command(joint, *values))
         self._meter.due = True
 
     def check_driven(self, joint: str) -> None:
         """`ValueError` for the name of a `joint` that cannot be commanded."""
+        modes = self._setup.modes
+        if modes is not None and isinstance(joint, str) and joint in modes.driven:
+            return
         if self.robot is None:
             raise ValueError(f"joint {shown(joint)} cannot be commanded: there is no robot")
         if not isinstance(self.robot.joint(joint).actuator, Servo):

@@ -12,6 +12,7 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
+from eel_common.cached import cached_property
 from eel_common.wording import shown
 from eel_gaits.laws.law import Law
 from numpy.polynomial import legendre
@@ -87,10 +88,14 @@ class ModeTable:
         """(M,) whether a mode is that of a joint."""
         return np.asarray(self.degree == HINGE)
 
-    def servo_of(self, joint: str) -> tuple[int, float]:
-        """The number of the servo that drives a `joint`, and the joint's sign."""
-        mode = self.name.index(joint)
-        return [motor.mode for motor in self.motors].index(mode), float(self.sign[mode])
+    @cached_property
+    def driven(self) -> dict[str, tuple[int, float, float, float]]:
+        """Of each joint with a servo: the servo's number, the joint's sign, and its limits [rad] of q."""
+        modes = [motor.mode for motor in self.motors]
+        return {
+            self.name[mode]: (number, float(self.sign[mode]), *self.limits[mode].tolist())
+            for number, mode in enumerate(modes)
+        }
 
     def shape(self, x: np.ndarray) -> np.ndarray:
         """B_m (M, n) at `x` (n,) [m]: 1/m of joints, 1 of continuous parts. The end belongs to a support."""
