@@ -54,3 +54,16 @@ def test_the_same_event_is_logged_once_while_it_lasts(differing):
         now[0] += 0.1
         report.event("command", "hip is no joint", ERROR, differing)
     assert [text for _, text in log.lines] == ["neck is no joint"] * 2 + ["hip is no joint"]
+
+
+def test_texts_that_come_in_turn_are_logged_once_each_while_they_come():
+    now, log = [0.0], Log()
+    report = Report(log, lambda: now[0])
+    for _ in range(500):
+        now[0] += 0.01
+        for text in ("neck is no joint", "inf is no angle"):
+            report.event("command", text, ERROR, differing=True)
+    assert [text for _, text in log.lines] == ["neck is no joint", "inf is no angle"]
+    now[0] += 2.0
+    report.event("command", "inf is no angle", ERROR, differing=True)
+    assert len(log.lines) == 3

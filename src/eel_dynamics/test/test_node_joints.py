@@ -6,6 +6,7 @@ All its joints are in yaw: in messages their values have the opposite of the lib
 
 import hashlib
 import math
+from time import monotonic
 
 import numpy as np
 import pytest
@@ -309,3 +310,60 @@ def test_commands_are_checked_against_the_robot_that_there_is_now(start, client,
     commands.publish(JointState(name=["left"], position=[0.3]))
     node.wait_for_output("fin command refused: no fin is commanded")
     assert node.interrupt() == 0 and "FATAL" not in node.output() and "Traceback" not in node.output()
+
+
+@pytest.mark.fault(
+    "samples",
+    "joint commands at 2 kHz from two publishers for one joint: jumps, NaN, infinity, unknown names, stamps of before",
+    "each fault is told once; joints turn no faster than their servos and stay within limits; the node goes on",
+)
+def test_the_body_never_jumps_whatever_two_publishers_command(start, client):
+    """The two contradict each other: the newest holds. Rates are bounded by the servo's speed without load."""
+    swim = client(topics=("joint_states", "head_pose"))
+    node = start("dynamics", *ROBOT, "-p", "rate:=50", "-p", "estimate_error:=false")
+    one, other = publisher(swim), swim.node.create_publisher(JointState, "joint_commands", LOSSLESS)
+    swim.until(lambda: other.get_subscription_count() == 1, "the second publisher's subscription")
+    one.publish(command(0.0, position=[0.0] * 8))
+    swim.until_time(0.2, "joint_states")
+    sent, flood = 0, monotonic()
+    while sent < 1000:
+        now = nanoseconds(swim.received["joint_states"][-1].header.stamp) * 1e-9
+        for _ in range(100):  # 50 ms of 2 kHz
+            sent += 1
+            side = 50.0 if sent % 2 else -50.0
+            one.publish(command(now, name=["joint_3"], position=[side]))
+            other.publish(command(now - 0.02 * (sent % 7), name=["joint_3"], position=[-side]))
+            if sent % 10 == 0:
+                other.publish(command(now, name=["joint_3", "joint_4"], position=[math.nan, 0.5 * math.sin(sent)]))
+                other.publish(command(now, name=["joint_3"], position=[math.inf]))
+                one.publish(command(now, name=["neck"], position=[0.1]))
+                one.publish(command(now, name=["joint_5"], velocity=[99.0], effort=[-1e9]))
+        flood += 0.05
+        swim.spin(max(0.0, flood - monotonic()))
+    swim.until(lambda: abs(swim.received["joint_states"][-1].position[2]) > 0.5, "joint_3 following")
+    states = [message for _, message in sorted(by_stamp(swim.received["joint_states"]).items())]
+    angles, rates = (np.array([getattr(each, field) for each in states]) for field in ("position", "velocity"))
+    fastest, furthest = 1.5 * 8.063, math.pi + 0.1  # the water and its neighbours push a joint, too; the stop gives way
+    assert np.isfinite(angles).all() and np.abs(angles).max() < furthest and np.abs(rates).max() < fastest
+    steps = np.diff([nanoseconds(each.header.stamp) for each in states]) * 1e-9
+    assert (np.abs(np.diff(angles, axis=0)) <= fastest * steps[:, None]).all()
+    said = node.output()
+    for told in (
+        "joint must be one of joint_1",
+        "must be finite, got inf",
+        "is beyond its limit",
+        "is older than that of",
+    ):
+        assert told in said, told
+    kinds = (
+        "of joint 'joint_3' must be finite",
+        "got 'neck'",
+        "position 50 rad",
+        "velocity 99 rad/s",
+        "effort -1e+09 N m",
+    )
+    assert all(said.count(each) <= 2 for each in kinds), said[-3000:]  # once, and that it comes again and again
+    assert len(said.splitlines()) < 60, said[-3000:]
+    one.publish(command(states[-1].header.stamp.sec + 1.0, position=[0.0] * 8))
+    swim.until(lambda: np.abs(swim.received["joint_states"][-1].position).max() < 0.1, "the body straight again")
+    assert node.interrupt() == 0 and "Traceback" not in node.output(), node.output()[-2000:]

@@ -4,7 +4,7 @@
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 OK, WARN, ERROR = 0, 1, 2  # levels of diagnostic_msgs/DiagnosticStatus
@@ -29,7 +29,7 @@ class Event:
 
     level: int = OK
     text: str = ""
-    told: str = ""  # the text that was logged last
+    told: dict[str, float] = field(default_factory=dict)  # texts that were logged, and when each came last [s]
     seen: float = -math.inf  # s
     begin: float = -math.inf  # s
     lines: int = 0
@@ -68,13 +68,15 @@ class Report:
         return kind in self._lasting
 
     def event(self, kind: str, text: str, level: int = WARN, differing: bool = False) -> None:
-        """Log an event. The same text is logged once while it repeats within a second.
+        """Log an event. The same text is logged once while it repeats within a second, also among others.
 
         Differing texts of one kind are logged once a second, or with `differing` up to `BURST` times.
         """
         event, now = self._events.setdefault(kind, Event()), self._now()
-        if text != event.told or now - event.seen >= REPEAT:
+        if now - event.told.get(text, -math.inf) >= REPEAT:
             self._record(event, level, text, BURST if differing else 1)
+        if text in event.told:
+            event.told[text] = now
         event.level, event.text, event.seen = level, text, now
 
     def state(self) -> tuple[int, list[str]]:
@@ -93,7 +95,8 @@ class Report:
             event.left_out += 1
             return
         more = f" (and {event.left_out} more before, not shown)" if event.left_out and most > 1 else ""
-        event.told, event.lines, event.left_out = text, event.lines + 1, 0
+        event.told = {each: seen for each, seen in event.told.items() if now - seen < REPEAT} | {text: now}
+        event.lines, event.left_out = event.lines + 1, 0
         self._log(level, text + more)
 
     def _log(self, level: int, text: str) -> None:
