@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Mapping
 
+from commands import commands
 from eel_common.wording import did_you_mean
 from evaluations import evaluation, flows, wrench
 from integrators import integrators
@@ -24,7 +25,7 @@ from swims import batch, falling_gait, gym, start, ticks
 OF_SWIMS = evaluation, flows, falling_gait, wrench, start, ticks, integrators, batch
 FIGURES = {
     each.__name__.removesuffix("_gait"): each
-    for each in (*OF_SWIMS, visualiser, nodes, lockstep, gym, overhead, robots, sensors)
+    for each in (*OF_SWIMS, visualiser, nodes, lockstep, commands, gym, overhead, robots, sensors)
 }
 
 
