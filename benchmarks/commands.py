@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the dynamics node takes of the CPU for a sample: `python benchmarks/run.py commands`.
 
-In lockstep, at 100, 500 and 1,000 Hz, of the ready robot with eight servos: with commands of all joints that another
-process sends in answer to each `odom`, and by a law alone. Beside it bare messages: a process of rclpy that takes the
-same commands and publishes the same `odom`, and one that publishes `odom` alone. Contenders take turns; medians.
-BEFORE=FOLDER, another copy of this repository that is built: its node takes turns too.
-`python benchmarks/commands.py controller PID COUNT`, `... listener PID COUNT` and `... bare` are processes.
+In lockstep, at 100, 500 and 1,000 Hz, of the ready robot with eight servos, with commands of all joints that another
+process sends in answer to each `odom`. Beside it bare messages: a process of rclpy that takes the same commands and
+publishes the same `odom`. Contenders take turns; medians. BEFORE=FOLDER, another copy of this repository that is built:
+its node takes turns too. `python benchmarks/commands.py controller PID` and `... bare` are processes.
 """
 
 import math
@@ -31,29 +30,26 @@ BARE = "bare messages"
 
 
 def commands() -> Lines:
-    """CPU time of a process for a sample, all its threads, with a command of eight joints each, and by a law alone."""
-    before = os.environ.get("BEFORE", "")
-    for answering in (True, False):
-        times: dict[str, list[float]] = {}
-        for _ in range(TURNS):
-            for name, plant in _plants(answering, before).items():
-                times.setdefault(name, []).append(_cpu_of(plant, answering))
-        bare = np.array(times.pop(BARE))
-        words = "commands of 8 joints" if answering else "a law alone"
-        yield f"{words}: {BARE}", 1e6 * float(np.median(bare)), f"us a sample, {_spread(bare)}"
-        for name, found in times.items():
-            values = np.array(found)
-            by = f"{np.median(values / bare):.2f} times bare messages"
-            if (other := times.get(f"{name}, before")) is not None:
-                by += f"; {np.median(values / np.array(other)):.3f} times before"
-            yield f"{words}: {name}", 1e6 * float(np.median(values)), f"us a sample, {_spread(values)}; {by}"
+    """CPU time of a process for a sample, all its threads, with a command of eight joints each."""
+    times: dict[str, list[float]] = {}
+    for _ in range(TURNS):
+        for name, plant in _plants(os.environ.get("BEFORE", "")).items():
+            times.setdefault(name, []).append(_cpu_of(plant))
+    bare = np.array(times.pop(BARE))
+    yield BARE, 1e6 * float(np.median(bare)), f"us a sample, {_spread(bare)}"
+    for name, found in times.items():
+        values = np.array(found)
+        by = f"{np.median(values / bare):.2f} times bare messages"
+        if (other := times.get(f"{name}, before")) is not None:
+            by += f"; {np.median(values / np.array(other)):.3f} times before"
+        yield name, 1e6 * float(np.median(values)), f"us a sample, {_spread(values)}; {by}"
 
 
 def _spread(times: np.ndarray) -> str:
     return f"{1e6 * times.min():.0f} to {1e6 * times.max():.0f}"
 
 
-def _plants(answering: bool, before: str) -> dict[str, Callable[[Any, Any], Any]]:
+def _plants(before: str) -> dict[str, Callable[[Any, Any], Any]]:
     """What begins each contender, by its name."""
 
     def node(rate: int, folder: str, start: Any, begin: Any) -> Any:
@@ -63,7 +59,7 @@ def _plants(answering: bool, before: str) -> dict[str, Callable[[Any, Any], Any]
         words = " ".join(f"-p {each}" for each in settings)
         return begin("bash", "-c", f". {folder}/setup.bash; exec dynamics --ros-args {words}")
 
-    found: dict[str, Any] = {BARE: lambda start, begin: begin(sys.executable, __file__, "bare", *"a"[:answering])}
+    found: dict[str, Any] = {BARE: lambda start, begin: begin(sys.executable, __file__, "bare")}
     for rate in RATES:
         for folder in dict.fromkeys(("", before)):
             name = f"node at {rate} Hz{', before' if folder else ''}"
@@ -71,12 +67,11 @@ def _plants(answering: bool, before: str) -> dict[str, Callable[[Any, Any], Any]
     return found
 
 
-def _cpu_of(plant: Callable[..., Any], answering: bool) -> float:
+def _cpu_of(plant: Callable[..., Any]) -> float:
     """CPU time [s] of a sample of the process that `plant` begins."""
     with nodes_in_a_domain() as (start, begin, *_):
         running = plant(start, begin)
-        role = "controller" if answering else "listener"
-        other = begin(sys.executable, __file__, role, str(running.process.pid))
+        other = begin(sys.executable, __file__, "controller", str(running.process.pid))
         assert other.wait(300.0) == 0, other.output() + running.output()
         return float(other.output().splitlines()[-1])
 
@@ -87,30 +82,21 @@ def cpu_time(pid: int) -> float:
     return 1e-9 * sum(int((each / "schedstat").read_text().split()[0]) for each in threads)
 
 
-def receive(pid: int, answering: bool) -> None:
-    """Answer samples on odom, or give a law and listen, and print the CPU time of `pid` for a sample."""
-    from eel_common.ros.qos import latched
-    from eel_gaits.ros.messages import law_to_message
-
-    from eel_gaits import straight
-    from eel_msgs.msg import CurvatureLaw
-
-    node, executor = _node_of("controller" if answering else "listener")
+def controller(pid: int) -> None:
+    """Answer samples on odom, and print the CPU time of `pid` for a sample."""
+    node, executor = _node_of("controller")
     publisher = node.create_publisher(JointState, "joint_commands", keep_all())
-    laws = node.create_publisher(CurvatureLaw, "curvature_law", latched(1))
-    if not answering:
-        laws.publish(law_to_message(straight()))
-    command, times, seen = JointState(name=JOINTS, position=[0.0] * 8), [], set()
+    command, times, seen = JointState(name=JOINTS), [], set()
 
     def answer(odometry: Odometry) -> None:
         stamp = odometry.header.stamp.sec * 1_000_000_000 + odometry.header.stamp.nanosec
-        seen.add(stamp)
-        if len(seen) in (FIRST, LAST):
+        before = len(seen)
+        seen.add(stamp)  # sample 0 is repeated
+        if before < len(seen) in (FIRST, LAST):
             times.append(cpu_time(pid))
-        if answering:
-            command.header.stamp = odometry.header.stamp
-            command.position = [0.2 * math.sin(6.0e-9 * stamp - 0.5 * k) for k in range(8)]
-            publisher.publish(command)
+        command.header.stamp = odometry.header.stamp
+        command.position = [0.2 * math.sin(6.0e-9 * stamp - 0.5 * k) for k in range(8)]
+        publisher.publish(command)
 
     node.create_subscription(Odometry, "odom", answer, keep_all())
     while len(seen) < LAST:
@@ -118,8 +104,8 @@ def receive(pid: int, answering: bool) -> None:
     print((times[-1] - times[0]) / (LAST - FIRST), flush=True)
 
 
-def bare(answering: bool) -> None:
-    """Publish odom in answer to each command, or one after another."""
+def bare() -> None:
+    """Publish odom in answer to each command."""
     node, executor = _node_of("bare")
     publisher, message, count = node.create_publisher(Odometry, "odom", keep_all()), Odometry(), 0
 
@@ -134,13 +120,9 @@ def bare(answering: bool) -> None:
         executor.spin_once(0.1)
     time.sleep(0.5)  # both have found each other
     send()
-    while answering:
-        executor.spin_once()
-    while count < LAST:
-        send()
     executor.spin()
 
 
 if __name__ == "__main__":
     role, *words = sys.argv[1:]
-    bare(bool(words)) if role == "bare" else receive(int(words[0]), role == "controller")
+    bare() if role == "bare" else controller(int(words[0]))

@@ -91,11 +91,11 @@ class ModeTable:
     @cached_property
     def driven(self) -> dict[str, tuple[int, float, float, float]]:
         """Of each joint with a servo: the servo's number, the joint's sign, and its limits [rad] of q."""
-        modes = [motor.mode for motor in self.motors]
-        return {
-            self.name[mode]: (number, float(self.sign[mode]), *self.limits[mode].tolist())
-            for number, mode in enumerate(modes)
-        }
+        found = {}
+        for number, motor in enumerate(self.motors):
+            low, high = map(float, self.limits[motor.mode])
+            found[self.name[motor.mode]] = number, float(self.sign[motor.mode]), low, high
+        return found
 
     def shape(self, x: np.ndarray) -> np.ndarray:
         """B_m (M, n) at `x` (n,) [m]: 1/m of joints, 1 of continuous parts. The end belongs to a support."""
