@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The topic robot_description over DDS: late subscribers get it, and with joint_states it is the body on backbone."""
 
+from types import SimpleNamespace
+from typing import ClassVar
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from eel_dynamics.ros.parameters import DynamicsParameters
+from eel_dynamics.ros.robot_description import RobotDescription
 from eel_gaits.ros.messages import law_to_message
 from scipy.spatial.transform import Rotation
 from std_msgs.msg import String
@@ -12,6 +16,7 @@ from swim_client import LATCHED
 from tf2_msgs.msg import TFMessage
 from urdf_frames import frames
 
+from eel_dynamics import Simulation
 from eel_gaits import Law, Term, straight
 
 BOTH = Law(
@@ -115,3 +120,26 @@ def test_a_swimmer_that_no_urdf_holds_is_told_of_once(start, client):
     swim.until_time(0.1)
     assert swim.node.count_publishers("robot_description") == 0
     assert node.output().count("robot_description is not published: each link in a URDF must have a name") == 1
+
+
+def test_the_description_of_the_swimmer_before_is_withdrawn_where_the_next_has_none():
+    class Node:
+        topics: ClassVar[list[str]] = []
+
+        def create_publisher(self, kind, topic, quality):
+            self.topics.append(topic)
+            return SimpleNamespace(publish=lambda message: None)
+
+        def destroy_publisher(self, publisher):
+            self.topics.pop()
+
+        def get_logger(self):
+            return SimpleNamespace(warning=lambda text: None)
+
+    description, swimmer = RobotDescription(Node()), Simulation(law=straight())
+    description.publish(swimmer, DynamicsParameters())
+    assert Node.topics == ["robot_description"]
+    description.publish(swimmer, DynamicsParameters(head_frame="link_0"))
+    assert Node.topics == []
+    description.publish(swimmer, DynamicsParameters())
+    assert Node.topics == ["robot_description"]

@@ -94,7 +94,7 @@ class DynamicsNode(ParameterNode):
         self._serve(SetState, "set_state", self._set_state, calls)
         self._serve(Step, "step", self._step, steps)  # others go on while it waits for its samples
         self._look_at_neighbours()
-        self._publish_root()
+        self._publish_static()
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
 
@@ -122,7 +122,7 @@ class DynamicsNode(ParameterNode):
         self._inbox.look()
         self.run_loop.inputs.awaited.offered = {topic for topic in INPUTS if self.count_publishers(topic)}
         self._look_at_neighbours()
-        self._publish_root()
+        self._publish_static()
         if self._followed_clock is not None:
             self._followed_clock.look()
         if self._status.due():
@@ -165,13 +165,15 @@ class DynamicsNode(ParameterNode):
             requests.put(self._sample_publishers.enable_clock, offers)
         self._holding, self._offers_clock = holding, offers
 
-    def _publish_root(self) -> None:
-        """Publish the world's pose in the frame that swimmers share, and sensors on a rigid part of the body; later
-        subscribers get it too."""
+    def _publish_static(self) -> None:
+        """Publish the world's pose in the frame that swimmers share, and sensors on a rigid part of the body.
+
+        Later subscribers get it too. After a reset without them it is empty; listeners keep the frames they have.
+        """
         values, still = self.parameters.values, list(self._sample_publishers.sensors.static)
         if values.root_frame and values.publish_tf:
             still.append(root_transform(values))
-        if still and still != self._still:
+        if still != self._still:
             if self._static is None:
                 self._static = self.create_publisher(TFMessage, "/tf_static", latched(1))
             self._static.publish(TFMessage(transforms=still))

@@ -139,8 +139,7 @@ class Publishers:
         With 0 wanted: whether the subscribers on the network are matched, and none has come for a while; true after
         `MATCH_LIMIT`. now: time [s, steady clock].
         """
-        left_out = (*NOT_AWAITED, *self.sensors.kinds) if wanted else ()
-        own = [channel for name, channel in self._channels.items() if name not in left_out]
+        own = [*self._channels.values()]
         if not wanted and self._clock is not None:
             own.append(self._clock)  # who follows it needs it from the start
         counts = [channel.subscribers() for channel in own]
@@ -149,7 +148,9 @@ class Publishers:
             self._audience, self._audience_since = (counts, known), now
         quiet = now - self._audience_since > QUIET_TIME
         if wanted:
-            return min(counts) >= wanted or (max(counts) >= wanted and quiet)
+            left_out = *NOT_AWAITED, *self.sensors.kinds
+            least = min(count for name, count in self.audience().items() if name not in left_out)
+            return least >= wanted or (max(counts) >= wanted and quiet)
         self._waiting_since = min(self._waiting_since, now)
         matched = all(count >= there for count, there in zip(counts, known, strict=True))
         return (quiet and matched) or now - self._waiting_since > MATCH_LIMIT

@@ -23,7 +23,10 @@ class RobotDescription:
         self._publisher: Any = None
 
     def publish(self, simulation: Simulation, parameters: DynamicsParameters) -> None:
-        """Publish the URDF of another `simulation`; a swimmer that has none is logged."""
+        """Publish the URDF of another `simulation`; a swimmer that has none is logged.
+
+        Without a URDF later subscribers get none: not that of the swimmer before.
+        """
         if not parameters.publish_robot_description:
             return
         try:
@@ -38,9 +41,15 @@ class RobotDescription:
             ).text
         except ValueError as error:
             self._node.get_logger().warning(f"{TOPIC} is not published: {one_line(error)}")
+            self._withdraw()
             return
         if self._publisher is None:
             self._publisher = self._node.create_publisher(String, TOPIC, latched(1))
         if text != self._text:
             self._publisher.publish(String(data=text))
             self._text = text
+
+    def _withdraw(self) -> None:
+        if self._publisher is not None:
+            self._node.destroy_publisher(self._publisher)
+        self._publisher, self._text = None, ""
