@@ -2,7 +2,7 @@
 # The two commands are `make demo` and `make test`; each does all the set-up itself, inside this folder.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: docs notebook evidence pictures help demo test sanitize aarch64 validation build bench lint soak robustness clean
+.PHONY: docs wheels notebook evidence pictures help demo test sanitize aarch64 validation build bench lint soak robustness clean
 RUN := tools/run.sh
 
 help:   ## this list
@@ -31,6 +31,9 @@ bench: build   ## speed and accuracy figures (ARGS=NAME for one of them)
 
 docs: build   ## the site of docs/ in out/docs with its gallery, links checked
 	@$(RUN) tools/docs.sh
+
+wheels: build   ## wheels of the library without ROS, in out/wheels (ARGS=test also installs them on a bare machine)
+	@$(RUN) tools/wheels/build.sh $(ARGS)
 
 notebook: build   ## run docs/tutorials/swim.ipynb anew, with its outputs in out/notebook
 	@$(RUN) tools/docs.sh notebook

@@ -64,10 +64,13 @@ FROM_REQUIREMENTS = {
 }  # no rosdep key: requirements.txt brings them (pyarrow and rerun_bindings with rerun, zstandard and lz4 with mcap)
 
 
-def imported_modules(package: str) -> set[str]:
-    """Top-level names that a package's sources import, without Python's own and its own."""
+def imported_modules(package: str, *, but: str = "") -> set[str]:
+    """Top-level names that a package's sources import, without Python's own and its own. but: a folder left out."""
     found = set()
-    for path in (ROOT / "src" / package / package).rglob("*.py"):
+    folder = ROOT / "src" / package / package
+    for path in folder.rglob("*.py"):
+        if path.relative_to(folder).parts[0] == but:
+            continue
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.Import):
                 found |= {alias.name.split(".")[0] for alias in node.names}
@@ -100,7 +103,6 @@ def test_manifest_is_valid(package):
     parsed = parse_package(str(ROOT / "src" / package))
     assert parsed.name == package
     assert parsed.licenses == ["Apache-2.0"]
-    assert parsed.version == "0.1.0"
 
 
 @pytest.mark.parametrize("package", (*PYTHON_PACKAGES, "eel_core", "eel_msgs"))

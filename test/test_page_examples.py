@@ -15,6 +15,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from eel_common.command import suite
 from eel_common.command.suite import commands
 from eel_common.topics import OWN
 from reference_pages import COMMANDS, NODES, ROOT, parameter_names
@@ -74,7 +75,9 @@ def check(words: list[str]):
         name, *rest = rest[2:]
     if name == "eel" and rest:
         name, *rest = f"eel {rest[0]}", *rest[1:]
-    if name in NODES:
+    if words == ["eel", "--version"]:
+        assert suite.main(["--version"]) == 0
+    elif name in NODES:
         for given in (rest[k + 1] for k, word in enumerate(rest) if word == "-p"):
             parameter, sign, value = given.partition(":=")
             assert parameter in parameter_names(name) and sign and value, words

@@ -73,7 +73,7 @@ def _versions() -> Iterator[str]:
         except ImportError as error:
             yield f"{entry.name}: {one_line(error)}"
         else:
-            yield f"{entry.name}: {compiled['level']}, {compiled['compiler']}"
+            yield f"{entry.name}: {compiled['level']}, {compiled['compiler'].strip()}"
     yield f"Python {platform.python_version()}, {sys.executable}"
     yield f"ROS 2 {os.environ.get('ROS_DISTRO', 'of an unknown name')}" if find_spec("rclpy") else "no ROS 2 (no rclpy)"
 
