@@ -148,7 +148,7 @@ class SimulationSetup(EqualByFields):
         if self.flow is not None:
             needs = needs._replace(waves=max(needs.waves, self.body.length / self.flow.traits.shortest_wave))
         of_modes = () if self.modes is None else self.modes.edges
-        stations = (each.station for each in (*self.fins, *self.wrenches))
+        stations = [*(fin.station for fin in self.fins), *(wrench.station for wrench in self.wrenches)]
         edges = tuple(sorted({*of_modes, *edges_of(self.body, stations, of_modes)}))
         return GridSettings(self.settings.points_per_length(needs.waves), self.settings.kinks, needs.knots, edges)
 
