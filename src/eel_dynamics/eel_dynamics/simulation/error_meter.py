@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures the error of a march as it goes: a companion with coarser settings follows it.
+"""Measures the error of a march while it runs: a companion with coarser settings follows it.
 
-Both get the same laws and samples. Their distance is the estimate of the error (accuracy/error_estimate.py). A motion
-that is already known to others cannot be refined, so a missed target can only be reported. With a controller in the
+Both get the same laws and samples. Their distance is the estimate of the error (accuracy/error_estimate.py). Samples
+already published cannot be refined, so a missed target can only be reported. With a controller in the
 loop, the estimate is the error for the same curvature. It leaves out how the controller would have responded to a
 more accurate observation.
 """
@@ -33,14 +33,14 @@ from eel_dynamics.simulation.stopping import SimulationStopped
 
 COMPARED_EVERY = 0.1  # s of simulated time between two comparisons
 ROUND_OFF = 1e-9  # relative
-REMEMBERED = 300  # comparisons from which the growth rate is taken: those of the last 30 s
+REMEMBERED = 300  # comparisons that give the growth rate: the last 30 s
 FAILURES = SimulationStopped, ValueError, ArithmeticError, MemoryError
 
 
 def on_another_grid(begun: Callable[[Accuracy], March], settings: Accuracy, nodes: int | None) -> March:
     """The march `begun(settings)`; with more points along the body if its grid would have exactly `nodes`.
 
-    nodes: of another march's grid. They fill blocks, so that a few more points may give the same grid.
+    nodes: of another march's grid. Nodes fill blocks, so a few more points may give the same grid.
     """
     march = begun(settings)
     for _ in range(OTHER_GRIDS):
@@ -52,11 +52,11 @@ def on_another_grid(begun: Callable[[Accuracy], March], settings: Accuracy, node
 
 
 class ErrorMeter:
-    """The estimate of the error of a `march`, where it is `wanted`; else nothing is done.
+    """The estimate of the error of a `march`, if it is `wanted`; else it does nothing.
 
     Attributes:
         measured_since: [s], start of the estimate. The companion begins again from the present state when the
-            difference has become so great that it no longer grows, and so is no estimate any more.
+            difference is so great that it no longer grows, and so no longer estimates the error.
         lost_at: [s], the first such time; None if there was none.
     """
 
@@ -74,9 +74,9 @@ class ErrorMeter:
         self._speeds = np.zeros(2)  # m/s, rad/s: the greatest since then
         # rad, rad/s, rad/s: distances of angles and rates of joints, and the greatest rate; None without a robot
         self._bends: np.ndarray | None = None
-        self._stops_met, self._joints_apart = np.zeros(0, bool), np.zeros(0)  # of the joints, since then; [rad]
+        self._stops_met, self._joints_apart = np.zeros(0, bool), np.zeros(0)  # of each joint, since then; [rad]
         self._distances: deque = deque(maxlen=REMEMBERED)  # (time [s], distance of the heads [m])
-        self.due = False  # whether the next instant is to be compared, as torques have jumped
+        self.due = False  # whether to compare the next instant, after a jump of torques
         self.begin_again(march)
 
     def begin_again(self, march: March, growth_rate: float = 0.0):
@@ -102,7 +102,7 @@ class ErrorMeter:
     # -- the companion does what the march does
 
     def catch_up(self, march: March, interrupted: Callable[[], bool] | None = None):
-        """Have the companion at the present time, so that what happens next happens to both at once."""
+        """March the companion to the present time, so that the next change acts on both at once."""
 
         def advance(companion: March) -> None:
             companion.advance(march.time, interrupted)
@@ -111,7 +111,7 @@ class ErrorMeter:
             self.repeat(advance)
 
     def repeat(self, action: Callable[[March], March | None]):
-        """Have the companion do what the march has done; an action may return another march in its place."""
+        """Repeat on the companion an action done on the march; it may return another march in its place."""
         if self._companion is not None:
             try:
                 self._companion = action(self._companion) or self._companion
@@ -119,7 +119,7 @@ class ErrorMeter:
                 self._companion = None
 
     def keep_apart(self, march: March):
-        """After a change of the law: the companion begins again where its grid is that of the `march`."""
+        """After a change of the law: the companion begins again if it has the grid of the `march`."""
         there = self._companion
         if there is not None and len(there.discretisation.grid.x) == len(march.discretisation.grid.x):
             self.begin_again(march)
@@ -127,7 +127,7 @@ class ErrorMeter:
     # -- comparisons
 
     def advanced(self, march: March, interrupted: Callable[[], bool] | None):
-        """Compare the two, where that is due; of joints with limits at each call, as what a stop gives is short."""
+        """Compare the two if that is due; with limited joints at each call, as the torque of a stop is short."""
         robot = march.setup.robot
         self.due |= robot is not None and any(joint.limits is not None for joint in robot.joints)
         if self.due or march.time - self._compared_at >= COMPARED_EVERY * (1.0 - ROUND_OFF):
@@ -171,7 +171,7 @@ class ErrorMeter:
 
     @property
     def _scale(self) -> float:
-        """Length [m] by which the position's error is relative."""
+        """Length [m] that the position's error is relative to."""
         return max(self._path, self._length)
 
     # -- the estimate
@@ -208,6 +208,6 @@ class ErrorMeter:
 
 
 def _distances(this: Snapshot, other: Snapshot) -> np.ndarray:
-    """(4,) m, rad, m/s, rad/s: how far the heads are apart in two snapshots of one time."""
+    """(4,) m, rad, m/s, rad/s: distances of the heads in two snapshots of one time."""
     position, angle = this.position - other.position, angle_between(this.orientation, other.orientation)
     return np.array((np.linalg.norm(position), angle, *twist_size(this.twist - other.twist)))

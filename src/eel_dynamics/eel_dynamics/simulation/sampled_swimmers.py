@@ -22,28 +22,28 @@ from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped, stopped_by
 
 LEFT_OUT = -1
-MOST_WAVES = 2.0  # of a flow on the body: the nodes resolve as many at the least
+MOST_WAVES = 2.0  # of a flow on the body: the nodes resolve at least this number
 
 Array = NDArray[np.float64]
 
 
 class SampledSwimmers:
-    """N swimmers. Each swims as a `Simulation` with the same samples and with the settings `accuracy`, to the last bit,
+    """N swimmers. Each equals a `Simulation` with the same samples and the settings `accuracy`, to the last bit,
     for any number of threads.
 
     A sample is the curvature at the points `points` at the end of a control step: rows (6, n), pitch, its rate and its
-    acceleration, then yaw. Those of `advance` are not checked, see `check`.
+    acceleration, then yaw. `advance` does not check samples, see `check`.
 
     Args:
         count: N.
-        points: (n,) [m], of the samples.
-        waves: on the body, which the grid must resolve; None: as many as the points can carry.
-        setup: of all, whose accuracy changes as of `Accuracy.for_control_steps`.
-        threads: how many march.
+        points: (n,) [m], X of the samples.
+        waves: on the body, which the grid must resolve; None: the most that the points can carry.
+        setup: shared by all; `Accuracy.for_control_steps` adapts its accuracy.
+        threads: their number.
 
     Attributes:
         accuracy: the settings in force.
-        heads: (13, N) position [m], orientation x y z w, angular velocity [rad/s] and velocity [m/s] of each, as of
+        heads: (13, N) position [m], orientation x y z w, angular velocity [rad/s] and velocity [m/s] of each, as in
             `Simulation.head`. In the plane the velocities are those of the steps, which integrate the rate of bending
             exactly.
     """
@@ -75,7 +75,7 @@ class SampledSwimmers:
         )
 
     def __getstate__(self) -> dict[str, Any]:
-        """Without what follows from the rest; of the core what goes on, as bytes."""
+        """Without derived data; the core's state as bytes."""
         left_out = "_discretisation", "grid"
         kept = {name: value for name, value in self.__dict__.items() if name not in left_out}
         return kept | {"_marches": self._marches.state_as_bytes()}
@@ -86,7 +86,7 @@ class SampledSwimmers:
         self._marches.set_state_from_bytes(state["_marches"], [each.core_flow for each in self._starts])
 
     def check(self, rows: Array) -> CurvatureSample:
-        """A sample with these `rows` (6, n); `ValueError` for one that `Simulation.add_samples` refuses."""
+        """A sample with these `rows` (6, n); `ValueError` if `Simulation.add_samples` would refuse it."""
         check_points(len(self._points))
         length, planar = self.setup.body.length, self.setup.scene.planar
         return CurvatureSample.checked(
@@ -96,8 +96,8 @@ class SampledSwimmers:
     def start(self, index: int, position, orientation, twist, rows: Array, flow: Flow | None = None) -> None:
         """Put a swimmer at the start, straight, at time 0, where its sample has the `rows` (6, n).
 
-        position, orientation, twist, flow: as of `Simulation`; a `FlowField` is refused, for Python runs in one thread.
-        The nodes stay those of the samples: `ValueError` for a flow that asks for more.
+        position, orientation, twist, flow: as in `Simulation`; a `FlowField` is refused, as Python runs in one thread.
+        The grid stays that of the samples: `ValueError` for a flow that needs a finer one.
         """
         self.check(rows)
         setup = self.setup.starting(position, orientation, twist, flow)
@@ -125,10 +125,10 @@ class SampledSwimmers:
         self._marches.wake()
 
     def advance(self, times: Array, rows: Array, status: NDArray[np.int64]) -> dict[int, SimulationStopped]:
-        """March each swimmer to its own of the `times` (N,) [s], where its sample has its `rows` (N, 6, n).
+        """March each swimmer to its own time in `times` (N,) [s], where its sample has the `rows` (N, 6, n).
 
-        status (N,): `LEFT_OUT` of those that stay, 0 of the others; it stays so. Returns why swimmers stopped, by their
-        index.
+        status (N,): `LEFT_OUT` for swimmers that stay, 0 for the others; unchanged. Returns why swimmers stopped, by
+        their index.
         """
         stopped: dict[int, SimulationStopped] = {}
         if self._marches.advance(times, rows, status, self.heads):
@@ -144,7 +144,7 @@ class SampledSwimmers:
             self._marches.advance(times, rows, found, self.heads)
 
     def observe(self, index: int, *, wrench: bool = True, load: bool = True) -> Snapshot:
-        """The snapshot of a swimmer at present, as of `Simulation.observe`."""
+        """The present snapshot of a swimmer, as from `Simulation.observe`."""
         wrench, load = bool(wrench and self.setup.scene.internal_wrench), bool(load)
         time, works, _ = self._marches.present(index)
         ledger = (np.array(works), float(self._energy_at_start[index])) if self.setup.scene.ledger else None

@@ -29,26 +29,26 @@ from eel_dynamics.model.robot.robot import Robot, checked_robot
 from eel_dynamics.model.scene import Scene, checked_scene
 from eel_dynamics.model.wrenches.external_wrench import ExternalWrench, checked_wrenches, instants_of
 
-FITTING = 1e-6  # part of the body's length by which the rows of a law may be shorter or longer
+FITTING = 1e-6  # of the body's length: tolerance for the length of a law's rows
 
 
 @dataclass(frozen=True, eq=False)
 class SimulationSetup(EqualByFields):
-    """The part of a simulation that neither a march nor a reset changes. `of` checks the arguments."""
+    """The constant part of a simulation, which marches and resets keep. `of` checks the arguments."""
 
     body: Body
     scene: Scene
-    accuracy: Accuracy  # as it was asked for
+    accuracy: Accuracy  # as given
     x: np.ndarray  # (M,) m, stations
     initial_state: InitialState
     default_transition: float  # s
-    most_evaluations: float  # by simulated second
+    most_evaluations: float  # per simulated second
     flow: Flow | None
     robot: Robot | None
     fins: tuple[Fin, ...]
     wrenches: tuple[ExternalWrench, ...] = ()
-    sensors: tuple[float, ...] = ()  # m, X of those that are observed, rising
-    until: float = 0.0  # s, up to which functions of time are looked at beforehand; 0: they are not
+    sensors: tuple[float, ...] = ()  # m, X of the observed ones, rising
+    until: float = 0.0  # s, until which functions of time are sampled beforehand; 0: not at all
 
     @staticmethod
     def of(
@@ -68,7 +68,7 @@ class SimulationSetup(EqualByFields):
         most_evaluations=MOST_EVALUATIONS,
         default_transition=DEFAULT_TRANSITION,
     ) -> "SimulationSetup":
-        """The set-up from the arguments of `Simulation`. `ValueError` names the one that does not fit."""
+        """The set-up from the arguments of `Simulation`. `ValueError` names an unsuitable one."""
         robot = checked_robot(robot)
         body = checked_body(robot.body if body is None and robot is not None else body)
         scene, accuracy, x = checked_scene(scene), Accuracy.of(accuracy), checked_stations(stations, body.length)
@@ -83,7 +83,7 @@ class SimulationSetup(EqualByFields):
         return SimulationSetup(body, scene, accuracy, x, *how, flow, robot, fins, wrenches, where)
 
     def starting(self, position, orientation, twist, flow) -> "SimulationSetup":
-        """The same from another start, in other water. `ValueError` as of `of`."""
+        """The same with another start and flow. `ValueError` as in `of`."""
         start = _checked_start(self.scene, position, orientation, twist, flow)
         return replace(self, initial_state=start, flow=flow)
 
@@ -102,7 +102,7 @@ class SimulationSetup(EqualByFields):
     def __deepcopy__(self, memo: dict) -> "SimulationSetup":
         return self
 
-    def __getstate__(self) -> dict[str, Any]:  # without what is computed once
+    def __getstate__(self) -> dict[str, Any]:  # without cached values
         return {each.name: getattr(self, each.name) for each in fields(self)}
 
     @cached_property
@@ -112,13 +112,13 @@ class SimulationSetup(EqualByFields):
 
     @cached_property
     def core_flow(self) -> eel_core.Flow | None:
-        """The flow for the compiled mechanics."""
+        """The flow for the core."""
         return None if self.flow is None else core_flow(self.flow, bool(self.scene.planar))
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
         """Times [s] at which a derivative of the flow, of the fins' angles, of muscles' moments or of a wrench from
-        outside jumps, or what is given over time changes suddenly."""
+        outside jumps, or data given over time change suddenly."""
         of_flow = () if self.flow is None else self.flow.traits.breakpoints
         of_robot = () if self.robot is None else self.robot.ramp_ends
         return *of_flow, *knots_of(self.fins), *of_robot, *instants_of(self.wrenches), *self.sudden_changes
@@ -131,7 +131,7 @@ class SimulationSetup(EqualByFields):
 
     @property
     def longest_step(self) -> float:
-        """The longest step [s] that sees torques and wrenches that are functions; infinite where these are looked at
+        """The longest step [s] that resolves functions of torques and wrenches; infinite if these are sampled
         beforehand."""
         functions = any(torque.time is None for torque in given_torques(self.robot))
         unseen = not self.until and (functions or any(wrench.is_function for wrench in self.wrenches))
@@ -139,11 +139,11 @@ class SimulationSetup(EqualByFields):
 
     @property
     def time_scale_of_surroundings(self) -> float:
-        """Shortest time scale [s] of flow and fins; inf where they have none."""
+        """Shortest time scale [s] of flow and fins; inf if they have none."""
         return min(servo_time(self.fins), np.inf if self.flow is None else self.flow.traits.time_scale)
 
     def grid_for(self, needs: ShapeNeeds) -> GridSettings:
-        """The settings of the grid for the `needs` of a law, and those of the flow, with panels that end at fins and
+        """The settings of the grid for the `needs` of a law and the flow's, with panels that end at fins and
         at wrenches from outside."""
         if self.flow is not None:
             needs = needs._replace(waves=max(needs.waves, self.body.length / self.flow.traits.shortest_wave))
@@ -197,13 +197,13 @@ class SimulationSetup(EqualByFields):
 
 
 def _place(part: Any) -> tuple[Any, ...]:
-    """Kind and place of a part of a robot, and whether it has coordinates of its own."""
+    """Kind and place of a part of a robot, and whether it has its own coordinates."""
     where = (getattr(part, name, None) for name in ("position", "start", "end", "width", "modes", "axis"))
     return type(part), *where, getattr(getattr(part, "actuator", None), "has_spring", False)
 
 
 def _checked_start(scene: Scene, position, orientation, twist, flow) -> InitialState:
-    """The start. `ValueError` for one, or a flow, that `scene` does not allow; or for a head out of the water there."""
+    """The start. `ValueError` for a start or flow that `scene` does not allow, or for a head out of the water."""
     start = checked_state(scene.planar, position, orientation, twist)
     flow = checked_flow(flow, scene.planar)
     check_covers(flow, 0.0)
@@ -227,7 +227,7 @@ def checked_stations(stations, length: float) -> np.ndarray:
 
 
 def checked_sensors(places: Any, length: float) -> tuple[float, ...]:
-    """X [m] of sensors, rising and each once, from those `places`. `ValueError` for one outside 0 to `length` [m]."""
+    """X [m] of sensors, rising and distinct, from `places`. `ValueError` for one outside 0 to `length` [m]."""
     x = checked_row("sensors", places, None)
     for each in x:
         if not 0.0 <= each <= length * (1 + 1e-12):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The reasons why a march could not continue, and what to change; and which of a run's samples cannot be returned.
+"""The reasons why a march could not continue, the remedies, and the first sample of a run that cannot be returned.
 
-A fixed step that is too long does not fail by itself: the motion grows, but every number stays finite. The ledger (eq.
+Too long a fixed step does not fail by itself: the motion grows, but every number stays finite. The ledger (eq.
 60 times the head's twist) shows the error: the energy gains more than the integral of the powers. Where this
-excess is more than a share of all energy that was there or passed, the motion is not that of the model. A motion below
+excess exceeds a share of all energy that was present or passed, the motion is not the model's. A motion below
 `floor`, too small on the body's scale to need steps of its own, passes: its error is relative to the body's length.
 """
 
@@ -29,7 +29,7 @@ class SimulationStopped(WorkStopped):
         super().__init__(f"stopped at t = {time:.6g} s: {quantity} ({value:.3g}); {hint}")
         self.time, self.quantity, self.value, self.hint = time, quantity, value, hint
         self.diverged = False  # the steps were too long
-        self.run: Any  # the Run up to there, where one was asked for
+        self.run: Any  # the Run up to there, if one was requested
 
     def __reduce__(self) -> tuple[Any, ...]:
         return SimulationStopped, (self.time, self.quantity, self.value, self.hint), self.__dict__
@@ -56,7 +56,7 @@ def stopped_by(status: int, time: float, bounds: eel_core.StepBounds, accuracy: 
 
 
 def stopped_in_flow(flow: Flow | None, core: eel_core.March, time: float) -> SimulationStopped | None:
-    """The error at `time` [s] where the `flow` is not known, or none of water; else None."""
+    """The error at `time` [s] outside the known `flow` or above its surface; else None."""
     if core.outside is not None:
         return left_grid(flow, core.outside)
     if flow is not None and core.state[2] > flow.traits.surface_height:
@@ -66,7 +66,7 @@ def stopped_in_flow(flow: Flow | None, core: eel_core.March, time: float) -> Sim
 
 
 def left_grid(flow: Flow | None, where: Sequence[float]) -> SimulationStopped:
-    """The error for a swimmer with a point at a time [s] and a place [m], `where` the `flow` is not known."""
+    """The error for a swimmer with a point at `where`, a time [s] and a place [m] outside the known `flow`."""
     time, x, y, z = map(float, where)
     axis, value = (flow and flow.outside(time, (x, y, z))) or ("", np.nan)
     quantity = f"the swimmer has left the grid of the flow at ({x:.4g}, {y:.4g}, {z:.4g}) m, beyond {axis}"
@@ -81,7 +81,7 @@ def outside_flow(flow: Flow | None, time: float, places: np.ndarray) -> Simulati
 
 
 def by_part(stopped: SimulationStopped, core: eel_core.March, table: ModeTable, singular: bool) -> SimulationStopped:
-    """The error of a robot with the modes of `table`, with the part that is to blame. singular: the inertia is."""
+    """The error of a robot with the modes of `table`, with the responsible part. singular: whether the inertia is."""
     part = shown(table.name[core.to_blame(singular)])
     if singular:
         hint = f"{part} has no inertia of its own: give it an armature, or a support apart from the others"
@@ -91,7 +91,7 @@ def by_part(stopped: SimulationStopped, core: eel_core.March, table: ModeTable, 
 
 
 def remedy(accuracy: Accuracy) -> str:
-    """What to change where the numbers of a run have diverged."""
+    """What to change after a run has diverged."""
     if accuracy.step is not None:
         return "take a smaller step, or an accuracy in its place"
     if accuracy.fixed is not None:
@@ -102,7 +102,7 @@ def remedy(accuracy: Accuracy) -> str:
 def first_bad_sample(
     out: Any, works: np.ndarray, done: int, start: float, floor: float, robot: np.ndarray | None = None
 ) -> tuple[int, str, float] | None:
-    """The first bad sample of the first `done` ones: its index, the quantity and its value. None where all are good.
+    """The first bad sample of the first `done` ones: its index, the quantity and its value. None if all are good.
 
     out: `Observations`. works (T, 8) [J]. start [J]: the energy at the start. floor [J]: energy that counts as
     none; where it is infinite, the ledger is not checked. robot (T, 3): as of `EnergyLedger.of`.
