@@ -86,7 +86,9 @@ def controller(pid: int) -> None:
     """Answer samples on odom, and print the CPU time of `pid` for a sample."""
     node, executor = _node_of("controller")
     publisher = node.create_publisher(JointState, "joint_commands", keep_all())
-    command, times, seen = JointState(name=JOINTS), [], set()
+    command = JointState(name=JOINTS)
+    times: list[float] = []  # s
+    seen: set[int] = set()  # ns
 
     def answer(odometry: Odometry) -> None:
         stamp = odometry.header.stamp.sec * 1_000_000_000 + odometry.header.stamp.nanosec
