@@ -175,6 +175,8 @@ def test_frames_that_do_not_fit_end_the_start(start_in_turn):
         "wrench_frames:=[thruster -0.5]": "wrench_frames thruster must be >= 0 m, got -0.5",
         "wrench_frames:=[a 0.5, a 0.6]": "wrench_frames must have names of their own, got 'a' again",
         "wrench_frames:=[odom 0.5]": "wrench_frames must have names of their own, got 'odom' again",
+        "wrench_frames:=[imu_link 0.5]": "wrench_frames must have names of their own, got 'imu_link' again",
+        "wrench_frames:=[link_2 0.5]": "wrench_frames must have names of their own, got 'link_2' again",
         "wrenches:=head station=0": "external wrench must be one of section, world, got 'head'",
         "wrenches:=section force=1,0,0": "external wrench station must be given",
         "wait_for:=[external_wrench/neck]": "wait_for external_wrench/ must be one of base_link, got 'neck'",

@@ -14,11 +14,14 @@ from rclpy.parameter import Parameter
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.body.text import body_of
+from eel_dynamics.model.fins.text import fins_from_text
 from eel_dynamics.model.flow.plain import flow_of
 from eel_dynamics.model.flow.text import flow_from_text, text_of_flow
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.model.wrenches.text import wrenches_from_text
 from eel_dynamics.ros.parameters import FRAMES, ROOT, DynamicsParameters
 from eel_dynamics.ros.simulation_from_parameters import Sensors, check_sensors, robot_from_parameters
+from eel_dynamics.ros.wrench_frames import wrench_frames
 from eel_dynamics.sensors.suite import KINDS
 
 SCENE, FLOW, USE_SIM_TIME = "scene.", "flow.", "use_sim_time"
@@ -113,6 +116,12 @@ class Declaration:
                 robot_from_parameters(values)
             if "flow" in found:
                 flow_from_text(values.flow)
+            if "fins" in found:
+                fins_from_text(values.fins)
+            if "wrenches" in found:
+                wrenches_from_text(values.wrenches)
+            if "wrench_frames" in found:
+                wrench_frames(values)
             if "accuracy" in found:
                 Accuracy.of(values.accuracy)
             if sensors != self.next_sensors or (found and any(each.rate for each in sensors)):

@@ -34,7 +34,7 @@ from eel_dynamics.model.flow.flow import lattice_around, velocities_at
 from eel_dynamics.model.robot.actuators import current_by_torque, most_torque
 from eel_dynamics.model.robot.joint_signs import OF_SECTIONS, message_signs
 from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
-from eel_dynamics.ros.wrench_frames import poses_at, wrench_frames
+from eel_dynamics.ros.wrench_frames import wrench_frames
 from eel_dynamics.runs.exchange.message_fields import FIELDS, LINEAR, OF_JOINTS, SIGNED
 from eel_dynamics.runs.exchange.messages_of_run import fields_of_fins, fields_of_joints, numbers_of_appendages, outline
 from eel_dynamics.simulation.observations import Snapshot
@@ -88,7 +88,7 @@ class SampleMessages:
             topics["flow_vectors"] = vectors, world
         self._tf_stations = len(x) if parameters.publish_tf_stations else 0
         frames = {frame: station for frame, station in wrench_frames(parameters).items() if frame != head}
-        self._wrench_stations = np.array([*frames.values()])
+        self._wrench_places = [simulation.setup.sensors.index(station) for station in frames.values()]
         children = [head, *(f"{section}_{k}" for k in range(self._tf_stations)), *frames]
         transforms = [TransformStamped(child_frame_id=child) for child in children]
         for transform in transforms:
@@ -189,9 +189,9 @@ class SampleMessages:
         poses: list[Any] = []
         if self._tf_stations:
             poses += zip(snapshot.backbone, with_section_axes(snapshot.section_orientation), strict=True)
-        if self._wrench_stations.size:
-            found = poses_at(self._wrench_stations, snapshot.x, snapshot.backbone, snapshot.section_orientation)
-            poses += zip(*found, strict=True)
+        poses += [
+            (snapshot.sensor_position[place], snapshot.sensor_orientation[place]) for place in self._wrench_places
+        ]
         for k, (position, rotation) in enumerate(poses, start=1):
             numbers[f"transforms[{k}].transform.translation"][:] = position
             numbers[f"transforms[{k}].transform.rotation"][:] = rotation

@@ -22,7 +22,7 @@ Sensors = tuple[SensorSettings, ...]
 def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene, sensors: Sensors = ()) -> Simulation:
     """The simulation at t = 0, with the robot's own limits; `ValueError` names what does not fit."""
     robot, places = robot_from_parameters(parameters), check_sensors(parameters, sensors)
-    own = has_own_body(robot, parameters)
+    own, frames = has_own_body(robot, parameters), wrench_frames(parameters)
     return Simulation(
         body=None if own else body_of(parameters.body),
         robot=robot,
@@ -37,8 +37,8 @@ def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene, sen
         measure_error=parameters.estimate_error,
         flow=flow_from_text(parameters.flow),
         fins=fins_from_text(parameters.fins),
-        sensors=places,
-        wrenches=(*wrenches_from_text(parameters.wrenches), *stations_of(wrench_frames(parameters))),
+        sensors=tuple(sorted({*places, *[*frames.values()][1:]})),  # the head's frame is the first
+        wrenches=(*wrenches_from_text(parameters.wrenches), *stations_of(frames)),
     )
 
 
