@@ -27,14 +27,18 @@ class ComplementaryFilter:
     CLIMB, PLACE = 1.0, 1.5  # 1/s^2, 1/s: of the error of the height, into its rate and itself
 
     def __init__(self):
-        self.time, self.still, self.count = None, np.zeros(6), 0
+        self.time = self.start = None  # s
+        self.still, self.count = np.zeros(6), 0
         self.orientation = np.array([0.0, 0.0, 0.0, 1.0])  # x y z w, world from head
         self.height = self.climb = 0.0  # m, m/s
 
     def feel(self, time, force, turning, height):
         """Take a reading at `time` [s]: specific force (3,) [m/s^2], angular velocity (3,) [rad/s], height [m]."""
+        if time == self.time:
+            return  # the same again: the run stands at its start
+        self.start = time if self.start is None else self.start
         reading = np.array([*force, *turning])
-        if time < STILL:
+        if time < self.start + STILL:
             self.still, self.count = self.still + reading, self.count + 1
             self.time, self.height = time, self.height + (height - self.height) / self.count
             return
@@ -74,7 +78,7 @@ class BySensors:
             self.filter = ComplementaryFilter()
         self.filter.feel(time, force, turning, height)
         place = 0.0, 0.0, self.filter.height
-        return self.control.angles(max(0.0, time - STILL), place, self.filter.orientation)
+        return self.control.angles(max(0.0, time - self.filter.start - STILL), place, self.filter.orientation)
 
 
 class SensorController(Node):
@@ -91,14 +95,16 @@ class SensorController(Node):
     def take(self, message):
         """A reading; once both of a stamp have come, in whatever order, the joints are commanded."""
         stamp = message.header.stamp.sec, message.header.stamp.nanosec
-        self.waiting = {later: each for later, each in self.waiting.items() if later >= stamp}
-        both = self.waiting.setdefault(stamp, {}) | {type(message): message}
-        self.waiting[stamp] = both
+        both = self.waiting.setdefault(stamp, {})
+        both[type(message)] = message
         if len(both) == 2:
+            time, last = stamp[0] + 1e-9 * stamp[1], self.control.filter.time or 0.0
+            kept = {later: each for later, each in self.waiting.items() if later > stamp}
+            self.waiting = kept if time >= last else {}  # the run has begun again
             imu, depth = both[Imu], both[PoseWithCovarianceStamped]
             force, turning = imu.linear_acceleration, imu.angular_velocity
             readings = (force.x, force.y, force.z), (turning.x, turning.y, turning.z), depth.pose.pose.position.z
-            angles = self.control.angles(stamp[0] + 1e-9 * stamp[1], *readings)
+            angles = self.control.angles(time, *readings)
             signed = [-angle if name.startswith("yaw") else angle for name, angle in angles.items()]
             self.commands.publish(JointState(header=imu.header, name=[*angles], position=signed))
 

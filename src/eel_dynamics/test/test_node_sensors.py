@@ -3,15 +3,20 @@
 
 import numpy as np
 import pytest
+from eel_dynamics.model.robot.joint_signs import message_signs
 from eel_dynamics.model.robot.robot import robot_of
+from eel_dynamics.ros.parameters import DynamicsParameters
+from eel_dynamics.ros.sensors import SensorMessages
 from eel_gaits.ros.messages import law_to_message
 from geometry_msgs.msg import PoseWithCovarianceStamped, TwistWithCovarianceStamped
+from rclpy.serialization import deserialize_message
 from scipy.spatial.transform import Rotation
 from sensor_msgs.msg import FluidPressure, Imu, JointState
 from swim_client import LATCHED, LIMIT, LOSSLESS, nanoseconds
 from tf2_msgs.msg import TFMessage
 
-from eel_dynamics import Scene, simulate
+from eel_dynamics import Encoders, Scene, Simulation, simulate
+from eel_dynamics import Imu as ImuSettings
 from eel_gaits import backward, falling
 from eel_msgs.msg import MotorStates
 
@@ -82,7 +87,10 @@ def test_the_node_s_sensors_read_what_the_library_s_do(start, client):
         assert message.linear_acceleration_covariance == pytest.approx(np.diag([0.02**2] * 3).ravel())
         assert message.angular_velocity_covariance == pytest.approx(np.diag([0.001**2] * 3).ravel())
         assert message.orientation_covariance == pytest.approx(np.diag([0.005**2] * 3).ravel())
-    read, found = run.pressure(**pressure | {"station": 0.25, "stations": (0.25,)}), by_stamp(swim.received["pressure"])
+    read, found = (
+        run.pressure(0.25, **{k: v for k, v in pressure.items() if k != "stations"}),
+        by_stamp(swim.received["pressure"]),
+    )
     assert [each.fluid_pressure for each in found.values()] == pytest.approx(read.pressure, abs=1e-6)  # of 1e5
     assert {each.variance for each in found.values()} == {2500.0}
     depths = by_stamp(swim.received["depth"])
@@ -90,7 +98,8 @@ def test_the_node_s_sensors_read_what_the_library_s_do(start, client):
     last = next(reversed(depths.values()))
     assert last.header.frame_id == "odom" and last.pose.covariance[14] == pytest.approx((50.0 / 9806.65) ** 2)
     assert last.pose.covariance[0] == 1e6 and last.pose.covariance[35] == 1e6
-    read, found = run.velocity(**velocity | {"station": 1.0}), by_stamp(swim.received["velocity"])
+    read = run.velocity(1.0, rate=10.0, through_water=True, noise=0.01)
+    found = by_stamp(swim.received["velocity"])
     assert len(found) == 11
     for row, message in enumerate(found.values()):
         assert xyz(message.twist.twist.linear) == pytest.approx(read.velocity[row], abs=SAME)
@@ -107,8 +116,9 @@ def test_encoders_take_the_place_of_the_true_joints(start, client):
     read, found = run.encoders(**settings), by_stamp(swim.received["joint_states"])
     assert [*found] == [round(1e9 * t) for t in read.time]
     for row, message in enumerate(found.values()):
+        true = run.joint_rate[4 * row]
         assert message.position == pytest.approx(-read.angle[row], abs=1e-9)  # joints in yaw
-        assert message.velocity == pytest.approx(-read.rate[row], abs=1e-6)
+        assert message.velocity == pytest.approx(read.rate[row] - true - true, abs=1e-6)  # noise has the topic's sign
     assert np.isnan(swim.received["motor_states"][-1].current).all()  # the ready robot has no torque constant
 
 
@@ -164,3 +174,42 @@ def test_a_sensor_that_does_not_fit_is_refused_at_the_start_and_later(start, sta
         (result,) = swim.set(**{name: [1.5] if value == "[1.5]" else float(value.lstrip("."))})
         assert not result.successful and result.reason == expected
     swim.until(lambda: swim.received["head_pose"], "a sample: the node is up")
+
+
+def sent(messages, simulation, samples):
+    """(sample, topic, message's bytes) of what is due, of samples at 100 Hz."""
+    found = []
+    for k in samples:
+        simulation.advance(k / 100)
+        due = messages.due(simulation.observe(), k * 10_000_000)
+        found += [(k, topic, bytes(message)) for topic, message in due]
+    return found
+
+
+def test_while_a_run_stands_at_its_start_readings_are_not_late():
+    """Who commands by sensors alone starts the run by an answer to the first."""
+    swimmer = Simulation(law=falling(), sensors=[0.0])
+    messages = SensorMessages((ImuSettings(rate=50.0, latency=0.02),), swimmer, DynamicsParameters())
+    found = sent(messages, swimmer, [0, 0, *range(1, 8)])
+    assert [(k, topic) for k, topic, _ in found] == [(0, "imu"), (0, "imu"), (4, "imu"), (6, "imu")]
+    assert found[0] == found[1]
+
+
+def test_a_reset_gives_the_same_readings_again():
+    swimmer = Simulation(law=falling(), sensors=[0.0])
+    walking = ImuSettings(rate=100.0, latency=0.03, gyroscope_noise=0.1, gyroscope_walk=0.1, seed=3)
+    messages = SensorMessages((walking,), swimmer, DynamicsParameters())
+    first = sent(messages, swimmer, range(8))
+    swimmer.reset()
+    assert sent(messages, swimmer, range(8)) == first and len({each[2] for each in first}) == len(first) == 5
+
+
+def test_the_bias_of_an_encoder_has_the_sign_of_its_topic():
+    robot = robot_of("sixteen_servos")
+    swimmer = Simulation(law=backward(), robot=robot)
+    messages = SensorMessages((Encoders(rate=100.0, angle_bias=0.05),), swimmer, DynamicsParameters())
+    swimmer.advance(0.2)
+    now = swimmer.observe()
+    found = dict(messages.due(now, 200_000_000))
+    position = deserialize_message(bytes(found["joint_states"]), JointState).position
+    assert position == pytest.approx(message_signs(robot) * now.joints["joint_angle"] + 0.05, abs=1e-12)

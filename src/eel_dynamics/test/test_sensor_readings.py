@@ -116,6 +116,8 @@ def test_current_follows_from_the_torque_constant():
         (lambda run: run.pressure(noise=np.inf), "pressure noise must be finite, got inf"),
         (lambda run: run.velocity(seed=1.5), "velocity seed must be an integer, got 1.5"),
         (lambda run: run.encoders(), "encoders need a robot with joints"),
+        (lambda run: run.imu(rate=0.0), "imu rate must be > 0 Hz, got 0"),
+        (lambda run: run.imu(0.3, stations=(0.1,)), "stations must be one at a time, as station, got (0.1,)"),
     ],
 )
 def test_what_does_not_fit_is_one_error(run, call, said):
@@ -143,6 +145,8 @@ def test_a_suite_names_its_sensors_and_is_empty_without_rates():
         SensorSuite([Imu(rate=1.0, stations=(0.3,))], simulation)
     with pytest.raises(ValueError, match="encoders need a robot"):
         SensorSuite([Encoders(rate=1.0)], simulation)
+    with pytest.raises(ValueError, match="one of each kind, with all its stations, got pressure twice"):
+        SensorSuite([Pressure(rate=1.0), Pressure(rate=2.0)], simulation)
 
 
 def test_a_suite_reads_a_march_as_a_run_is_read(run):

@@ -11,6 +11,7 @@ from itertools import count
 from typing import Any
 
 import numpy as np
+from eel_dynamics.model.flow.flow import Flow
 from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.sensors.encoders import Encoders
 from eel_dynamics.sensors.imu import Imu
@@ -30,6 +31,8 @@ def observed_by(settings: Sequence[SensorSettings], robot: Robot | None) -> tupl
     """What a policy sees of sensors with these `settings`: names as of topics, units, bounds."""
     seen: list[Observed] = []
     for each in settings:
+        if not each.rate:
+            continue
         stations = each.stations if isinstance(each, StationedSettings) else (0.0,)
         for k in range(1, 1 + len(stations)):
             name = each.what if len(stations) == 1 else f"{each.what}_{k}"
@@ -71,11 +74,12 @@ class Sensing:
             begin = max((rows.stop for rows in self._rows.values()), default=0)
             self._rows[name] = slice(begin, begin + len(_parts(sensor.settings, setup.robot)))
 
-    def begin(self, index: int, random: np.random.Generator) -> None:
-        """Begin an episode of a swimmer, with noise drawn from its `random` numbers."""
+    def begin(self, index: int, random: np.random.Generator, flow: Flow | None) -> None:
+        """Begin an episode of a swimmer in a `flow`, with noise drawn from its `random` numbers."""
         if self._settings:
             drawn = [replace(each, seed=int(random.integers(2**31))) for each in self._settings]
-            self._suites[index], self.values[:, index] = SensorSuite(drawn, self._setup), 0.0
+            self._suites[index] = SensorSuite(drawn, replace(self._setup, flow=flow))
+            self.values[:, index] = 0.0
             self._waiting[index].clear()
 
     def look(self, index: int, observe: Callable[[], Snapshot]) -> None:

@@ -190,7 +190,7 @@ class SwimmerEnv(Task):
             twist = (start.roll_rate, 0.0, 0.0, start.speed, 0.0, 0.0)
             flow = self.flow if self.flow is None or isinstance(self.flow, Flow) else self.flow(draws[index])
             self.swimmers.start(index, start.position, level_orientation(start.heading), twist, row, flow)
-            self._sensing.begin(index, draws[index])
+            self._sensing.begin(index, draws[index], flow)
         self.ticks[swimmers] = self._status[swimmers] = 0
         self._look()
         if self.shape:

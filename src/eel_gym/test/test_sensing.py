@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from eel_dynamics import Encoders, Imu, Pressure, Robot, Velocity
+from eel_dynamics import Encoders, Imu, Pressure, Robot, Velocity, Wave
 from eel_gym import HeadingEnv, JointAction, SwimmerEnv, ThreadedVectorEnv
 
 NOISY = Imu(rate=50.0, stations=(0.0, 0.4), accelerometer_noise=0.1, orientation=True)
@@ -102,3 +102,17 @@ def test_what_does_not_fit_is_one_error(sensors, said):
     with pytest.raises(ValueError) as caught:
         BySensors(sensors=sensors)
     assert str(caught.value) == said
+
+
+def test_what_is_off_is_left_out_and_a_kind_comes_once():
+    env = BySensors(sensors=[Imu(), Pressure(rate=50.0)])
+    assert [each.name for each in env.sensed] == ["pressure depth"]
+    with pytest.raises(ValueError, match="one of each kind"):
+        BySensors(sensors=[Pressure(rate=50.0), Pressure(rate=10.0)])
+
+
+def test_the_depth_is_below_the_surface_of_an_episodes_flow():
+    sensors = [Pressure(rate=50.0)]
+    still = stepped(BySensors(sensors=sensors), 1)
+    below = stepped(BySensors(sensors=sensors, flow=Wave(amplitude=0.01, wavelength=2.0, surface=1.0)), 1)
+    assert below[0, 0] == pytest.approx(still[0, 0] + 1.0, abs=1e-9)

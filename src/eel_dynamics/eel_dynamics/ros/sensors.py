@@ -2,8 +2,8 @@
 """Messages of sensors, and the frames where these sit.
 
 imu, pressure, depth, velocity, joint_states and motor_states come at the sensor's rate, with the first sample once
-their latency is over; their stamp is the time of the reading. Each sensor at a station has a frame NAME_link below the
-head's: on /tf_static where the body ahead of it is rigid, else on /tf with each sample.
+their latency is over, and those of t = 0 at once; their stamp is the time of the reading. Each sensor at a station has
+a frame NAME_link below the head's: on /tf_static where the body ahead of it is rigid, else on /tf with each sample.
 """
 
 import heapq
@@ -43,7 +43,9 @@ class SensorMessages:
     """
 
     def __init__(self, settings: tuple[Any, ...], simulation: Simulation, parameters: DynamicsParameters) -> None:
-        self._simulation, self._suite = simulation, SensorSuite(settings, simulation)
+        robot = simulation.robot
+        self._signs = np.ones(0) if robot is None else message_signs(robot)
+        self._simulation, self._suite = simulation, SensorSuite(settings, simulation, self._signs)
         self._around = Surroundings.of(simulation.scene, simulation.flow)
         self._due: list[tuple[int, int, str, bytes]] = []  # a heap: when [ns], count, topic, message
         self._count = count()
@@ -82,7 +84,8 @@ class SensorMessages:
             self._suite.begin()
             self._due.clear()
         for name, readings in self._suite.read(snapshot).items():
-            late = round(self._suite.sensors[name].settings.latency * SECOND)
+            # At the start they have been on for long: who commands by sensors alone could not start the run else.
+            late = round(self._suite.sensors[name].settings.latency * SECOND) if nanoseconds else 0
             for topic in _FILL[type(readings)](self, name, readings, snapshot):
                 if heard(topic):
                     entry = nanoseconds + late, next(self._count), topic, self._sealed(topic, nanoseconds)
@@ -122,10 +125,9 @@ class SensorMessages:
         torque, power = snapshot.joints["motor_torque"], snapshot.joints["motor_power"]
         robot = self._simulation.robot
         assert robot is not None
-        signed = readings.angle, readings.rate, snapshot.joints["joint_torque"], torque, readings.current
-        fields = *(states[name] for name in ("position", "velocity", "effort")), motors["torque"], motors["current"]
-        for field, values in zip(fields, signed, strict=True):
-            field[:] = message_signs(robot) * values + 0.0  # no minus zeros
+        states["position"][:], states["velocity"][:], motors["current"][:] = readings[1:]
+        states["effort"][:] = self._signs * snapshot.joints["joint_torque"] + 0.0  # no minus zeros
+        motors["torque"][:] = self._signs * torque + 0.0
         motors["power"][:], motors["limit"][:] = power, most_torque(robot.servos, torque, power)
         return "joint_states", "motor_states"
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from eel_common.cached import cached_property
+from eel_common.wording import shown
 
 from eel_dynamics.runs.run_data import RunData
 from eel_dynamics.runs.swim_request import request_again
@@ -28,7 +29,8 @@ class SensedRun(RunData):
 
     rate: [Hz], at most that of the run's samples; None: theirs. settings: further ones of the kind of sensor, as
     `eel_dynamics.Imu` and the others document them. The node's sensors read the same with the same settings and
-    samples. `ValueError` for what does not fit, and for a run that was not made by `simulate`.
+    samples; of joints, the signs of topics may be others. A latency changes nothing here: a reading has its own time.
+    `ValueError` for what does not fit, and for a run that was not made by `simulate`.
     """
 
     def imu(self, station: float = 0.0, rate: float | None = None, **settings: Any) -> ImuReadings:
@@ -53,8 +55,7 @@ class SensedRun(RunData):
 
     def encoders(self, rate: float | None = None, **settings: Any) -> JointReadings:
         """Readings of the encoders and ammeters of a robot's joints (`eel_dynamics.Encoders`)."""
-        kind = Encoders(rate=self._sample_rate if rate is None else rate, **settings)
-        check_settings(kind, self.body, self.robot, self._sample_rate)
+        kind = self._made(Encoders, rate, settings)
         names = ("joint_angle", "joint_rate", "motor_torque")
         motion = joints_of(self.time, {name: getattr(self, name) for name in names}, self.robot)
         sensor = Sensor(kind, Surroundings.of(self.scene, self.flow), joints=motion.angle.shape[1])
@@ -62,14 +63,21 @@ class SensedRun(RunData):
         return readings
 
     def _at(self, kind: type[SensorSettings], station: float, rate: float | None, settings: dict[str, Any]) -> Any:
-        where: dict[str, Any] = {"stations": (station,)}
-        made = kind(rate=self._sample_rate if rate is None else rate, **where | settings)
-        check_settings(made, self.body, self.robot, self._sample_rate)
-        (place,) = made.stations  # type: ignore[attr-defined]
+        if "stations" in settings:
+            raise ValueError(f"stations must be one at a time, as station, got {shown(settings['stations'])}")
+        made = self._made(kind, rate, {**settings, "stations": (station,)})
+        (place,) = made.stations
         if place not in self._seen:
             self._seen[place] = seen_again(self, place)
         sensor = Sensor(made, Surroundings.of(self.scene, self.flow), place)
         return sensor.readings(self.time, partial(Motion.of, self._seen[place], 0))
+
+    def _made(self, kind: Any, rate: float | None, settings: dict[str, Any]) -> Any:
+        made = kind(rate=self._sample_rate if rate is None else rate, **settings)
+        if not made.rate:
+            raise ValueError(f"{made.what} rate must be > 0 Hz, got {made.rate:g}")
+        check_settings(made, self.body, self.robot, self._sample_rate)
+        return made
 
     @property
     def _sample_rate(self) -> float:

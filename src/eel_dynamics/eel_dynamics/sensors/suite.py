@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from eel_common.quantity import checked_instance
+from numpy.typing import ArrayLike
 
 from eel_dynamics.model.body.body import Body
 from eel_dynamics.model.robot.actuators import current_by_torque
@@ -28,21 +29,28 @@ KINDS: dict[str, type[SensorSettings]] = {"imu": Imu, "pressure": Pressure, "vel
 class SensorSuite:
     """The sensors on a `Simulation` that are on among the `settings`: `Imu`, `Pressure`, `Velocity`, `Encoders`.
 
-    `Simulation(sensors=)` must have their stations. `ValueError` for settings that do not fit the simulation.
+    `Simulation(sensors=)` must have their stations. signs: of each joint, by which encoders turn its angle, rate and
+    current; those of messages, or 1. `ValueError` for settings that do not fit the simulation.
 
     Attributes:
         sensors: `Sensor` by name: `imu`, `pressure`, `velocity`, `encoders`; `imu_1`, `imu_2` ... of several stations.
     """
 
-    def __init__(self, settings: Iterable[SensorSettings], simulation: Simulation | SimulationSetup):
+    def __init__(
+        self, settings: Iterable[SensorSettings], simulation: Simulation | SimulationSetup, signs: ArrayLike = 1.0
+    ):
         self.sensors: dict[str, Sensor] = {}
         setup = simulation if isinstance(simulation, SimulationSetup) else simulation.setup
-        self._robot, places = setup.robot, setup.sensors
+        self._robot, self._signs, places = setup.robot, np.asarray(signs), setup.sensors
         self._index: dict[str, int] = {}  # of those at stations, in a snapshot
+        kinds = set[str]()
         for each in settings:
             check_settings(each, setup.body, self._robot, math.inf)
             if not each.rate:
                 continue
+            if each.what in kinds:
+                raise ValueError(f"sensors must be one of each kind, with all its stations, got {each.what} twice")
+            kinds.add(each.what)
             around = Surroundings.of(setup.scene, setup.flow)
             if not isinstance(each, StationedSettings):
                 self.sensors[each.what] = Sensor(each, around, joints=len(self._robot.joints) if self._robot else 0)
@@ -65,7 +73,7 @@ class SensorSuite:
             if name in self._index:
                 motion: Any = partial(Motion.of, snapshot, self._index[name])
             else:
-                motion = partial(joints_of, snapshot.time, snapshot.joints, self._robot)
+                motion = partial(joints_of, snapshot.time, snapshot.joints, self._robot, self._signs)
             if (reading := sensor.reading(snapshot.time, motion)) is not None:
                 found[name] = reading
         return found
@@ -77,10 +85,14 @@ def places_of(settings: Iterable[SensorSettings]) -> tuple[float, ...]:
     return tuple(sorted({station for each in on_body for station in each.stations}))
 
 
-def joints_of(time: Any, arrays: dict[str, np.ndarray], robot: Robot | None) -> JointReadings:
-    """The true values of the joints of a `robot`, from `arrays` (T, J) of a run, or (J,) of a snapshot, by name."""
-    by_torque = current_by_torque(robot.servos if robot else ())
-    return JointReadings(time, arrays["joint_angle"], arrays["joint_rate"], arrays["motor_torque"] * by_torque)
+def joints_of(
+    time: Any, arrays: dict[str, np.ndarray], robot: Robot | None, signs: np.ndarray | float = 1.0
+) -> JointReadings:
+    """The true values of the joints of a `robot`, times `signs`, from `arrays` (T, J) of a run, or (J,) of a snapshot,
+    by name."""
+    current = arrays["motor_torque"] * current_by_torque(robot.servos if robot else ())
+    values = arrays["joint_angle"], arrays["joint_rate"], current
+    return JointReadings(time, *(signs * each + 0.0 for each in values))  # no minus zeros
 
 
 def check_settings(settings: SensorSettings, body: Body, robot: Robot | None, rate: float) -> None:
