@@ -11,7 +11,7 @@ import made_up
 import rclpy
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from eel_common.topics import OWN, SAMPLED
+from eel_common.topics import OWN, SAMPLED, SENSORS
 from eel_viz.bags.definitions import message_class
 from eel_viz.recording.dispatcher import READERS
 from geometry_msgs.msg import Vector3
@@ -19,7 +19,7 @@ from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPo
 
 from eel_msgs.msg import BodyGeometry, CurvatureLaw
 
-TOPICS = {topic: message_class(OWN[topic]) for topic in READERS if topic in SAMPLED}
+TOPICS = {topic: message_class(OWN[topic]) for topic in READERS if topic in SAMPLED and topic not in SENSORS}
 EVERY = QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=1, reliability=ReliabilityPolicy.RELIABLE)
 LATCHED = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 

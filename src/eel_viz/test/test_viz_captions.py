@@ -1,18 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What views say of colours is what they draw: names of plots, the words of the run, the legend."""
+"""What the words of the run say of colours is what is drawn."""
 
 import colorsys
 
 import pytest
-from eel_viz.plots import series
 from eel_viz.recording.run_text import look_text
-from eel_viz.robots import motor_plots
 from eel_viz.scene3d import colours
 from eel_viz.settings import Settings
-from eel_viz.views import blueprint
-from eel_viz.views.views import Look
-
-from eel_viz import entities
 
 HUES = {  # degrees, of colours that are neither grey nor white
     "red": (345, 375),
@@ -25,8 +19,6 @@ HUES = {  # degrees, of colours that are neither grey nor white
     "violet": (250, 285),
     "magenta": (310, 345),
 }
-SERIES = series.SERIES | motor_plots.SERIES
-COMPARED = {"this": colours.PLAIN, "other": colours.OTHER}  # curves of two runs: plots/comparison.py
 
 
 def word_of(colour: colours.Colour) -> set[str]:
@@ -36,30 +28,6 @@ def word_of(colour: colours.Colour) -> set[str]:
         return {"white"} if value > 0.9 else {"grey"}
     fitting = {word for word, (low, high) in HUES.items() if low <= (360.0 * hue - low) % 360.0 + low <= high}
     return fitting - ({"brown"} if value > 0.75 else {"orange"})
-
-
-def plots(look: Look):
-    """(name, entities) of each plot over time that says colours."""
-    found = []
-    containers = [make(look) for make in blueprint.ARRANGEMENTS.values()]
-    while containers:
-        each = containers.pop()
-        if type(each).__name__ == "TimeSeriesView":
-            found.append((each.name, each.contents))
-        elif hasattr(each, "contents") and not hasattr(each, "origin"):
-            containers += each.contents
-    return [(name, paths) for name, paths in found if ": " in name]
-
-
-@pytest.mark.parametrize("parts", [{}, {"fins": True}, {"joints": True}, {"fins": True, "joints": True}])
-def test_names_of_plots_say_the_colours_of_their_curves(parts):
-    named = plots(Look(**parts))
-    assert len(named) >= 5
-    for name, paths in named:
-        drawn = dict(line for path in paths if path in SERIES for line in SERIES[path]) | COMPARED
-        for words in name.partition(": ")[2].split(", "):
-            curve, _, colour = words.rpartition(" ")
-            assert colour in word_of(drawn[curve]), (name, curve)
 
 
 def test_the_words_beside_the_swimmer_say_the_colours_of_the_scene():
@@ -78,12 +46,3 @@ def test_the_words_beside_the_swimmer_say_the_colours_of_the_scene():
 @pytest.mark.parametrize(("limit", "words"), [(0.0, "of the last 3 s"), (0.25, "up to 0.25 N m")])
 def test_the_words_say_what_the_scale_of_the_torque_is(limit, words):
     assert f"on the scale {words} below the picture" in look_text(Settings(colour_limit=limit))
-
-
-@pytest.mark.parametrize("joints", [False, True])
-def test_the_plot_of_energies_names_all_its_curves(joints):
-    drawn = {name for path in (entities.KINETIC, entities.STORED) for name, _ in SERIES[path]}
-    words = dict(plots(Look(joints=joints)))
-    (name,) = [name for name in words if name.startswith("Energy")]
-    named = {each.rpartition(" ")[0] for each in name.partition(": ")[2].split(", ")}
-    assert named == drawn - ({"springs"} if not joints else set())

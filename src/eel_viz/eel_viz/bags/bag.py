@@ -27,7 +27,7 @@ SUFFIXES = (".mcap", ".db3")
 JOURNALS = ".db3-wal", ".db3-journal"  # of sqlite: data that a killed recorder has not moved into its file
 PACKED = {".zstd": "zstd -d", ".zst": "zstd -d", ".lz4": "lz4 -d", ".gz": "gzip -d", ".bz2": "bzip2 -d", ".xz": "xz -d"}
 PADDED = "sensor_msgs/msg/JointState", "eel_msgs/msg/MotorStates"  # their last fields are sequences of doubles
-PADDING = 8, 12  # bytes that ROS may leave after one or several empty sequences of this kind
+PADDING = 8, 12, 16  # bytes that ROS may leave after one or several empty sequences of this kind
 
 
 @dataclass(frozen=True, kw_only=True)
