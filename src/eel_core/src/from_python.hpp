@@ -206,17 +206,17 @@ inline std::vector<Ramp> ramps_from(const py::handle& ramps)
 }
 
 // The names in a table of names and values.
-template <class Value, std::size_t count>
-py::tuple names_of(const std::pair<const char*, Value> (&table)[count])
+template <class Value, std::size_t Count>
+py::tuple names_of(const std::pair<const char*, Value> (&table)[Count])
 {
-    py::tuple names(count);
-    for (std::size_t i = 0; i < count; ++i) names[i] = table[i].first;
+    py::tuple names(Count);
+    for (std::size_t i = 0; i < Count; ++i) names[i] = table[i].first;
     return names;
 }
 
 // The value of this `name` in the table; `argument`: whose name it is.
-template <class Value, std::size_t count>
-Value value_named(const std::pair<const char*, Value> (&table)[count], const std::string& name, const char* argument)
+template <class Value, std::size_t Count>
+Value value_named(const std::pair<const char*, Value> (&table)[Count], const std::string& name, const char* argument)
 {
     for (const auto& [known, value] : table)
         if (name == known) return value;

@@ -27,9 +27,11 @@ March begun(bool planar)
     const auto tables = std::make_shared<LawTables>(std::vector<std::size_t>{1}, panel_nodes, swimmer->stations);
     tables->set(0, constant_curvature(1.0).data());
     March march(swimmer, Method{}, planar, bend_with_spring());
-    march.follow(
-        {{{tables, 0.0, {}, {}, {}, {}}, {}, {1e-6, 0.1, 1e-11, 1.0, 0.01, 1.0, 1e5, 1e5, 1e-3}, true, {}}, 0, {}, {}},
-        false);
+    march.follow({{{tables, 0.0, {}, {}, {}, {}, {}}, {}, {1e-6, 0.1, 1e-11, 1.0, 0.01, 1.0, 1e5, 1e5, 1e-3}, true, {}},
+                  0,
+                  {},
+                  {}},
+                 false);
     EXPECT_NEAR(march.start({}, {0.0, 0.0, 0.0, 1.0}, {}, {0.5}, {0.0}), 0.5 * 2.0 * 0.3 * 0.3, 1e-12);
     return march;
 }

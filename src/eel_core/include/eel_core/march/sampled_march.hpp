@@ -114,7 +114,7 @@ class SampledMarch {
     {
         static const std::vector<std::size_t> axes{0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 1, 1};
         tables_ = std::make_shared<LawTables>(axes, kind_->swimmer->grid.nodes, kind_->swimmer->stations);
-        law_ = {tables_, 0.0, {}, {}, {}, {}};
+        law_ = {tables_, 0.0, {}, {}, {}, {}, {}};
     }
 
     void take_sample(double time, const double* values)
