@@ -9,6 +9,7 @@ import pytest
 from eel_common.ros.testing.node_process import PROMPT
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.parameters import DynamicsParameters
+from eel_dynamics.sensors.suite import KINDS
 from eel_gaits.ros.messages import law_to_message
 from swim_client import LIMIT
 
@@ -97,7 +98,7 @@ def test_bad_parameter_file_is_one_line_and_status_2(start_in_turn, tmp_path):
             "-h",
             0,
             "usage: dynamics [--ros-args -p NAME:=VALUE ...]\n",
-            len(fields(DynamicsParameters)) + len(fields(Scene)),
+            sum(len(fields(each)) for each in (DynamicsParameters, Scene, *KINDS.values())),
         ),
         ("--rosargs", 2, "dynamics: unknown argument '--rosargs' (parameters come after --ros-args", 0),
     ],
