@@ -60,6 +60,20 @@ def attitude(orientation: Sequence[float]) -> tuple[float, float, float]:
     return heading(orientation), climb(orientation), roll(orientation)
 
 
+def product(first: Sequence[Any], second: Sequence[Any]) -> tuple[Any, Any, Any, Any]:
+    """The product of two quaternions x y z w: world from b, of world from a (`first`) and a from b (`second`).
+
+    A component is a float or an array.
+    """
+    (x, y, z, w), (a, b, c, d) = first, second
+    return (
+        w * a + x * d + y * c - z * b,
+        w * b + y * d + z * a - x * c,
+        w * c + z * d + x * b - y * a,
+        w * d - x * a - y * b - z * c,
+    )
+
+
 def world_from_body(orientation: np.ndarray) -> np.ndarray:
     """Rotation matrices of unit quaternions `orientation`, shape (..., 4); returns (..., 3, 3), columns = body axes."""
     x, y, z, w = np.moveaxis(np.asarray(orientation, dtype=float), -1, 0)

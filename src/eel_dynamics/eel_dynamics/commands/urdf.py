@@ -37,7 +37,7 @@ def _add_options(parser: Parser) -> None:
     NAME,
     "Print a robot, or a body whose shape is imposed, as a URDF: links with mass and inertia, joints with limits.",
     epilog="Without --robot and joints the body is one rigid link. Of the scene its density is written alone. "
-    "What a URDF has no word for is told, and stands in a comment: docs/howto/joints.md.",
+    "What a URDF cannot express is printed, and listed in a comment: docs/howto/urdf.md.",
     add_options=_add_options,
 )
 def main(options: argparse.Namespace) -> None:

@@ -132,7 +132,7 @@ class Declaration:
         return SetParametersResult(successful=True)
 
     def _check_clock(self, values: DynamicsParameters, use_sim_time: Any) -> None:
-        """`ValueError` if the node is told both to publish /clock and to follow it."""
+        """`ValueError` if parameters ask the node both to publish /clock and to follow it."""
         if use_sim_time is True and values.makes_clock:
             raise ValueError(
                 "use_sim_time must be false in the node that makes /clock, got true; with follow_clock:=true the node "

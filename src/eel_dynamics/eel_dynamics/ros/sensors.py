@@ -12,6 +12,7 @@ from itertools import count
 from typing import Any
 
 import numpy as np
+from eel_common.attitude import product
 from eel_common.ros.headers import frame_in
 from eel_common.ros.loop.serialised_message import SerialisedMessage
 from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped, TwistWithCovarianceStamped
@@ -140,13 +141,8 @@ class SensorMessages:
             p, q, r = 2.0 * (z * b - y * c), 2.0 * (x * c - z * a), 2.0 * (y * a - x * b)
             turned = a + w * p + z * q - y * r, b + w * q + x * r - z * p, c + w * r + y * p - x * q
             numbers[f"transforms[{k}].transform.translation"][:] = turned
-            a, b, c, d = snapshot.sensor_orientation[place].tolist()
-            numbers[f"transforms[{k}].transform.rotation"][:] = (  # the head's inverse, times it
-                w * a - d * x - y * c + z * b,
-                w * b - d * y - z * a + x * c,
-                w * c - d * z - x * b + y * a,
-                w * d + x * a + y * b + z * c,
-            )
+            there = snapshot.sensor_orientation[place].tolist()
+            numbers[f"transforms[{k}].transform.rotation"][:] = product((-x, -y, -z, w), there)
 
 
 _FILL: dict[type, Callable[..., tuple[str, ...]]] = {

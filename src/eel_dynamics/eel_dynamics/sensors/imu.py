@@ -10,6 +10,7 @@ attitude filter within the unit, with an error that is a small rotation about ea
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from eel_common.attitude import product
 from eel_common.quantity import documented, quantity
 
 from eel_dynamics.sensors.noise import Spread
@@ -67,11 +68,5 @@ def up(orientation: Components) -> tuple[Any, Any, Any]:
 
 def turned_by(orientation: Components, angles: Components) -> tuple[Any, Any, Any, Any]:
     """An orientation x y z w, turned by small `angles` (3,) [rad] about its own axes."""
-    (x, y, z, w), (a, b, c) = orientation, (0.5 * angle for angle in angles)
-    d = abs(1.0 - (a * a + b * b + c * c)) ** 0.5
-    return (
-        w * a + x * d + y * c - z * b,
-        w * b - x * c + y * d + z * a,
-        w * c + x * b - y * a + z * d,
-        w * d - x * a - y * b - z * c,
-    )
+    a, b, c = (0.5 * angle for angle in angles)
+    return product(orientation, (a, b, c, abs(1.0 - (a * a + b * b + c * c)) ** 0.5))

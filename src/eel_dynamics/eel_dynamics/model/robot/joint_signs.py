@@ -2,8 +2,9 @@
 """The signs of joints in messages: those of REP-103, as of a URDF whose base link is the head.
 
 In joint_commands, joint_states and motor_states an angle above 0 turns the part behind a joint about +z (yaw) or +y
-(pitch) of the part ahead. In the library a joint's own `axis` says it: "yaw" is positive to the left, where the part
-behind turns about -z. Rates and torques have the sign of their angle.
+(pitch) of the part ahead; with the axes -yaw, -pitch, -z, -y about -z or -y (`sense_of`). In the library a joint's
+own `axis` gives the sign: "yaw" is positive to the left, where the part behind turns about -z. Rates and torques have
+the sign of their angle.
 """
 
 import numpy as np

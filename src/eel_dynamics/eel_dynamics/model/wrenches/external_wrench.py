@@ -101,7 +101,7 @@ class ExternalWrench(Quantities):
     @property
     def jumps(self) -> tuple[float, ...]:
         """Times [s] at which it jumps."""
-        return () if self.time is None else tuple(a for a, b in pairwise(self.time) if a == b)
+        return tuple(self.time[k] for k in self._ends[1:-1])
 
     def at(self, time: float, behind: float | None = None) -> np.ndarray:
         """(6,) force [N] and torque [N m] at `time` [s]: at a jump before it, unless that is `behind` [s].
@@ -122,10 +122,14 @@ class ExternalWrench(Quantities):
 
     def _piece(self, time: float, behind: bool) -> slice:
         """The instants between two jumps that `time` [s] lies between; one at a jump lies ahead of it, or `behind`."""
-        assert self.time is not None
-        ends = [0, *(k + 1 for k, (a, b) in enumerate(pairwise(self.time)) if a == b), len(self.time)]
-        passed = [jump <= time if behind else jump < time for jump in self.jumps]
-        return slice(ends[sum(passed)], ends[sum(passed) + 1])
+        passed = sum(jump <= time if behind else jump < time for jump in self.jumps)
+        return slice(*self._ends[passed : passed + 2])
+
+    @property
+    def _ends(self) -> list[int]:
+        """Where the pieces between jumps begin among the instants, and where the last one ends."""
+        instants = self.time or ()
+        return [0, *(k for k, (a, b) in enumerate(pairwise(instants), start=1) if a == b), len(instants)]
 
     def cubics(self, now: float) -> tuple[np.ndarray, np.ndarray]:
         """Knots (n,) [s] and coefficients (n - 1, 4, 6) of cubics from `now` [s] to the next jump; torque, then force.

@@ -138,7 +138,7 @@ class RunLoop:
             self._fail(f"simulation {error}")
         except ValueError as error:
             failure = str(error)
-        except Exception as error:  # unforeseen: the caller is told, and the run goes on
+        except Exception as error:  # unforeseen: the caller gets the text, and the run goes on
             failure = unforeseen(error)
             self._report.event("request", f"a request is refused: {failure}", ERROR)
         return self.time, failure
