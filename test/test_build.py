@@ -2,14 +2,18 @@
 """What the machine lacks is named in one line, with the command that brings it; nothing is made before that."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from eel_command import LEAST_PYTHON
 
 ROOT = Path(__file__).resolve().parents[1]
+PYENV = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"))
+OLD_PYTHONS = [path for minor in (8, 9, 10) for path in sorted(PYENV.glob(f"versions/3.{minor}.*/bin/python"))]
 NEEDED = """
     bash sh env sed awk cat tee uname find sort xargs sha256sum cut flock rm mkdir touch dirname
 """
@@ -67,6 +71,48 @@ def test_no_headers(machine):
 def test_no_such_python(machine, tmp_path):
     line = machine(python=tmp_path / "nowhere/python")
     assert str(tmp_path / "nowhere/python") in line and "3.11 to 3.13" in line
+
+
+def test_too_old_a_python(machine, tmp_path):
+    python = tmp_path / "python3.10"
+    python.write_text("#!/bin/bash\necho 3.10\n")
+    python.chmod(0o755)
+    line = machine(python=python)
+    assert line.endswith(f"PYTHON={python} is not a Python from 3.11 to 3.13 that runs, found: {python} (3.10)")
+
+
+@pytest.mark.parametrize("version", [(3, 10, 13), (3, 8, 18)])
+def test_a_command_refuses_too_old_a_python(version):
+    """One that a PYTHONPATH brings to the packages: pip installs nothing in it."""
+    old = f"import sys; sys.version_info = {version}; sys.argv = ['eel']; import eel_command"
+    done = subprocess.run(
+        [sys.executable, "-c", f"{old}; eel_command.main_of.eel_common.command.suite()"], capture_output=True, text=True
+    )
+    (line,) = done.stderr.splitlines()
+    assert done.returncode == 2 and done.stdout == ""
+    assert line.startswith(
+        f"eel: Python 3.11 or later is needed, and {sys.executable} is {'.'.join(map(str, version))}: "
+    )
+    assert "make build PYTHON=python3.12" in line and "pip install" in line
+
+
+def test_pip_refuses_the_same_pythons():
+    least = ".".join(map(str, LEAST_PYTHON))
+    files = [*ROOT.glob("src/*/setup.py"), *ROOT.glob("src/*/pyproject.toml"), ROOT / "pyproject.toml"]
+    said = {path: re.findall(r'(?:python_requires=|requires-python = )"(.*)"', path.read_text()) for path in files}
+    assert len(said) == 8 and set(map(tuple, said.values())) == {(f">={least}",)}, said
+
+
+@pytest.mark.parametrize("python", OLD_PYTHONS or [pytest.param("", marks=pytest.mark.skip(reason="no older Python"))])
+def test_an_older_python_reads_what_refuses_it(python):
+    done = subprocess.run(
+        [python, "-c", "from eel_command import main_of; main_of.eel_common.command.suite()"],
+        env={"PYTHONPATH": os.fspath(ROOT / "src/eel_common")},
+        capture_output=True,
+        text=True,
+    )
+    (line,) = done.stderr.splitlines()
+    assert done.returncode == 2 and "Python 3.11 or later is needed" in line
 
 
 def test_other_architecture(machine, tmp_path):

@@ -80,7 +80,7 @@ def test_extras_that_errors_name_exist():
     named = {
         extra
         for path in (ROOT / "src").glob("*/eel_*/**/*.py")
-        for extra in re.findall(r"extra (\w+) of eel-swimmer", path.read_text())
+        for extra in re.findall(r"eel-swimmer\[(\w+)\]", path.read_text())
     }
     assert named and named <= set(PROJECT["optional-dependencies"])
 
@@ -144,4 +144,6 @@ def test_a_command_that_cannot_be_imported_is_one_line(monkeypatch, capsys):
     assert suite.main(["replay", "bag"]) == 2
     said = capsys.readouterr().err
     assert said.startswith("eel replay: ") and said.count("\n") == 1
-    assert "rosbags" in said and "the extra viz of eel-swimmer brings what is missing" in said
+    assert "rosbags" in said and said.rstrip().endswith(
+        "pip install 'eel-swimmer[viz]' (in a checkout: -r requirements.txt) brings it"
+    )

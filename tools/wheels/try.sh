@@ -44,7 +44,7 @@ try_with() {   # VERSION PYTHON
     ! alone env/bin/python six_lines.py > said 2>&1 || fail "to_rerun works without its extra"
     [ -s run.nc ] || fail "$(tail -n 1 said)"
     tail -n 1 said | tee last | sed 's/^/    /'
-    grep -q 'extra viz of eel-swimmer brings' last || fail "to_rerun does not name its extra"
+    grep -qF "pip install 'eel-swimmer[viz]'" last || fail "to_rerun does not name its extra"
     ! alone env/bin/eel replay bag > said 2>&1 || fail "a bag is read without the extra"
     [ "$(wc -l < said)" = 1 ] || fail "more than a line: $(cat said)"
     say "  with viz"

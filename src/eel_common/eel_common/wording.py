@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from typing import Any
 
-BRING_THEM = "the extra viz of eel-swimmer brings what is missing, or requirements.txt"  # of eel_viz's packages
+BRING_THEM = "pip install 'eel-swimmer[viz]' (in a checkout: -r requirements.txt) brings it"  # of eel_viz's packages
 LONGEST = 80  # characters of a shown value
 LONGEST_LINE = 300  # of a whole message
 _LONG_WORD = re.compile(rf"\S{{{LONGEST + 3},}}")  # longer than any `shown` value with its comma or colon
