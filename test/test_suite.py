@@ -30,6 +30,16 @@ def test_the_list_has_a_line_for_each_command(capsys):
     assert all(10 < len(about) < 66 and not about.endswith(".") for about in told.values()), told
 
 
+def test_the_list_begins_with_simulate_and_has_a_second_column(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "60")
+    assert suite.main([]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[4:6] == ["swim:", "  simulate    swim a gait, a scene of a file, a sequence"]
+    assert lines[6] == 14 * " " + "or a measured motion; print its figures"
+    heads = [line for line in lines if line.endswith(":") and not line.startswith(" ")]
+    assert heads == ["swim:", "study:", "record and look:", "shell:", "options:"]
+
+
 def test_the_list_imports_no_command():
     code = "import sys; from eel_common.command import suite; suite.main([])"
     code += "; print('numpy' in sys.modules, file=sys.stderr)"

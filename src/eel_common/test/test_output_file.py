@@ -3,6 +3,7 @@
 
 import errno
 import os
+import signal
 import socket
 import subprocess
 import sys
@@ -10,6 +11,7 @@ import threading
 import time
 
 import pytest
+from eel_common.files import output_file
 from eel_common.files.output_file import (
     Draft,
     NotWritten,
@@ -176,20 +178,35 @@ def test_two_drafts_of_one_name_are_two_files(tmp_path):
     assert len(os.listdir(tmp_path)) == 2
 
 
-def test_a_killed_process_leaves_the_older_file(tmp_path):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
+def test_a_killed_process_leaves_the_older_file_and_no_part(number, tmp_path):
     name = tmp_path / "run.npz"
     name.write_bytes(OLD)
-    code = "import sys, time\nfrom eel_common.files.output_file import replacing\n"
-    code += "with replacing(sys.argv[1]) as path:\n    path.write_bytes(b'PK half')\n    print('half', flush=True)\n"
-    code += "    sys.stdin.read()\n"
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
-    with subprocess.Popen([sys.executable, "-c", code, name], **pipes) as process:
+    code = "import os, signal, sys\nsignal.signal(signal.SIGINT, signal.SIG_DFL)  # as a command has it\n"
+    code += "from eel_common.files.output_file import Draft, replacing\nrecording = Draft('run.rrd', kept=True)\n"
+    code += "with replacing('run.npz') as path, replacing('run.csv'):\n    path.write_bytes(b'PK half')\n"
+    code += "    if not os.fork():  # a worker inherits the drafts, and does not own them\n"
+    code += "        os.kill(os.getpid(), signal.SIGTERM)\n    os.wait()\n    assert path.exists()\n"
+    code += "    print('half', flush=True)\n    sys.stdin.read()\n"
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True, "cwd": tmp_path}
+    with subprocess.Popen([sys.executable, "-c", code], **pipes) as process:
         watchdog = threading.Timer(100.0, process.kill)
         watchdog.start()
         assert process.stdout.readline() == "half\n"
         watchdog.cancel()
-        process.kill()
-    assert name.read_bytes() == OLD and (tmp_path / "run.part.npz").read_bytes() == b"PK half"
+        process.send_signal(number)
+    assert process.returncode == -number and name.read_bytes() == OLD
+    left = {"run.part.npz", "run.part.csv"} if number == signal.SIGKILL else set()
+    assert {*os.listdir(tmp_path)} == {"run.npz", "run.part.rrd", *left}
+
+
+def test_signals_are_as_before_when_no_draft_is_left(tmp_path, monkeypatch):
+    monkeypatch.setattr(output_file, "_unfinished", {})
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    with replacing(tmp_path / "run.npz") as path:
+        path.write_bytes(b"PK")
+        assert callable(signal.getsignal(signal.SIGHUP))
+    assert signal.getsignal(signal.SIGHUP) is signal.SIG_DFL
 
 
 def _umask() -> int:

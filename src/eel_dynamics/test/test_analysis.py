@@ -87,6 +87,14 @@ def test_actuators_are_shown_in_a_line_and_tell_their_window(run):
     assert motors.table().splitlines()[0].endswith(f"(peak, RMS over the whole run, {window})")
 
 
+def test_an_analysis_is_shown_in_a_line(run):
+    analysis = run.analysis(4)
+    told = f"Analysis({run.law.name!r}, 4 periods of {analysis.window.period:g} s, {analysis.window.start:g} to "
+    told += f"{analysis.window.end:g} s: mean speed {analysis.mean_speed:.4g} m/s, "
+    assert repr(analysis).startswith(told) and "settled" in repr(analysis)
+    assert repr(simulate(Law(Term(amplitude=(0.0,), wavelength=1.0, period=1.0)), 2.0).analysis()).endswith("at rest)")
+
+
 def test_undefined_and_refused(run):
     still = simulate(Law(Term(amplitude=(0.0,), wavelength=1.0, period=1.0)), 2.0, sample_period=0.05)
     a = still.analysis()

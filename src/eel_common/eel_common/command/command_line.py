@@ -4,6 +4,7 @@
 import argparse
 import contextlib
 import os
+import re
 import shutil
 import signal
 import sys
@@ -81,14 +82,19 @@ def _formatter() -> type[argparse.HelpFormatter]:
 
 
 def _wrapped(text: str) -> str:
-    """The text wrapped to the terminal's width, line by line. Continuation lines are indented by 4 more."""
+    """The text wrapped to the terminal's width, line by line. Continuation lines are indented by 4 more, or to the
+    second column of a row."""
     width = shutil.get_terminal_size().columns - 2
     lines = text.splitlines()
     if len(lines) == 1:
         return textwrap.fill(text, width)
-    return "\n".join(
-        textwrap.fill(line, width, subsequent_indent=" " * (len(line) - len(line.lstrip()) + 4)) for line in lines
-    )
+    return "\n".join(textwrap.fill(line, width, subsequent_indent=" " * _indent(line)) for line in lines)
+
+
+def _indent(line: str) -> int:
+    """Columns before the second column of a row, "  simulate    swim a gait"; else 4 more than before the `line`."""
+    row = re.match(r"  \S+ {2,}(?=\S)", line)
+    return row.end() if row else len(line) - len(line.lstrip()) + 4
 
 
 def print_to_stderr(program: str, message: object) -> None:

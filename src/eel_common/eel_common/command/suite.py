@@ -6,6 +6,7 @@ A package declares its commands as entry points of one of the groups below:
 line of its docstring says what the command does, after a colon. The list reads that line without importing the module.
 """
 
+import argparse
 import importlib
 import os
 import platform
@@ -23,6 +24,7 @@ from eel_common.wording import BRING_THEM, did_you_mean, one_line, shown
 
 OF_VIZ = "eel_viz."  # begins the modules that need the extra viz
 VERSION = "eel.version"  # group of entry points: what is compiled, and a function that tells how
+FIRST = "simulate"  # of its group; the others follow by name
 GROUPS = {  # of entry points: heading in the list
     "eel.commands.swim": "swim",
     "eel.commands.study": "study",
@@ -33,8 +35,9 @@ GROUPS = {  # of entry points: heading in the list
 
 def commands() -> dict[str, EntryPoint]:
     """The installed commands by name, in the order of `GROUPS`."""
-    found = entry_points()
-    return {entry.name: entry for group in GROUPS for entry in found.select(group=group)}
+    found = {group: entry_points(group=group) for group in GROUPS}
+    rank = lambda entry: (entry.name != FIRST, entry.name)  # noqa: E731
+    return {entry.name: entry for entries in found.values() for entry in sorted(entries, key=rank)}
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -89,18 +92,18 @@ def summary_of(module: str) -> str:
 
 
 def _parser(known: dict[str, EntryPoint]) -> Parser:
-    rows = []
+    rows = ["The simulator of elongated swimmers."]
     for group, heading in GROUPS.items():
         own = [entry for entry in known.values() if entry.group == group]
-        rows += [f"{heading}:", *(f"  {each.name:<11s} {summary_of(each.value)}" for each in own), ""] if own else []
+        rows += ["", f"{heading}:", *(f"  {each.name:<11s} {summary_of(each.value)}" for each in own)] if own else []
     parser = Parser(
         prog="eel",
         usage="eel COMMAND ...",
-        description="The simulator of elongated swimmers.",
-        epilog="\n".join([*rows, "eel COMMAND --help: its options. Nodes start by their names, or by ros2 run."]),
+        description="\n".join(rows),
+        epilog="eel COMMAND --help: its options. Nodes start by their names, or by ros2 run.",
     )
     parser.add_argument("--version", action="store_true", help="version, commit, level of the processor, Python, ROS")
-    parser.add_argument("command", nargs="?", choices=known, metavar="COMMAND", help="one of the list")
+    parser.add_argument("command", nargs="?", choices=known, help=argparse.SUPPRESS)
     return parser
 
 

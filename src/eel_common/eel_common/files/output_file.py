@@ -3,25 +3,31 @@
 
 An output is written under a temporary name: `run.npz` as `run.part.npz`. It gets its own name when it is complete.
 Until then an older file stays unchanged, even after a full disk, an error or a kill. Only a file that existed at the
-start is replaced. If another one has appeared since, the output gets a number: `run-2.npz`.
+start is replaced. If another one has appeared since, the output gets a number: `run-2.npz`. A signal that ends the
+process removes its incomplete outputs first; only SIGKILL leaves them.
 """
 
 import contextlib
 import errno
 import itertools
 import os
+import signal
 import stat
+import threading
 import time
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from eel_common.wording import shown
 
 BEGINNINGS = {".npz": b"PK", ".nc": b"CDF", ".png": b"\x89PNG", ".rrd": b"RRF", ".svg": b"<?xml"}
 LONGEST_NAME = 255  # bytes, in nearly all file systems
 KINDS = {stat.S_IFLNK: "a symbolic link", stat.S_IFDIR: "a folder", stat.S_IFIFO: "a FIFO", stat.S_IFSOCK: "a socket"}
+ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
+_unfinished: dict[Path, int] = {}  # drafts that a signal removes, each with the process that writes it
 _starts: list[int] = []  # ns: when the present command began
 _own: dict[Path, tuple[int, ...] | None] = {}  # files that this process has written
 _written_as: dict[Path, Path] = {}  # output: the path it was given
@@ -35,10 +41,11 @@ class Draft:
     """A new file at `path`, to be written. `complete` gives it its `name`; `discard` removes it.
 
     since: the start [ns, of `time.time_ns`], unless `command_begins` was earlier; None: now.
+    kept: whether the file stays where a signal ends the process.
     `OSError` where `name` cannot be written, or was something other than an older output at the start.
     """
 
-    def __init__(self, name: str | os.PathLike[str], since: int | None = None) -> None:
+    def __init__(self, name: str | os.PathLike[str], since: int | None = None, *, kept: bool = False) -> None:
         self.name = Path(name)
         if not self.name.parent.is_dir():
             raise FileNotFoundError(errno.ENOENT, f"there is no folder {shown(str(self.name.parent))}")
@@ -47,6 +54,9 @@ class Draft:
         if self._older and (other := _other_content(self.name)):
             raise FileExistsError(errno.EEXIST, f"it is {other}")
         self.path = self._made()
+        if not kept:
+            _unfinished[self.path] = os.getpid()
+            _take_signals()
 
     @property
     def replaces(self) -> bool:
@@ -66,12 +76,19 @@ class Draft:
                 if _renamed(self.path, name):
                     break
                 name = numbered(self.name, number)
+        self._is_over()
         _own[name.absolute()], _written_as[self.name.absolute()] = _identity(name), name
         return name
 
     def discard(self) -> None:
         """Remove the file."""
         self.path.unlink(missing_ok=True)
+        self._is_over()
+
+    def _is_over(self) -> None:
+        """From now on no signal removes the file."""
+        _unfinished.pop(self.path, None)
+        _take_signals()
 
     def _made(self) -> Path:
         """Create a new file and return its path. Another process, or a killed one, may hold the same draft name."""
@@ -80,6 +97,26 @@ class Draft:
                 (path := part_of(self.name, mark)).open("xb").close()
                 break
         return path
+
+
+def _take_signals() -> None:
+    """Take the signals that end the process while there are drafts to remove. Other handlers stay, such as a node's.
+
+    Only then: Python calls a handler late, where the main thread is in compiled code."""
+    if threading.current_thread() is threading.main_thread():
+        old, new = (signal.SIG_DFL, _end) if _unfinished else (_end, signal.SIG_DFL)
+        for number in ENDING:
+            if signal.getsignal(number) is old:
+                signal.signal(number, new)
+
+
+def _end(number: int, frame: Any) -> None:
+    """Remove the drafts of this process, and end it by the signal `number`. Those of a parent stay."""
+    for path, process in list(_unfinished.items()):
+        if process == os.getpid():
+            path.unlink(missing_ok=True)
+    signal.signal(number, signal.SIG_DFL)
+    os.kill(os.getpid(), number)
 
 
 def part_of(name: Path, mark: str = "part") -> Path:

@@ -29,6 +29,11 @@ class Analysis:
         self.run, self.window = run, AveragingWindow(run, periods)
         self._path = AveragedPath(self.window)
 
+    def __repr__(self) -> str:
+        settled = "settled" if self.settled else f"NOT settled, {self.settling}"
+        figures = f"mean speed {self.mean_speed:.4g} m/s, {settled if self.moves else 'at rest'}"
+        return f"Analysis({self.run.law.name!r}, {self.window.told}: {figures})"
+
     # -- motion
 
     @cached_property

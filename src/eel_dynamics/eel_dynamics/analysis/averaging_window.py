@@ -92,7 +92,12 @@ class AveragingWindow:
         self.inside = (time >= self.start - 1e-9 * self.period) & (time <= self.end)
 
     def __repr__(self) -> str:
-        return f"AveragingWindow({self.periods} periods of {self.period:g} s, {self.start:g} to {self.end:g} s)"
+        return f"AveragingWindow({self.told})"
+
+    @property
+    def told(self) -> str:
+        """The window in words."""
+        return f"{self.periods} periods of {self.period:g} s, {self.start:g} to {self.end:g} s"
 
     @property
     def duration(self) -> float:

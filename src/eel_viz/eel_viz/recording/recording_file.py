@@ -60,7 +60,7 @@ class FileDestination(Destination):
         """The stream of recording `number`; None if it cannot be written at present."""
         path = self.path(number)
         try:
-            draft = Draft(path, self._began)
+            draft = Draft(path, self._began, kept=self.keeps_partial)
         except OSError as error:
             self._refuse(number, path, error.strerror or str(error))
             return None
