@@ -9,7 +9,7 @@ import re
 import subprocess
 import sys
 import tomllib
-from importlib.metadata import distributions
+from importlib.metadata import PackageNotFoundError, distributions
 from pathlib import Path
 
 import pytest
@@ -137,13 +137,22 @@ def test_the_version_is_told_where_the_mechanics_cannot_be_loaded(monkeypatch, c
     assert "core: this processor is too old" in " ".join(capsys.readouterr().out.split("\n")[1].split())
 
 
-def test_a_command_that_cannot_be_imported_is_one_line(monkeypatch, capsys):
+@pytest.mark.parametrize("installed", [False, True])
+def test_a_command_that_cannot_be_imported_is_one_line(installed, monkeypatch, capsys):
+    """pip is told the name of the distribution only where it need not fetch it."""
+    known = {"eel-swimmer": version.VERSION} if installed else {}
+
+    def version_of(name):
+        if name not in known:
+            raise PackageNotFoundError(name)
+        return known[name]
+
+    monkeypatch.setattr("eel_common.wording.version", version_of)
     monkeypatch.setitem(sys.modules, "rosbags.rosbag2", None)
     monkeypatch.delitem(sys.modules, "eel_viz.bags.bag", raising=False)
     monkeypatch.delitem(sys.modules, "eel_viz.bags.replay", raising=False)
     assert suite.main(["replay", "bag"]) == 2
     said = capsys.readouterr().err
     assert said.startswith("eel replay: ") and said.count("\n") == 1
-    assert "rosbags" in said and said.rstrip().endswith(
-        "pip install 'eel-swimmer[viz]' (in a checkout: -r requirements.txt) brings it"
-    )
+    brings = "'eel-swimmer[viz]'" if installed else "-r requirements.txt (of this project)"
+    assert "rosbags" in said and said.rstrip().endswith(f"; pip install {brings} brings it")

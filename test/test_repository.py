@@ -3,6 +3,7 @@
 
 import re
 import subprocess
+from fnmatch import fnmatch
 from pathlib import Path
 
 import pytest
@@ -138,3 +139,11 @@ def test_pip_is_never_told_to_fetch_our_packages_by_name(tracked):
         for match in re.finditer(r"pip install [^\n`|]*?(?<![./\w])eel_\w+", path.read_text())
     ]
     assert found == []
+
+
+def test_every_file_of_measured_data_has_one_licence():
+    rows = re.findall(r"^\| (`.*`) \| (.+) \|$", (ROOT / "docs/data/README.md").read_text(), re.MULTILINE)
+    patterns = [pattern for files, _ in rows for pattern in re.findall(r"`(.+?)`", files)]
+    for path in (ROOT / "docs/data").glob("*.csv"):
+        names = [pattern for pattern in patterns if fnmatch(path.name, pattern)]
+        assert len(names) == 1, f"{path.name} is named by {names}"

@@ -5,9 +5,9 @@ import re
 import reprlib
 from collections.abc import Iterable
 from difflib import get_close_matches
+from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
-BRING_THEM = "pip install 'eel-swimmer[viz]' (in a checkout: -r requirements.txt) brings it"  # of eel_viz's packages
 LONGEST = 80  # characters of a shown value
 LONGEST_LINE = 300  # of a whole message
 _LONG_WORD = re.compile(rf"\S{{{LONGEST + 3},}}")  # longer than any `shown` value with its comma or colon
@@ -21,6 +21,15 @@ class WorkStopped(RuntimeError):
     """Work that cannot go on, though its input was valid. `exit_status`: that of a command ended by it."""
 
     exit_status = 3
+
+
+def bring_viz() -> str:
+    """What brings the packages that eel_viz needs. Of an installed eel-swimmer pip fetches those of the extra alone."""
+    try:
+        version("eel-swimmer")
+    except PackageNotFoundError:
+        return "pip install -r requirements.txt (of this project) brings it"
+    return "pip install 'eel-swimmer[viz]' brings it"
 
 
 def shown(value: Any) -> str:

@@ -20,7 +20,7 @@ import eel_command
 
 from eel_common.command.command_line import COMPLETING, Parser, print_to_stderr
 from eel_common.version import software
-from eel_common.wording import BRING_THEM, did_you_mean, one_line, shown
+from eel_common.wording import bring_viz, did_you_mean, one_line, shown
 
 OF_VIZ = "eel_viz."  # begins the modules that need the extra viz
 VERSION = "eel.version"  # group of entry points: what is compiled, and a function that tells how
@@ -52,7 +52,7 @@ def main(arguments: list[str] | None = None) -> int:
         try:
             command = importlib.import_module(module)
         except ImportError as error:  # a package of an extra, or a processor for which nothing is compiled
-            hint = f"; {BRING_THEM}" if module.startswith(OF_VIZ) and isinstance(error, ModuleNotFoundError) else ""
+            hint = f"; {bring_viz()}" if module.startswith(OF_VIZ) and isinstance(error, ModuleNotFoundError) else ""
             print_to_stderr(f"eel {words[0]}", f"{error}{hint}")
             return 2
         status: int = command.main(words[1:])

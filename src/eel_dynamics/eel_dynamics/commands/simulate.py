@@ -23,7 +23,7 @@ from eel_common.command.command_line import Parser, print_to_stderr
 from eel_common.command.progress import Progress
 from eel_common.files.output_file import replacing, written_as
 from eel_common.quantity import described_fields
-from eel_common.wording import BRING_THEM, one_line, shown
+from eel_common.wording import bring_viz, one_line, shown
 from eel_gaits.film.beat import Beat
 from eel_gaits.gaits.registry import gait
 from eel_gaits.gaits.sequence import sequence_from_file
@@ -249,7 +249,7 @@ def _checked_out(out: str | None) -> Path | None:
     if out is None:
         return None
     if Path(out).suffix == ".rrd" and None in map(find_spec, ("eel_viz", "rerun")):
-        raise ValueError(f"--out .rrd needs eel_viz and rerun-sdk: {BRING_THEM}")
+        raise ValueError(f"--out .rrd needs eel_viz and rerun-sdk: {bring_viz()}")
     return checked_out(NAME, out, SUFFIXES)
 
 

@@ -16,7 +16,7 @@ from eel_common.command.command import checked_out, command
 from eel_common.command.command_line import Parser
 from eel_common.command.progress import Progress
 from eel_common.files.output_file import written_as
-from eel_common.wording import BRING_THEM
+from eel_common.wording import bring_viz
 from eel_dynamics.analysis.measures import MEASURES, measures_of
 from eel_dynamics.commands.options import add_options, scene_of, set_numbers
 from eel_dynamics.model.body.body import Body
@@ -55,7 +55,7 @@ def _add_options(parser: Parser) -> None:
 def main(options: argparse.Namespace) -> None:
     out = None if options.out is None else checked_out(NAME, options.out, (".rrd", *PICTURES))
     if out is not None and out.suffix == ".rrd" and None in map(find_spec, ("eel_viz", "rerun")):
-        raise ValueError(f"--out .rrd needs eel_viz and rerun-sdk: {BRING_THEM}")
+        raise ValueError(f"--out .rrd needs eel_viz and rerun-sdk: {bring_viz()}")
     loaded = [Run.load(name) if Path(name).suffix == ".nc" else None for name in (options.first, options.second)]
     like = loaded[0] or loaded[1]
     names = [Path(options.first).stem, Path(options.second).stem]

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from importlib.metadata import entry_points
 from typing import Any, cast
 
-from eel_common.wording import BRING_THEM
+from eel_common.wording import bring_viz
 
 FUNCTIONS = {  # by name: the group of its entry points, what uses it, and what it needs
     "messages": ("eel_dynamics.bags", "from_bag", "rosbags and rerun-sdk"),  # of a bag: (path, namespace)
@@ -22,5 +22,5 @@ def function_of_eel_viz(name: str) -> Callable[..., Any]:
         (function,) = (each.load() for each in found)
     except (ValueError, ImportError) as error:
         reason = error if found else "it is not installed"
-        raise ImportError(f"{user} needs the package eel_viz, with {needs}: {reason}; {BRING_THEM}") from error
+        raise ImportError(f"{user} needs the package eel_viz, with {needs}: {reason}; {bring_viz()}") from error
     return cast(Callable[..., Any], function)
