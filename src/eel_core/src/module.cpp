@@ -2,8 +2,6 @@
 // The Python module. EEL_CORE_MODULE is its name: one for each level of the processor.
 #include <pybind11/pybind11.h>
 
-#include <sstream>
-
 #include "bind_flow.hpp"
 #include "eel_core/build_info.hpp"
 #include "eel_core/march/instant.hpp"
@@ -34,17 +32,11 @@ py::dict build_info_as_dict()
 py::dict layout(std::size_t samples, std::size_t stations, bool wrench, bool load, std::size_t fins,
                 std::size_t sensors)
 {
-    std::istringstream names(
-        "position orientation twist head_acceleration center_of_mass energies powers closure backbone "
-        "section_orientation curvature curvature_rate torque force fluid_force resistive_force tail_force nose_force "
-        "wake_momentum_rate fin_angle fin_force sensor_position sensor_orientation sensor_twist sensor_acceleration "
-        "sensor_water");
     const Profiles profiles(samples, stations, wrench, load, fins, sensors);
     py::dict result;
-    std::string name;
-    for (std::size_t q = 0; names >> name; ++q) {
+    for (const auto& [q, name, width] : Profiles::described) {
         const int of = profiles.along_body(q) ? 1 : profiles.of_fins(q) ? 2 : profiles.of_sensors(q) ? 3 : 0;
-        result[name.c_str()] = py::make_tuple(profiles.begin[q], profiles.instants(q), Profiles::width_of[q], of);
+        result[name] = py::make_tuple(profiles.begin[q], profiles.instants(q), width, of);
     }
     return result;
 }

@@ -38,7 +38,8 @@ class BentBody {
           momentum_ahead_(swimmer.grid.blocks),
           mode_load_(modes.modes),
           added_(modes.modes),
-          solution_(head + modes.coordinates)
+          solution_(head + modes.coordinates),
+          by_momenta_(head + modes.coordinates)
     {
         const std::size_t n = modes.coordinates;
         forces.total.resize(n), forces.pushing.resize(n), forces.torque.resize(modes.servos.size());
@@ -144,24 +145,18 @@ class BentBody {
         work.factored.factor();
         work.factored.solve(left);
         std::copy_n(left.begin(), head, solution_.begin());
+        std::ranges::copy(rate, solution_.begin() + head);
         move(x);
     }
 
-    // Momenta (L, P') of the head in its axes, and of the coordinates, for a twist of the head and `rates`.
-    Momentum<M, double> momenta_of(const Twist<M, double>& twist, const double* rates, double* momenta) const
+    // Momenta of the coordinates, after `move_by_rates`.
+    void find_momenta(double* momenta) const
     {
-        auto sum = components_of(twist);
-        std::vector<double> all(sum.begin(), sum.end());
-        all.insert(all.end(), rates, rates + rate.size());
-        for (std::size_t i = 0; i < all.size(); ++i) {
+        for (std::size_t i = head; i < solution_.size(); ++i) {
             double row = columns.at_rest[i];
-            for (std::size_t j = 0; j < all.size(); ++j) row += columns.mass.at(i, j) * all[j];
-            if (i < head)
-                sum[i] = row;
-            else
-                momenta[i - head] = row;
+            for (std::size_t j = 0; j < solution_.size(); ++j) row += columns.mass.at(i, j) * solution_[j];
+            momenta[i - head] = row;
         }
-        return Components<Momentum<M, double>>::make([&](std::size_t k) { return sum[k]; });
     }
 
     // `head_rate` and `momentum_rate` for state y, in the motion held by `work`.
@@ -196,20 +191,19 @@ class BentBody {
         }
         const auto of_head = components_of(left), by_loads = components_of(by_loads_);
         const std::size_t n = modes_->coordinates;
-        std::vector<double> by_momenta(head + n);
-        for (std::size_t i = 0; i < head; ++i) solution_[i] = of_head[i], by_momenta[i] = by_loads[i];
+        for (std::size_t i = 0; i < head; ++i) solution_[i] = of_head[i], by_momenta_[i] = by_loads[i];
         for (std::size_t i = 0; i < n; ++i) {
             solution_[head + i] = -forces.total[i];
             if (i < modes_->modes)
                 solution_[head + i] += mode_load_[i] - columns.work_of(i, load_) + work_of_fins(i, of_force);
-            by_momenta[head + i] = momentum_rate[i];
+            by_momenta_[head + i] = momentum_rate[i];
         }
         factored_.solve(solution_.data());
-        factored_.solve(by_momenta.data());
+        factored_.solve(by_momenta_.data());
         work.head_acceleration = Components<Twist<M, double>>::make([&](std::size_t k) { return solution_[k]; });
         for (std::size_t i = 0; i < n; ++i) {
             acceleration[i] = solution_[head + i];
-            drift[i] = acceleration[i] - by_momenta[head + i];
+            drift[i] = acceleration[i] - by_momenta_[head + i];
         }
         work.nose_force = on_nose - swimmer_->nose_mass * work.head_acceleration.linear.x;
         if constexpr (!M::planar)
@@ -356,6 +350,7 @@ class BentBody {
     Field<Wrench<M, double>> load_;  // about the sections, weighted by their length, in the axes of the head
     Field<Momentum<M, double>> momentum_ahead_;         // of each node, about the head
     std::vector<double> mode_load_, added_, solution_;  // `added_`: only in the rates of momenta
+    std::vector<double> by_momenta_;                    // accelerations that the rates of momenta alone would give
     std::vector<Jet> drive_;
     Wrench<M, double> by_loads_{};
     double imposed_at_rest_ = 0.0;    // W, power of the imposed change of shape without accelerations

@@ -46,7 +46,7 @@ class Columns {
     static constexpr std::size_t head = M::freedoms;
 
     Columns(const Swimmer& swimmer, const Modes& modes)
-        : mass(head + modes.coordinates), momentum(head + modes.coordinates)
+        : mass(head + modes.coordinates), momentum(head + modes.coordinates), along_normal_(modes.modes)
     {
         const std::size_t n = swimmer.grid.blocks;
         for (std::size_t m = 0; m < modes.modes; ++m) {
@@ -120,18 +120,17 @@ class Columns {
     // Added masses of the fins; the head's own part is in its inertia.
     EEL_CORE_APART void add_fins(const Swimmer& swimmer, const Workspace<Space>& work)
     {
-        std::vector<double> y(column.size());
         for (std::size_t i = 0; i < swimmer.fins.size(); ++i) {
             const FinMotion& now = work.fins[i];
             const std::size_t node = swimmer.fins[i].node;
             const auto row = components_of(at_fin(now, now.normal));
             const double imposed =
                 dot(now.normal, work.shape_velocity.node(node) + cross(work.shape_omega.node(node), now.arm));
-            for (std::size_t m = 0; m < y.size(); ++m) {
-                y[m] = dot(now.normal, at(now, node, m));
-                const double share = swimmer.fins[i].added_mass * y[m];
+            for (std::size_t m = 0; m < column.size(); ++m) {
+                along_normal_[m] = dot(now.normal, at(now, node, m));
+                const double share = swimmer.fins[i].added_mass * along_normal_[m];
                 for (std::size_t j = 0; j < head; ++j) mass.at(head + m, j) += share * row[j];
-                for (std::size_t j = 0; j <= m; ++j) mass.at(head + m, head + j) += share * y[j];
+                for (std::size_t j = 0; j <= m; ++j) mass.at(head + m, head + j) += share * along_normal_[j];
                 momentum[head + m] += share * imposed;
             }
         }
@@ -216,6 +215,7 @@ class Columns {
     }
 
     std::size_t blocks_ = 0;
+    std::vector<double> along_normal_;  // y of a fin, for each mode
 };
 
 }  // namespace eel_core

@@ -103,7 +103,7 @@ class BentStepper {
     void begin(const BentSettings& settings, const Present& now)
     {
         BentState y{now.state, std::vector<double>(now.x.size()), now.x};
-        if (body_.find_present(settings, now)) body_.momenta_of(body_.work.twist, now.rate.data(), y.momentum.data());
+        if (body_.find_present(settings, now)) body_.find_momenta(y.momentum.data());
         here_.time = before_.time = now.time, here_.y = y, works_ = with_dampers(now.works, now.damping_work);
         anew_ = true, known_ends_ = 0;
     }
@@ -218,7 +218,7 @@ class BentStepper {
         body_.find_rates_of(point.y.momentum.data());
         if (smoothed && smooth_rates(point)) {
             body_.move_by_rates(body_.rate.data(), point.y.x.data());
-            body_.momenta_of(body_.work.twist, body_.rate.data(), point.y.momentum.data());
+            body_.find_momenta(point.y.momentum.data());
         } else {
             body_.move(point.y.x.data());
         }

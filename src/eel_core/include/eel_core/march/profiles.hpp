@@ -3,6 +3,7 @@
 // one array.
 #pragma once
 
+#include <iterator>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -40,8 +41,39 @@ struct Profiles {
         sensor_water,         // (T, S, 3) m/s, velocity of the water over ground, without the swimmer
         quantities
     };
-    static constexpr std::size_t width_of[quantities] = {3, 4, 6, 6, 3, 3, 8, 2, 3, 4, 3, 3, 3,
-                                                         3, 3, 3, 3, 3, 3, 1, 3, 3, 4, 6, 6, 3};
+    struct Described {
+        Quantity quantity;
+        const char* name;   // in Python
+        std::size_t width;  // numbers at one instant, of one station, fin or sensor
+    };
+    static constexpr Described described[] = {
+        {position, "position", 3},
+        {orientation, "orientation", 4},
+        {twist, "twist", 6},
+        {head_acceleration, "head_acceleration", 6},
+        {center_of_mass, "center_of_mass", 3},
+        {energies, "energies", 3},
+        {powers, "powers", 8},
+        {closure, "closure", 2},
+        {backbone, "backbone", 3},
+        {section_orientation, "section_orientation", 4},
+        {curvature, "curvature", 3},
+        {curvature_rate, "curvature_rate", 3},
+        {torque, "torque", 3},
+        {force, "force", 3},
+        {fluid_force, "fluid_force", 3},
+        {resistive_force, "resistive_force", 3},
+        {tail_force, "tail_force", 3},
+        {nose_force, "nose_force", 3},
+        {wake_momentum_rate, "wake_momentum_rate", 3},
+        {fin_angle, "fin_angle", 1},
+        {fin_force, "fin_force", 3},
+        {sensor_position, "sensor_position", 3},
+        {sensor_orientation, "sensor_orientation", 4},
+        {sensor_twist, "sensor_twist", 6},
+        {sensor_acceleration, "sensor_acceleration", 6},
+        {sensor_water, "sensor_water", 3},
+    };
 
     std::size_t samples, stations, fins, sensors;
     bool wrench, load;
@@ -74,10 +106,16 @@ struct Profiles {
     // Of one instant.
     std::size_t numbers(std::size_t q) const
     {
-        return width_of[q] * (along_body(q) ? stations : of_fins(q) ? fins : of_sensors(q) ? sensors : 1);
+        return described[q].width * (along_body(q) ? stations : of_fins(q) ? fins : of_sensors(q) ? sensors : 1);
     }
 
     double* at(double* whole, Quantity q, std::size_t sample) const { return whole + begin[q] + sample * numbers(q); }
 };
+
+static_assert([] {
+    for (std::size_t q = 0; q < Profiles::quantities; ++q)
+        if (Profiles::described[q].quantity != q) return false;
+    return std::size(Profiles::described) == Profiles::quantities;
+}());
 
 }  // namespace eel_core
