@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 from eel_common.topics import OWN
+from eel_dynamics.ros.messages import SampleMessages
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.sensors import SensorMessages
 from eel_viz.bags.definitions import definition, type_hash
@@ -22,7 +23,8 @@ def bag(tmp_path_factory):
     path = tmp_path_factory.mktemp("bags") / "bag"
     swimmer = Simulation(law=falling(), sensors=[0.0])
     settings = Imu(**IMU), Pressure(**PRESSURE), Velocity(**VELOCITY)
-    messages, connections = SensorMessages(settings, swimmer, DynamicsParameters()), {}
+    parameters, connections = DynamicsParameters(), {}
+    messages = SensorMessages(settings, swimmer, parameters, SampleMessages(swimmer, parameters))
     with Writer(path, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
         for k in (0, *range(51)):
             swimmer.advance(0.01 * k)

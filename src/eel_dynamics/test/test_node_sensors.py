@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from eel_dynamics.model.robot.joint_signs import message_signs
 from eel_dynamics.model.robot.robot import robot_of
+from eel_dynamics.ros.messages import SampleMessages
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.sensors import SensorMessages
 from eel_gaits.ros.messages import law_to_message
@@ -186,10 +187,15 @@ def sent(messages, simulation, samples):
     return found
 
 
+def messages_of(settings, swimmer):
+    parameters = DynamicsParameters()
+    return SensorMessages(settings, swimmer, parameters, SampleMessages(swimmer, parameters))
+
+
 def test_while_a_run_stands_at_its_start_readings_are_not_late():
     """Who commands by sensors alone starts the run by an answer to the first."""
     swimmer = Simulation(law=falling(), sensors=[0.0])
-    messages = SensorMessages((ImuSettings(rate=50.0, latency=0.02),), swimmer, DynamicsParameters())
+    messages = messages_of((ImuSettings(rate=50.0, latency=0.02),), swimmer)
     found = sent(messages, swimmer, [0, 0, *range(1, 8)])
     assert [(k, topic) for k, topic, _ in found] == [(0, "imu"), (0, "imu"), (4, "imu"), (6, "imu")]
     assert found[0] == found[1]
@@ -198,7 +204,7 @@ def test_while_a_run_stands_at_its_start_readings_are_not_late():
 def test_a_reset_gives_the_same_readings_again():
     swimmer = Simulation(law=falling(), sensors=[0.0])
     walking = ImuSettings(rate=100.0, latency=0.03, gyroscope_noise=0.1, gyroscope_walk=0.1, seed=3)
-    messages = SensorMessages((walking,), swimmer, DynamicsParameters())
+    messages = messages_of((walking,), swimmer)
     first = sent(messages, swimmer, range(8))
     swimmer.reset()
     assert sent(messages, swimmer, range(8)) == first and len({each[2] for each in first}) == len(first) == 5
@@ -207,7 +213,7 @@ def test_a_reset_gives_the_same_readings_again():
 def test_the_bias_of_an_encoder_has_the_sign_of_its_topic():
     robot = robot_of("sixteen_servos")
     swimmer = Simulation(law=backward(), robot=robot)
-    messages = SensorMessages((Encoders(rate=100.0, angle_bias=0.05),), swimmer, DynamicsParameters())
+    messages = messages_of((Encoders(rate=100.0, angle_bias=0.05),), swimmer)
     swimmer.advance(0.2)
     now = swimmer.observe()
     found = dict(messages.due(now, 200_000_000))

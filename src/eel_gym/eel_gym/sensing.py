@@ -4,11 +4,8 @@
 The readings are those of `eel_dynamics.SensorSuite`, at the ends of control steps. Each episode has noise of its own.
 """
 
-import heapq
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from itertools import count
-from typing import Any
 
 import numpy as np
 from eel_dynamics.model.flow.flow import Flow
@@ -16,8 +13,9 @@ from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.sensors.encoders import Encoders
 from eel_dynamics.sensors.imu import Imu
 from eel_dynamics.sensors.pressure import Pressure
-from eel_dynamics.sensors.sensor import SensorSettings, StationedSettings
+from eel_dynamics.sensors.sensor import SensorSettings
 from eel_dynamics.sensors.suite import SensorSuite
+from eel_dynamics.sensors.timing import Delay
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
 
@@ -33,9 +31,7 @@ def observed_by(settings: Sequence[SensorSettings], robot: Robot | None) -> tupl
     for each in settings:
         if not each.rate:
             continue
-        stations = each.stations if isinstance(each, StationedSettings) else (0.0,)
-        for k in range(1, 1 + len(stations)):
-            name = each.what if len(stations) == 1 else f"{each.what}_{k}"
+        for name in each.names:
             seen += [Observed(f"{name} {part}", unit, bound) for part, unit, bound in _parts(each, robot)]
     return tuple(seen)
 
@@ -66,8 +62,7 @@ class Sensing:
     def __init__(self, settings: Sequence[SensorSettings], setup: SimulationSetup, swimmers: int):
         self._settings, self._setup = tuple(settings), setup
         self._suites = [SensorSuite(self._settings, setup) for _ in range(swimmers)]
-        self._waiting: list[list[Any]] = [[] for _ in range(swimmers)]  # heaps: when due [s], count, rows, numbers
-        self._count = count()
+        self._late = [Delay() for _ in range(swimmers)]  # rows of `values`, and their numbers
         self.values = np.zeros((len(observed_by(settings, setup.robot)), swimmers))
         self._rows: dict[str, slice] = {}
         for name, sensor in self._suites[0].sensors.items():
@@ -80,18 +75,18 @@ class Sensing:
             drawn = [replace(each, seed=int(random.integers(2**31))) for each in self._settings]
             self._suites[index] = SensorSuite(drawn, replace(self._setup, flow=flow))
             self.values[:, index] = 0.0
-            self._waiting[index].clear()
+            self._late[index] = Delay()
 
     def look(self, index: int, observe: Callable[[], Snapshot]) -> None:
         """Take the readings of a swimmer at present, and what of earlier ones comes now."""
         if not self._settings:
             return
-        snapshot, waiting = observe(), self._waiting[index]
+        snapshot, late = observe(), self._late[index]
+        now = round(snapshot.time * 1e9)  # ns
         for name, (_, *parts) in self._suites[index].read(snapshot).items():
             settings = self._suites[index].sensors[name].settings
             seen = {Pressure: parts[1:], Encoders: parts[:2]}.get(type(settings), parts)  # the depth; no currents
             numbers = np.concatenate([np.atleast_1d(part) for part in seen if part is not None])
-            heapq.heappush(waiting, (snapshot.time + settings.latency, next(self._count), self._rows[name], numbers))
-        while waiting and waiting[0][0] <= snapshot.time + 1e-9:
-            _, _, rows, numbers = heapq.heappop(waiting)
+            late.put(now + round(settings.latency * 1e9), (self._rows[name], numbers))
+        for rows, numbers in late.take(now):
             self.values[rows, index] = numbers

@@ -36,6 +36,7 @@ LISTED = {
 UNITS = {word: (si, by) for si, words in LISTED.items() for by, each in words.items() for word in each.split()}
 NAME = re.compile(rf"(.*?)(?:^|[_./])({'|'.join(map(re.escape, sorted(UNITS, key=len, reverse=True)))})")
 BRACKETS = re.compile(r"[\[(]\s*([^\[\]()]*?)\s*[\])]")
+LARGEST_ANGLE = 3.2  # rad, of a joint: with a larger angle the file is in degrees
 INDEX = re.compile(r"\w*\d")  # in brackets: the number or name of a joint, not a unit
 
 

@@ -11,7 +11,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from eel_common.quantity import checked_choice
-from eel_common.wording import not_one_of, shown
+from eel_common.wording import shown
 from geometry_msgs.msg import WrenchStamped
 from sensor_msgs.msg import JointState
 
@@ -110,8 +110,7 @@ def wrench_from_message(
     An empty frame id is that of the `head`. `ValueError` names what does not fit.
     """
     frame, stamp = message.header.frame_id or head, stamped(message.header.stamp, now)
-    if frame not in frames:
-        raise ValueError(not_one_of("header.frame_id", frame, tuple(frames)))
+    checked_choice("header.frame_id", frame, frames)
     parts = {"force": message.wrench.force, "torque": message.wrench.torque}
     rows = {name: [float(getattr(vector, axis)) for axis in "xyz"] for name, vector in parts.items()}
     for name, row in rows.items():

@@ -7,7 +7,7 @@ Poses, twists and the backbone are in REP-103 axes; section quantities have the 
 
 import array
 import math
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -52,13 +52,11 @@ LARGEST_LAW = 2**19  # bytes, without the name: 1,000 terms of 30 knots, which a
 class SampleMessages:
     """The serialised messages of one sample of a `simulation`: `fill` returns that of a topic, `tick` that of /clock.
 
-    without: topics that sensors fill.
-
     Attributes:
         kinds: message type by topic.
     """
 
-    def __init__(self, simulation: Simulation, parameters: DynamicsParameters, without: Collection[str] = ()) -> None:
+    def __init__(self, simulation: Simulation, parameters: DynamicsParameters) -> None:
         self._nanoseconds, self._simulation = (0, 0), simulation
         x, scene = simulation.x, simulation.scene
         self._errors: HeadErrors | None = None  # those in the covariances of odom
@@ -117,7 +115,6 @@ class SampleMessages:
             count = [0.0] * len(simulation.fins)
             names = [fin.name for fin in simulation.fins]
             topics["fin_states"] = JointState(name=names, position=count, effort=[]), ""
-        topics = {name: each for name, each in topics.items() if name not in without}
         self.kinds = {name: type(message) for name, (message, _) in topics.items()}
         self._further: dict[str, Callable[[Numbers, Snapshot], None]] = {  # what `FIELDS` has not
             "odom": self._fill_covariances,
@@ -157,6 +154,14 @@ class SampleMessages:
 
     def fill(self, name: str, snapshot: Snapshot) -> bytes:
         """The message of topic `name`, filled from `snapshot`."""
+        return self._sealed(self.filled(name, snapshot))
+
+    def message(self, name: str) -> SerialisedMessage:
+        """The message of topic `name`, which `filled` fills."""
+        return self._topics[name][0]
+
+    def filled(self, name: str, snapshot: Snapshot) -> SerialisedMessage:
+        """The same without its stamp; its numbers may be replaced."""
         message, fields = self._topics[name]
         quantity = snapshot.joints.__getitem__ if name in OF_JOINTS else snapshot.__getattribute__
         for each, places in fields:
@@ -168,7 +173,7 @@ class SampleMessages:
             place += 0.0  # no minus zeros
         if name in self._further:
             self._further[name](message.numbers, snapshot)
-        return self._sealed(message)
+        return message
 
     def _sealed(self, message: SerialisedMessage) -> bytes:
         for stamp in message.stamps:

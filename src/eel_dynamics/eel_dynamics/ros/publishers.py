@@ -69,8 +69,8 @@ class Publishers:
     def begin(self, simulation: Simulation) -> None:
         """Change to the topics of another `simulation`, and publish its body."""
         values = self._parameters.values
-        self.sensors = SensorMessages(self._parameters.sensors, simulation, values)
-        self._sample = SampleMessages(simulation, values, without=self.sensors.kinds)
+        self._sample = SampleMessages(simulation, values)
+        self.sensors = SensorMessages(self._parameters.sensors, simulation, values, self._sample)
         kinds = self._sample.kinds | self.sensors.kinds
         for name in [name for name in self._channels if name not in kinds]:
             self._channels.pop(name).close()
@@ -93,7 +93,7 @@ class Publishers:
         counts, shown = self.audience(), self._parameters.values.publish_tf
         if (counts, shown) != self._present:
             before, self._present = self._present[0], (counts, shown)
-            heard = [name for name, count in counts.items() if count and name in self._sample.kinds]
+            heard = [name for name, count in counts.items() if count and name not in self.sensors.kinds]
             self._subscribed = tuple(name for name in heard if shown or name != "/tf")
             self._parts = {part: any(name in self._subscribed for name in topics) for part, topics in PARTS.items()}
             late = [name for name in self._subscribed if counts[name] > before.get(name, 0)]

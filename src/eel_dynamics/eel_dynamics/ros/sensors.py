@@ -6,9 +6,7 @@ their latency is over, and those of t = 0 at once; their stamp is the time of th
 a frame NAME_link below the head's: on /tf_static where the body ahead of it is rigid, else on /tf with each sample.
 """
 
-import heapq
 from collections.abc import Callable, Iterator
-from itertools import count
 from typing import Any
 
 import numpy as np
@@ -18,38 +16,40 @@ from eel_common.ros.loop.serialised_message import SerialisedMessage
 from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped, TwistWithCovarianceStamped
 from tf2_msgs.msg import TFMessage
 
-from eel_dynamics.model.robot.actuators import most_torque
 from eel_dynamics.model.robot.joint_signs import message_signs
+from eel_dynamics.ros.messages import SECOND, SampleMessages
 from eel_dynamics.ros.parameters import DynamicsParameters
+from eel_dynamics.runs.exchange.message_fields import OF_JOINTS
 from eel_dynamics.sensors.encoders import Encoders, JointReadings
 from eel_dynamics.sensors.imu import Imu, ImuReadings
 from eel_dynamics.sensors.pressure import Pressure, PressureReadings
 from eel_dynamics.sensors.sensor import Surroundings
 from eel_dynamics.sensors.suite import SensorSuite
+from eel_dynamics.sensors.timing import Delay
 from eel_dynamics.sensors.velocity import VelocityReadings
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
 
 FRAMES = "sensor_frames"  # of messages on /tf
 NOT_MEASURED = 1e6  # variance, in SI units, of a number that a message has and the sensor does not tell
-SECOND = 1_000_000_000  # ns
 
 
 class SensorMessages:
     """The messages of the sensors of a `simulation` with these `settings`.
+
+    sample: of the simulation. Encoders send its messages of joints, with their own angles, rates and currents.
 
     Attributes:
         kinds: message type by topic, and of `FRAMES` where sensors move relative to the head.
         static: frames that do not move, for /tf_static.
     """
 
-    def __init__(self, settings: tuple[Any, ...], simulation: Simulation, parameters: DynamicsParameters) -> None:
-        robot = simulation.robot
-        self._signs = np.ones(0) if robot is None else message_signs(robot)
-        self._simulation, self._suite = simulation, SensorSuite(settings, simulation, self._signs)
+    def __init__(
+        self, settings: tuple[Any, ...], simulation: Simulation, parameters: DynamicsParameters, sample: SampleMessages
+    ) -> None:
+        self._suite, self._sample = SensorSuite(settings, simulation, message_signs(simulation.robot)), sample
         self._around = Surroundings.of(simulation.scene, simulation.flow)
-        self._due: list[tuple[int, int, str, bytes]] = []  # a heap: when [ns], count, topic, message
-        self._count = count()
+        self._late = Delay()  # topics and messages
         self._messages: dict[str, SerialisedMessage] = {}
         self.static: list[TransformStamped] = []
         moving: list[TransformStamped] = []
@@ -57,11 +57,12 @@ class SensorMessages:
         self._places: list[int] = []  # of the moving ones, in a snapshot
         space = parameters.head_frame.rpartition("/")[0]
         for name, sensor in self._suite.sensors.items():
-            frame = frame_in(space, f"{name}_link")
-            made = _messages_of(name, sensor.settings, simulation, frame, parameters.world_frame)
-            self._messages |= {topic: SerialisedMessage(message) for topic, message in made.items()}
             if isinstance(sensor.settings, Encoders):
+                self._messages |= {topic: sample.message(topic) for topic in OF_JOINTS}
                 continue
+            frame = frame_in(space, f"{name}_link")
+            made = _messages_of(name, sensor.settings, self._around, frame, parameters.world_frame)
+            self._messages |= {topic: SerialisedMessage(message) for topic, message in made.items()}
             transform = TransformStamped(child_frame_id=frame)
             transform.header.frame_id = parameters.head_frame
             transform.transform.translation.x = 0.0 - sensor.station
@@ -83,16 +84,14 @@ class SensorMessages:
             return
         if nanoseconds == 0:
             self._suite.begin()
-            self._due.clear()
+            self._late = Delay()
         for name, readings in self._suite.read(snapshot).items():
             # At the start they have been on for long: who commands by sensors alone could not start the run else.
-            late = round(self._suite.sensors[name].settings.latency * SECOND) if nanoseconds else 0
+            due = nanoseconds + (round(self._suite.sensors[name].settings.latency * 1e9) if nanoseconds else 0)
             for topic in _FILL[type(readings)](self, name, readings, snapshot):
                 if heard(topic):
-                    entry = nanoseconds + late, next(self._count), topic, self._sealed(topic, nanoseconds)
-                    heapq.heappush(self._due, entry)
-        while self._due and self._due[0][0] <= nanoseconds:
-            yield heapq.heappop(self._due)[2:]
+                    self._late.put(due, (topic, self._sealed(topic, nanoseconds)))
+        yield from self._late.take(nanoseconds)
         if FRAMES in self._messages and heard(FRAMES):
             self._fill_frames(snapshot)
             yield FRAMES, self._sealed(FRAMES, nanoseconds)
@@ -122,15 +121,9 @@ class SensorMessages:
         return (name,)
 
     def _fill_joints(self, name: str, readings: JointReadings, snapshot: Snapshot) -> tuple[str, ...]:
-        states, motors = (self._messages[topic].numbers for topic in ("joint_states", "motor_states"))
-        torque, power = snapshot.joints["motor_torque"], snapshot.joints["motor_power"]
-        robot = self._simulation.robot
-        assert robot is not None
+        states, motors = (self._sample.filled(topic, snapshot).numbers for topic in OF_JOINTS)
         states["position"][:], states["velocity"][:], motors["current"][:] = readings[1:]
-        states["effort"][:] = self._signs * snapshot.joints["joint_torque"] + 0.0  # no minus zeros
-        motors["torque"][:] = self._signs * torque + 0.0
-        motors["power"][:], motors["limit"][:] = power, most_torque(robot.servos, torque, power)
-        return "joint_states", "motor_states"
+        return OF_JOINTS
 
     def _fill_frames(self, snapshot: Snapshot) -> None:
         """From the head to each sensor."""
@@ -162,21 +155,13 @@ def rigid_until(simulation: Simulation) -> float:
     return 0.0 if modes.imposed(np.linspace(0.0, first, 9)[1:]).any() else first
 
 
-def _messages_of(name: str, settings: Any, simulation: Simulation, frame: str, world: str) -> dict[str, Any]:
+def _messages_of(name: str, settings: Any, around: Surroundings, frame: str, world: str) -> dict[str, Any]:
     """The messages of a sensor by topic, with all that does not change."""
-    from sensor_msgs.msg import FluidPressure, JointState  # here, for its package takes a tenth of the node's start
+    from sensor_msgs.msg import FluidPressure  # here: importing its package takes a tenth of the node's start
     from sensor_msgs.msg import Imu as ImuMessage
 
-    from eel_msgs.msg import MotorStates
-
-    variance = np.square(settings.spread(1).noise)
-    if isinstance(settings, Encoders):
-        assert simulation.robot is not None
-        zeros = [0.0] * len(simulation.robot.joints)
-        names = [joint.name for joint in simulation.robot.joints]
-        states = JointState(name=names, position=zeros, velocity=zeros, effort=zeros)
-        motors = MotorStates(name=names, torque=zeros, limit=zeros, power=zeros, current=zeros)
-        return {"joint_states": states, "motor_states": motors}
+    noise = settings.spread(1).noise
+    variance = np.square(noise)
     if isinstance(settings, Imu):
         message = ImuMessage()
         message.linear_acceleration_covariance, message.angular_velocity_covariance, message.orientation_covariance = (
@@ -186,10 +171,7 @@ def _messages_of(name: str, settings: Any, simulation: Simulation, frame: str, w
             message.orientation_covariance[0] = -1.0
         found = {name: (message, frame)}
     elif isinstance(settings, Pressure):
-        weight = Surroundings.of(simulation.scene, None)
-        by_depth = 1.0 / (weight.density * weight.gravity) if weight.density else 0.0
-        place = PoseWithCovarianceStamped()
-        known = float(variance[0]) * by_depth**2
+        place, known = PoseWithCovarianceStamped(), around.depth_of(float(noise[0])) ** 2
         place.pose.covariance = np.diag([NOT_MEASURED, NOT_MEASURED, known, *[NOT_MEASURED] * 3]).ravel()
         gauge = FluidPressure(variance=float(variance[0]))
         found = {name: (gauge, frame), name.replace("pressure", "depth"): (place, world)}

@@ -41,7 +41,5 @@ class Pressure(StationedSettings):
         return Spread.of((self.noise, self.bias, self.walk, 1))
 
     def read(self, time: Any, motion: Motion, around: Surroundings, errors: Components) -> PressureReadings:
-        weight = around.density * around.gravity
-        gauge = weight * (around.surface - motion.position[2]) + errors[0]
-        depth = gauge / weight if weight else 0.0 * gauge
-        return PressureReadings(time, self.surface_pressure + gauge, depth)
+        gauge = around.density * around.gravity * (around.surface - motion.position[2]) + errors[0]
+        return PressureReadings(time, self.surface_pressure + gauge, around.depth_of(gauge))

@@ -61,6 +61,11 @@ class Surroundings(NamedTuple):
         height = np.inf if flow is None else flow.traits.surface_height
         return Surroundings(scene.fluid_density, float(height) if np.isfinite(height) else 0.0)
 
+    def depth_of(self, pressure: Any) -> Any:
+        """Depth [m] of water whose weight gives a `pressure` [Pa]; 0 where the water has no density."""
+        by_depth = self.density * self.gravity
+        return pressure / by_depth if by_depth else 0.0 * pressure
+
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class SensorSettings(Quantities):
@@ -71,6 +76,11 @@ class SensorSettings(Quantities):
     rate: float = quantity(0.0, "Hz", "readings per simulated second, at samples of the run; 0: no such sensor", 0.0)
     latency: float = quantity(0.0, "s", "from a reading, whose time its stamp is, to its message", 0.0, 60.0)
     seed: int = quantity(0, "", "of the noise: the same gives the same readings to the last bit", 0, 2**31 - 1)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Name of each sensor, as of its topic: `imu`, or `imu_1`, `imu_2` ... of several stations."""
+        return (self.what,)
 
     @abstractmethod
     def spread(self, joints: int) -> Spread:
@@ -86,6 +96,11 @@ class StationedSettings(SensorSettings):
     """Settings of a kind of sensor that sits at stations."""
 
     stations: tuple[float, ...] = quantity((0.0,), "m", "X of each, from the nose", any_length=True)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        many = len(self.stations) > 1
+        return tuple(f"{self.what}_{k}" if many else self.what for k in range(1, 1 + len(self.stations)))
 
 
 class Sensor:

@@ -55,8 +55,7 @@ class SensorSuite:
             if not isinstance(each, StationedSettings):
                 self.sensors[each.what] = Sensor(each, around, joints=len(self._robot.joints) if self._robot else 0)
                 continue
-            for k, station in enumerate(each.stations, start=1):
-                name = each.what if len(each.stations) == 1 else f"{each.what}_{k}"
+            for name, station in zip(each.names, each.stations, strict=True):
                 if station not in places:
                     raise ValueError(f"sensors of the simulation must have {station:g} m, for {name}, got {places}")
                 self.sensors[name], self._index[name] = Sensor(each, around, station), places.index(station)

@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""When a sensor reads: at the first sample of the run at or after each multiple of its period."""
+"""When a sensor reads: at the first sample of the run at or after each multiple of its period; and its latency."""
 
+import heapq
 import math
+from collections.abc import Iterator
+from itertools import count
+from typing import Any
 
 import numpy as np
 
@@ -29,6 +33,23 @@ class Timing:
             return None
         last, self._last = self._last, time
         return 0.0 if before < 0 else time - last
+
+
+class Delay:
+    """Holds what is not due yet, such as readings until their latency is over."""
+
+    def __init__(self) -> None:
+        self._heap: list[tuple[int, int, Any]] = []  # when due [ns], count, what
+        self._count = count()
+
+    def put(self, due: int, what: Any) -> None:
+        """Hold `what` until the time `due` [ns]."""
+        heapq.heappush(self._heap, (due, next(self._count), what))
+
+    def take(self, now: int) -> Iterator[Any]:
+        """What is due at the time `now` [ns]: the earliest first, and as it was put where the times are equal."""
+        while self._heap and self._heap[0][0] <= now:
+            yield heapq.heappop(self._heap)[2]
 
 
 def check_rate(name: str, rate: float, samples: float) -> None:

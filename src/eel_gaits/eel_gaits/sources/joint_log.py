@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 from eel_common.files.input_file import reading
-from eel_common.files.table import UNITS, Table
+from eel_common.files.table import LARGEST_ANGLE, UNITS, Table
 from eel_common.files.tables import read_table
 from eel_common.files.times import time_of
 from eel_common.quantity import checked_row, positive
@@ -38,7 +38,6 @@ OTHER = re.compile(  # columns of joints other than measured angles
 FEWEST_JOINTS, FEWEST_ROWS = 2, 16
 SPREADS, FINEST = 6.0, 2e-3  # a reading beyond these robust spreads has jumped; least spread [rad]
 PASSES = 3
-LARGEST = 3.2  # rad: with a larger angle the file is in degrees
 MOST_LOST, MOST_SETS = 0.1, 5  # most rows left out, as a part; most times that a clock is set back
 RARE = 0.5  # a column filled in fewer of the joints' rows belongs to another topic
 SINGLE = 0.75  # of a step, left between its neighbours by a row with a bad stamp
@@ -118,8 +117,8 @@ def read_joint_log(
 
 def _check_size(angles: np.ndarray, hint: str) -> None:
     """`ValueError` if one of the `angles` (N, n) [rad] is too large for a joint."""
-    if (most := np.max(np.abs(angles))) > LARGEST:
-        raise ValueError(f"an angle must be at most {LARGEST} rad, got {most:.4g}{hint}")
+    if (most := np.max(np.abs(angles))) > LARGEST_ANGLE:
+        raise ValueError(f"an angle must be at most {LARGEST_ANGLE} rad, got {most:.4g}{hint}")
 
 
 def _check_pace(time: np.ndarray, angles: np.ndarray) -> None:

@@ -26,7 +26,7 @@ import numpy as np
 from eel_common.files.archive import read_archive
 from eel_common.files.input_file import reading
 from eel_common.files.output_file import replacing
-from eel_common.files.table import Table, split_name
+from eel_common.files.table import LARGEST_ANGLE, Table, split_name
 from eel_common.files.tables import SUFFIXES, is_table, read_table
 from eel_common.files.times import time_of
 from eel_common.quantity import checked_path, positive
@@ -40,7 +40,6 @@ LAW = {"time", "x", "values"}  # names of the arrays with a law's rows
 ARCHIVE = ".npz"
 COLUMN = re.compile(r"(pitch|yaw)_([1-9][0-9]*)")  # the name of a joint's column
 FEWEST_JOINTS = 3  # per axis
-LARGEST = 3.2  # rad: with a larger angle the file is in degrees
 FITTING = 1e-6  # largest difference in length of a law's rows from the body, as a part
 
 
@@ -158,7 +157,9 @@ def _law_of_joints(table: Table, length: float, name: str, column: str, smooth: 
     time = time_of(table, column)
     check_rising(table, time, np.arange(len(time)))
     check_steps(table, time)
-    angles = {axis: np.stack([table.column(each, "rad", LARGEST) for each in names]) for axis, names in axes.items()}
+    angles = {
+        axis: np.stack([table.column(each, "rad", LARGEST_ANGLE) for each in names]) for axis, names in axes.items()
+    }
     splines = {}
     for axis, each in angles.items():
         sums = np.concatenate((np.zeros((1, len(time))), np.cumsum(each, axis=0)))  # at the ends of the segments

@@ -17,9 +17,9 @@ from collections import deque
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 
-from eel_common.quantity import is_finite
+from eel_common.quantity import checked_choice, is_finite
 from eel_common.ros.loop.diagnostics import Report
-from eel_common.wording import not_one_of, shown
+from eel_common.wording import shown
 
 LAW, SAMPLES, JOINTS, FINS, CURRENT = "curvature_law", "curvature_samples", "joint_commands", "fin_command", "current"
 WRENCH = "external_wrench"
@@ -209,14 +209,13 @@ def wanted_inputs(wait_for: Iterable[str], parts: Mapping[str, tuple[str, ...]])
     for text in filter(None, wait_for):
         word, _, number = text.partition(" ")
         topic, slash, name = word.partition("/")
-        if topic not in INPUTS:
-            raise ValueError(not_one_of("wait_for", topic, INPUTS))
+        checked_choice("wait_for", topic, INPUTS)
         if topic in (JOINTS, FINS) and not parts.get(topic):
             raise ValueError(f"wait_for must name inputs that there are, got {topic}: nothing follows it")
         if slash and not parts.get(topic):
             raise ValueError(f"wait_for {topic} has no names, got {shown(name)}")
-        if slash and name not in parts.get(topic, ()):
-            raise ValueError(not_one_of(f"wait_for {topic}/", name, parts.get(topic, ())))
+        if slash:
+            checked_choice(f"wait_for {topic}/", name, parts[topic])
         try:
             period = float(number) if number else None
         except ValueError:
