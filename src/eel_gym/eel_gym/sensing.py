@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the sensors of N swimmers tell a policy: of each the last reading that has come, 0 before the first.
+"""The readings of sensors that a policy of N swimmers observes: of each sensor the last one, 0 before the first.
 
-The readings are those of `eel_dynamics.SensorSuite`, at the ends of control steps. Each episode has noise of its own.
+`eel_dynamics.SensorSuite` reads at the ends of control steps. Each episode has its own noise.
 """
 
 from collections.abc import Callable, Sequence
@@ -26,7 +26,7 @@ WIDEST = 3.2  # rad, bound of an angle of a joint
 
 
 def observed_by(settings: Sequence[SensorSettings], robot: Robot | None) -> tuple[Observed, ...]:
-    """What a policy sees of sensors with these `settings`: names as of topics, units, bounds."""
+    """The numbers that a policy observes of sensors with these `settings`: names as of topics, units, bounds."""
     seen: list[Observed] = []
     for each in settings:
         if not each.rate:
@@ -78,7 +78,7 @@ class Sensing:
             self._late[index] = Delay()
 
     def look(self, index: int, observe: Callable[[], Snapshot]) -> None:
-        """Take the readings of a swimmer at present, and what of earlier ones comes now."""
+        """Read the sensors of a swimmer, and take over the readings whose latency is over."""
         if not self._settings:
             return
         snapshot, late = observe(), self._late[index]

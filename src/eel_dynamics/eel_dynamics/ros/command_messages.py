@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads the commands of a robot's joints and of fins from messages (sensor_msgs/JointState), and wrenches from outside.
+"""Reads messages with commands for joints and fins (sensor_msgs/JointState), and with external wrenches.
 
-A joint is driven by position, velocity or effort, or several of them. A joint for which a message has no value
-goes on as before: its values are NaN, or an array is shorter than `name`, as the joint's interfaces (the parameter
-`command_interfaces`) are others. So sends joint_state_topic_hardware_interface of ros2_control.
+A joint command holds position, velocity or effort, or several of them. A message need not have a value for each joint:
+a value may be NaN, and an array may be shorter than `name` if some joints lack that interface (the parameter
+`command_interfaces`). joint_state_topic_hardware_interface of ros2_control sends such messages. A joint without a
+value keeps its last command.
 """
 
 import math
@@ -19,13 +20,17 @@ from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.ros.messages import stamped
 
 INTERFACES = ("position", "velocity", "effort")
-ANY, NONE = "any", "none"  # in place of interfaces
+ANY, NONE = "any", "none"  # special values of command_interfaces
 MOST_JOINTS = 1000  # of one message
-Values = dict[str, Any]  # of a fin the angle [rad]; of a joint values [rad, rad/s, N m] by interface
+Values = dict[str, Any]  # by name: angle [rad] of a fin; of a joint [rad, rad/s, N m], by interface
 
 
 def interfaces_of(robot: Robot | None, given: tuple[str, ...]) -> dict[str, tuple[str, ...]]:
-    """The interfaces of each joint. `ValueError` for the parameter `given`, which is one for all, or one for each."""
+    """The command interfaces of each joint, by name.
+
+    given: the parameter, with one entry for all joints, or one for each. `ValueError` for another number of entries,
+    and for an unknown interface.
+    """
     if robot is None:
         return {}
     names = [joint.name for joint in robot.joints]
@@ -47,9 +52,9 @@ def _interfaces(words: str) -> tuple[str, ...]:
 def joint_command_from_message(
     message: JointState, interfaces: Mapping[str, tuple[str, ...]], now: float
 ) -> tuple[float, Values]:
-    """The stamp [s] of a `message` that comes at simulation time `now` [s], and what joints are to do from then on.
+    """The stamp [s] of a `message`, and its values by joint and interface: none for a joint without a value.
 
-    A joint that it has no value for has none. `ValueError` names what does not fit.
+    now: simulation time [s]. `ValueError` names an invalid field, joint or interface.
     """
     names = list(message.name)
     if not 1 <= len(names) <= MOST_JOINTS:
@@ -64,7 +69,7 @@ def joint_command_from_message(
         values = getattr(message, field)
         if not values:
             continue
-        whose = names if len(values) == len(names) else _whose(field, len(values), names, interfaces)
+        whose = names if len(values) == len(names) else _joints_with(field, len(values), names, interfaces)
         for name, value in zip(whose, values, strict=True):
             if math.isnan(value):
                 continue
@@ -77,8 +82,8 @@ def joint_command_from_message(
     return stamped(message.header.stamp, now), joints
 
 
-def _whose(field: str, count: int, names: list[str], interfaces: Mapping[str, tuple[str, ...]]) -> list[str]:
-    """The joints of `names` that the `count` values of a `field` are for: those that have that interface."""
+def _joints_with(field: str, count: int, names: list[str], interfaces: Mapping[str, tuple[str, ...]]) -> list[str]:
+    """The joints among `names` with the interface `field`. `ValueError` if they are not `count`, as the values are."""
     having = [name for name in names if field in interfaces[name]]
     if count == len(having):
         return having
@@ -90,9 +95,9 @@ def _whose(field: str, count: int, names: list[str], interfaces: Mapping[str, tu
 
 
 def fin_command_from_message(message: JointState, now: float) -> tuple[float, dict[str, float]]:
-    """The stamp [s] of a `message` that comes at simulation time `now` [s], and angles [rad] by the names of fins.
+    """The stamp [s] of a `message`, and the angle [rad] of each fin, by name.
 
-    `ValueError` for an invalid stamp, or for another number of positions than names.
+    now: simulation time [s]. `ValueError` for an invalid stamp, and if there are not as many positions as names.
     """
     if len(message.name) != len(message.position) or not message.name:
         raise ValueError(
@@ -105,9 +110,9 @@ def fin_command_from_message(message: JointState, now: float) -> tuple[float, di
 def wrench_from_message(
     message: WrenchStamped, frames: Collection[str], head: str, now: float
 ) -> tuple[float, str, tuple[float, ...]]:
-    """Stamp [s], frame, and force [N] and torque [N m] (6,) of a `message` that comes at simulation time `now` [s].
+    """Stamp [s], frame, and force [N] and torque [N m] (6,) of a `message`.
 
-    An empty frame id is that of the `head`. `ValueError` names what does not fit.
+    now: simulation time [s]. An empty frame id means the `head`. `ValueError` names an invalid field.
     """
     frame, stamp = message.header.frame_id or head, stamped(message.header.stamp, now)
     checked_choice("header.frame_id", frame, frames)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The subscriptions to commands of joints and fins, to currents, and to wrenches from outside."""
+"""The subscriptions to commands of joints and fins, to currents, and to external wrenches."""
 
 from collections.abc import Callable
 from typing import Any
@@ -13,14 +13,14 @@ from sensor_msgs.msg import JointState
 from eel_dynamics.ros.loop.command_queue import CommandQueue
 from eel_dynamics.ros.loop.run_loop import RunLoop
 
-DEPTH = 100  # currents
-SENSOR = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)  # as sensors are, it matches any publisher
+DEPTH = 100  # messages of currents
+SENSOR = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)  # matches any publisher
 
 
 def subscribe_to_commands(node: ServedNode, run: RunLoop) -> None:
-    """Let the `node` subscribe for a `run`. What a message says is read and checked in the run loop's thread.
+    """Subscribe the `node` to the commands for a `run`. The run loop's thread reads and checks the messages.
 
-    The node subscribes also without such joints and fins, so that it can answer their commands.
+    The node also subscribes without joints or fins to command, so that it can log why it refuses a command.
     """
 
     def receiver(queue: CommandQueue) -> Callable[[Any], None]:

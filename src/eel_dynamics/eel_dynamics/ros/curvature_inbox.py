@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Takes a controller's samples in the run loop's thread: one turn of the executor costs twice as much as a sample.
+"""Takes a controller's samples in the run loop's thread, because one turn of the executor costs twice as much as a
+sample.
 
 The loop waits for samples and requests together, in a wait set of its own, as `rclpy.wait_for_message` does.
 """
@@ -23,8 +24,8 @@ BATCH = 1000  # samples taken from one subscription at once
 class CurvatureInbox:
     """The subscriptions of `node` to samples; they wake the run loop.
 
-    One is reliable. If some publisher is best-effort, `look` adds a best-effort one, which also takes the
-    samples of reliable publishers; each sample is passed on once.
+    One is reliable. If a publisher is best-effort, `look` adds a best-effort subscription, which also receives the
+    samples of reliable publishers. Each sample is passed on once.
     """
 
     def __init__(self, node: ServedNode, report: Report) -> None:
@@ -33,11 +34,11 @@ class CurvatureInbox:
         self._guard = node.create_guard_condition(lambda: None, self._group)
         self._subscriptions: tuple[Any, ...] = ()
         self._wait_set: Any = None
-        self._waited_for: tuple[Any, ...] = ()  # the subscriptions that it is made for
+        self._waited_for: tuple[Any, ...] = ()  # the subscriptions in the wait set
         self._subscribe(reliable=True)
 
     def look(self) -> None:
-        """Look up the publishers, and subscribe a second time if one is best-effort. Call this now and then."""
+        """Look up the publishers, and subscribe a second time if one is best-effort. Call this regularly."""
         offers = self._node.get_publishers_info_by_topic(self._node.resolve_topic_name(TOPIC))
         unreliable = any(each.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT for each in offers)
         if unreliable and len(self._subscriptions) == 1:
@@ -52,9 +53,9 @@ class CurvatureInbox:
     # In the run loop's thread.
 
     def take(self, now: float) -> Iterator[dict[str, Any]]:
-        """The samples that have come at simulation time `now` [s], as the arguments of `Simulation.add_samples`.
+        """The samples that have arrived, as arguments of `Simulation.add_samples`. now: simulation time [s].
 
-        An unreadable or unsuitable sample is logged and left out.
+        An unreadable or invalid sample is logged and dropped.
         """
         for subscription in self._subscriptions:
             for _ in range(BATCH):

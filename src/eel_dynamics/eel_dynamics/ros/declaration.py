@@ -28,15 +28,15 @@ SCENE, FLOW, USE_SIM_TIME = "scene.", "flow.", "use_sim_time"
 
 
 class Declaration:
-    """Declares all parameters of `node`; `ValueError` names an unsuitable one.
+    """Declares all parameters of `node`. `ValueError` names an invalid one.
 
-    Changes during the run are checked. Some act at once. The others, and the whole scene, act at the next reset:
-    `begin` makes them the present ones.
+    Changes during the run are checked. Some act at once. The others, and the whole scene, act at the next reset, which
+    calls `begin`.
 
     Attributes:
-        values: the present DynamicsParameters.
-        scene: the present Scene.
-        sensors: the present settings of sensors, one for each of `KINDS`.
+        values: the DynamicsParameters in force.
+        scene: the Scene in force.
+        sensors: the settings of sensors in force, one for each of `KINDS`.
         next_values, next_scene, next_sensors: the same from the next reset on.
     """
 
@@ -80,12 +80,12 @@ class Declaration:
         return self.next != self.present
 
     def answer_to(self, names: list[str]) -> str:
-        """When the changes of the parameters `names` act; empty: at once."""
+        """The answer to a change of the parameters `names`: when it acts. Empty if it acts at once."""
         later = [name for name in names if name in self._fields and not self._acts_at_once(name)]
         return f"acts {AT_RESET}" if later else ""
 
     def begin(self, values: DynamicsParameters, scene: Scene, sensors: Sensors) -> None:
-        """Make them the present ones, except for later changes that act at once."""
+        """Put these settings in force. Parameters that act at once keep their latest values."""
         at_once = {name: getattr(self.values, name) for name in self._fields if self._acts_at_once(name)}
         self.values, self.scene, self.sensors = replace(values, **at_once), scene, sensors
 
@@ -93,7 +93,7 @@ class Declaration:
         return self._fields[name].metadata.get("changeable") is True
 
     def _check(self, parameters: list[Parameter]) -> SetParametersResult:
-        """Whether the `parameters` fit each other and the present ones; plans the change."""
+        """Check a change of `parameters` together with the others. If it is valid, `_apply` follows."""
         given = {each.name: each.value for each in parameters}
         try:
             of_scene = {name: item for name, item in self._fields.items() if name.startswith(SCENE)}
@@ -146,7 +146,7 @@ class Declaration:
 
 
 def with_flow_as_text(overrides: dict[str, Any]) -> dict[str, Any]:
-    """The `overrides`, with a scene file's flow.kind ... or flow.NAME.kind ... put into the parameter `flow`."""
+    """The `overrides`, with the parameter `flow` in place of a scene file's flow.kind ... or flow.NAME.kind ..."""
     fields: dict[str, dict[str, Any]] = {}
     for name in [name for name in overrides if name.startswith(FLOW)]:
         part, _, field = name.removeprefix(FLOW).rpartition(".")
@@ -159,6 +159,6 @@ def with_flow_as_text(overrides: dict[str, Any]) -> dict[str, Any]:
     return {"flow": text_of_flow(flow), **rest}
 
 
-def _checked(of_scene: Mapping[str, Field[Any]], given: Mapping[str, Any]) -> dict[str, Any]:
-    """The `given` parameters that are fields `of_scene`, by the field's name."""
-    return {item.name: checked(item, given[name], name) for name, item in of_scene.items() if name in given}
+def _checked(known: Mapping[str, Field[Any]], given: Mapping[str, Any]) -> dict[str, Any]:
+    """The checked values of the `given` parameters that are `known`, by the name of their field."""
+    return {item.name: checked(item, given[name], name) for name, item in known.items() if name in given}

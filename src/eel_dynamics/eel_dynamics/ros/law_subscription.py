@@ -2,8 +2,8 @@
 """Receives laws: checks each, drops duplicates, and puts it into the queue of the run loop.
 
 There are two subscriptions: one also gets earlier messages (transient local), the other matches any publisher
-(volatile). So most laws arrive twice. If laws come faster than they are read, each subscription drops different ones:
-an old law that the other subscription has dropped is not adopted.
+(volatile). So most laws arrive twice. If laws arrive faster than they are read, the two subscriptions drop different
+ones. A law is ignored if the other subscription has already received a later law of the same publisher.
 """
 
 import reprlib
@@ -23,7 +23,7 @@ from eel_dynamics.ros.messages import law_name, read_law, stamped
 from eel_msgs.msg import CurvatureLaw
 
 DEPTH = 10  # laws
-DROPPED = 1_000_000_000  # ns: a publisher's law that arrives after a later one is at most this much older
+DROPPED = 1_000_000_000  # ns: of a law sent longer before the later one, the publisher's clock was set back
 SHOWN = reprlib.Repr()
 SHOWN.maxstring = 60  # characters shown of a refused law's name
 
@@ -33,14 +33,14 @@ class LawSubscription:
 
     def __init__(self, node: ServedNode, run: RunLoop, report: Report) -> None:
         self._run, self._report, self._deliveries = run, report, Deliveries()
-        self._newest: dict[int, tuple[int, int]] = {}  # subscription: time of sending [ns] and count of its last law
+        self._newest: dict[int, tuple[int, int]] = {}  # by subscription: sending time [ns] and number of its last law
         for number, quality in enumerate((latched(DEPTH), QoSProfile(depth=DEPTH))):
             quiet = SubscriptionEventCallbacks(use_default_callbacks=False)  # one of the two matches
             receive = partial(self.receive_law, subscription=number)
             node.create_subscription(CurvatureLaw, "curvature_law", receive, quality, raw=True, event_callbacks=quiet)
 
     def receive_law(self, data: bytes, info: Mapping[str, Any], subscription: int = 0) -> None:
-        """Pass on the law in the serialised message `data`; `info`: message info, to recognise a second delivery."""
+        """Pass on the law in the serialised message `data`; `info`: message info, to recognise duplicates."""
         if self._is_outdated(info, subscription) or self._deliveries.repeats(info):
             return
         name = law_name(data)
@@ -55,7 +55,7 @@ class LawSubscription:
     def _is_outdated(self, info: Mapping[str, Any], subscription: int) -> bool:
         """Whether the other subscription has received a later law of the same publisher."""
         sent, count = info.get("source_timestamp"), info.get("publication_sequence_number")
-        if not sent or count is None:  # the middleware does not say
+        if not sent or count is None:  # the middleware does not tell
             return False
         self._newest[subscription] = sent, count
         others = (newest for other, newest in self._newest.items() if other != subscription)

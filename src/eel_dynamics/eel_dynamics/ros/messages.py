@@ -59,7 +59,7 @@ class SampleMessages:
     def __init__(self, simulation: Simulation, parameters: DynamicsParameters) -> None:
         self._nanoseconds, self._simulation = (0, 0), simulation
         x, scene = simulation.x, simulation.scene
-        self._errors: HeadErrors | None = None  # those in the covariances of odom
+        self._errors: HeadErrors | None = None  # errors that the covariances of odom hold at present
         world, head, section = parameters.world_frame, parameters.head_frame, parameters.section_frame
         topics: dict[str, tuple[Any, str]] = {
             "head_pose": (PoseStamped(), world),
@@ -116,7 +116,7 @@ class SampleMessages:
             names = [fin.name for fin in simulation.fins]
             topics["fin_states"] = JointState(name=names, position=count, effort=[]), ""
         self.kinds = {name: type(message) for name, (message, _) in topics.items()}
-        self._further: dict[str, Callable[[Numbers, Snapshot], None]] = {  # what `FIELDS` has not
+        self._further: dict[str, Callable[[Numbers, Snapshot], None]] = {  # fields that are not in `FIELDS`
             "odom": self._fill_covariances,
             "hydrodynamic_load": self._without_minus_zeros,
             "energy": self._fill_energy,
@@ -131,7 +131,7 @@ class SampleMessages:
             self._further["joint_states"], own["joint_states"] = self._fill_joints, {}
         signs = message_signs(robot)
         self._signs = signs if (signs < 0.0).any() else None
-        self._signed: dict[str, list[np.ndarray]] = {}  # topic: what of its numbers has the signs of joints
+        self._signed: dict[str, list[np.ndarray]] = {}  # by topic: numbers to be multiplied by the signs of joints
         self._topics: dict[str, tuple[SerialisedMessage, list[tuple[str, list[tuple[np.ndarray, Any]]]]]] = {}
         for name, (message, _) in topics.items():
             numbers = (serialised := SerialisedMessage(message)).numbers
@@ -245,7 +245,7 @@ class SampleMessages:
 
 
 def _lengthen(message: Any, x: np.ndarray, fins: int) -> None:
-    """Set the lengths of the sequences in a `message` for so many `fins` and the stations `x` (M,) [m], and `x`."""
+    """Set the length of each sequence in a `message` for this number of `fins` and the stations `x` (M,) [m]."""
     for field, kind in message.get_fields_and_field_types().items():
         if kind == "sequence<double>":
             count = 3 * fins if field == "fin_force" else {"position": 3, "orientation": 4}.get(field, 1) * len(x)
@@ -257,7 +257,7 @@ UNKNOWN = np.array([-1.0, *[0.0] * 35])  # a covariance
 
 
 def root_transform(parameters: DynamicsParameters) -> TransformStamped:
-    """The transform from `root_frame` to `world_frame`, which are the same place."""
+    """The transform from `root_frame` to `world_frame`, which coincide."""
     transform = TransformStamped(child_frame_id=parameters.world_frame)
     transform.header.frame_id = parameters.root_frame
     return transform
@@ -287,7 +287,7 @@ def law_name(data: bytes) -> str:
 def read_law(data: bytes) -> msg.CurvatureLaw:
     """The CurvatureLaw in a serialised message. `ValueError` for too many terms, or too many numbers in them.
 
-    They are counted before it is deserialised: 10^5 terms would block the process for a second.
+    They are counted before the message is deserialised, because 10^5 terms would block the process for a second.
     """
     fields = FieldReader(data)
     name, terms = fields.text(), fields.number()
@@ -299,7 +299,7 @@ def read_law(data: bytes) -> msg.CurvatureLaw:
 
 
 def stamped(stamp: Time | Stamp, now: float) -> float:
-    """The `stamp` [s] of a message that comes at simulation time `now` [s]. `ValueError` for one that is not valid."""
+    """The `stamp` [s] of a message. now: simulation time [s]. `ValueError` for an invalid stamp, or one far ahead."""
     time = seconds_of(stamp)
     if time > now + FAR_AHEAD:
         raise ValueError(
@@ -312,9 +312,9 @@ def stamped(stamp: Time | Stamp, now: float) -> float:
 def samples_from_message(data: bytes, now: float) -> dict[str, Any]:
     """The arguments of `Simulation.add_samples`: time [s], x [m], curvatures and two time derivatives, section axes.
 
-    data: a serialised CurvatureSamples; deserialising it would cost five times as much as reading its numbers here.
-    now: simulation time [s]. `ValueError` for a stamp that does not fit, or too many points; `EOFError` if the message
-    ends before its fields.
+    data: a serialised CurvatureSamples. Deserialising it would cost five times as much as reading its numbers here.
+    now: simulation time [s]. `ValueError` for an invalid stamp, or too many points; `EOFError` if the message ends
+    before its fields.
     """
     fields = FieldReader(data)
     x = fields.numbers()
@@ -323,9 +323,9 @@ def samples_from_message(data: bytes, now: float) -> dict[str, Any]:
 
 
 def current_from_message(message: Vector3Stamped, now: float, world_frame: str) -> tuple[float, np.ndarray]:
-    """Stamp [s] and velocity (3,) [m/s], world, of a current that comes at simulation time `now` [s].
+    """Stamp [s] and velocity (3,) [m/s], world, of a current. now: simulation time [s].
 
-    `ValueError` for a stamp or a frame that does not fit.
+    `ValueError` for an invalid stamp, or another frame than `world_frame`.
     """
     frame, stamp = message.header.frame_id, stamped(message.header.stamp, now)
     if frame not in ("", world_frame):
@@ -335,8 +335,10 @@ def current_from_message(message: Vector3Stamped, now: float, world_frame: str) 
 
 
 def refused(error: Exception, driven: bool = False) -> str:
-    """The log line for curvature samples that are refused with `error`. driven: whether others drive the swimmer, or
-    have run out."""
+    """The log line for curvature samples that are refused with an `error`.
+
+    driven: whether earlier samples drive the swimmer, or drove it until they ran out.
+    """
     reason = str(error).removeprefix("curvature samples ")
     if reason.startswith("time "):
         reason = f"header.stamp{reason.removeprefix('time')}"

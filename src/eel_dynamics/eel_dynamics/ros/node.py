@@ -56,7 +56,7 @@ LOOK_PERIOD = 0.2  # s between checks of the state and of the publishers of /clo
 SERVICE_TIMEOUT = 1.0  # s within which a service answers
 CANNOT_START = 2  # exit status
 MOST_STEPS = 1_000_000  # samples of one call
-SIGNAL_TIMEOUT = 0.2  # s: longest wait for acknowledgements after a signal
+SIGNAL_TIMEOUT = 0.2  # s: longest wait for the thread, and for acknowledgements, after a signal
 
 
 class DynamicsNode(ParameterNode):
@@ -77,28 +77,28 @@ class DynamicsNode(ParameterNode):
         self.run_loop = RunLoop(simulation, self.parameters, self._sample_publishers, self._inbox, self._report)
         self._status = Status(self.run_loop, self._report, self.parameters)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
-        self._static: Any = None  # publisher of /tf_static
-        self._still: list[Any] = []  # its transforms
+        self._static_publisher: Any = None  # of /tf_static
+        self._static_transforms: list[Any] = []  # the published ones
         self._ended: float | None = None  # s, steady clock: when the end of the run was seen
         self._laws = LawSubscription(self, self.run_loop, self._report)
         subscribe_to_commands(self, self.run_loop)
-        self._tell_of(simulation.robot)
+        self._log_notes(simulation.robot)
         pace, requests = self.run_loop.pace, self.run_loop.requests
         self._followed_clock = ClockSubscription(self, pace, requests) if isinstance(pace, FollowedClock) else None
         self._other_nodes = OtherNodes(self, self.resolve_topic_name("head_pose"), Identity.own(), self._report)
-        self._holding, self._offers_clock = "", False  # what the run loop knows of other nodes
+        self._holding, self._offers_clock = "", False  # what the run loop was last told about other nodes
         self.create_subscription(DiagnosticArray, "/diagnostics", self._receive_diagnostics, 10)
         calls, steps = MutuallyExclusiveCallbackGroup(), ReentrantCallbackGroup()  # the calls are answered in order
         self._serve(Trigger, "reset", self._reset, calls)
         self._serve(SetBool, "pause", self._pause, calls)
         self._serve(SetState, "set_state", self._set_state, calls)
-        self._serve(Step, "step", self._step, steps)  # others go on while it waits for its samples
-        self._look_at_neighbours()
+        self._serve(Step, "step", self._step, steps)  # other calls are served while it waits for its samples
+        self._look_at_other_nodes()
         self._publish_static()
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
 
-    def _tell_of(self, robot: Robot | None) -> None:
+    def _log_notes(self, robot: Robot | None) -> None:
         """Log the `robot`'s notes."""
         if robot is not None:
             for note in robot.notes:
@@ -116,12 +116,12 @@ class DynamicsNode(ParameterNode):
         self._inbox.wake_callers()
 
     def look(self) -> bool:
-        """Check everything that changes slowly. Returns whether the node goes on."""
+        """Check what changes slowly. Returns whether the node continues."""
         if not self._thread.is_alive():
             return self._end()
         self._inbox.look()
         self.run_loop.inputs.awaited.offered = {topic for topic in INPUTS if self.count_publishers(topic)}
-        self._look_at_neighbours()
+        self._look_at_other_nodes()
         self._publish_static()
         if self._followed_clock is not None:
             self._followed_clock.look()
@@ -130,7 +130,7 @@ class DynamicsNode(ParameterNode):
         return True
 
     def _end(self) -> bool:
-        """Returns whether the node goes on after the end of the run: until subscribers have received everything."""
+        """Returns whether the node continues after the end of the run: until subscribers have received everything."""
         now = time.monotonic()
         if self._ended is None:
             self._ended = now
@@ -145,16 +145,16 @@ class DynamicsNode(ParameterNode):
         if self._ended is None:
             self._publish_diagnostics(final=True)
             self._diagnostics.wait_for_all_acked(Duration(seconds=SIGNAL_TIMEOUT))
-        if self._thread.is_alive():  # in a step: it still needs its publishers
+        if self._thread.is_alive():  # the thread is in a step, and still needs its publishers
             exit_immediately(0)
         if self.run_loop.given_up:
             self.failure = self.failure or "the simulation stopped before its end"
 
     def answer_to(self, names: list[str]) -> str:
-        """When the changes of the parameters `names` act; empty: at once."""
+        """The answer to a change of the parameters `names`: when it acts. Empty if it acts at once."""
         return self.parameters.answer_to(names)
 
-    def _look_at_neighbours(self) -> None:
+    def _look_at_other_nodes(self) -> None:
         makes_clock, requests = self.parameters.values.makes_clock, self.run_loop.requests
         self._other_nodes.look(makes_clock)
         holding = self._other_nodes.holding
@@ -166,18 +166,19 @@ class DynamicsNode(ParameterNode):
         self._holding, self._offers_clock = holding, offers
 
     def _publish_static(self) -> None:
-        """Publish the world's pose in the frame that swimmers share, and sensors on a rigid part of the body.
+        """Publish static transforms: from the root frame that swimmers share to the world frame, and from the head to
+        sensors on a rigid part of the body.
 
-        Later subscribers get it too. After a reset without them it is empty; listeners keep the frames they have.
+        Late subscribers get them too. If a reset removes them, the message is empty; listeners keep their frames.
         """
-        values, still = self.parameters.values, list(self._sample_publishers.sensors.static)
+        values, transforms = self.parameters.values, list(self._sample_publishers.sensors.static)
         if values.root_frame and values.publish_tf:
-            still.append(root_transform(values))
-        if still != self._still:
-            if self._static is None:
-                self._static = self.create_publisher(TFMessage, "/tf_static", latched(1))
-            self._static.publish(TFMessage(transforms=still))
-            self._still = still
+            transforms.append(root_transform(values))
+        if transforms != self._static_transforms:
+            if self._static_publisher is None:
+                self._static_publisher = self.create_publisher(TFMessage, "/tf_static", latched(1))
+            self._static_publisher.publish(TFMessage(transforms=transforms))
+            self._static_transforms = transforms
 
     def _publish_diagnostics(self, final: bool = False) -> None:
         """Publish /diagnostics; `final`: at the end of the run."""
@@ -202,7 +203,7 @@ class DynamicsNode(ParameterNode):
                 response.message = f"reset refused: {one_line(error)}"
                 self.get_logger().error(response.message)
                 return response
-            self._tell_of(new.robot)
+            self._log_notes(new.robot)
         answer = self.run_loop.requests.put(self.run_loop.reset, new, values, sensors, urgent=True)
         return await answered(response, answer, "reset")
 

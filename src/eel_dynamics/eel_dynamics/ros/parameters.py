@@ -56,28 +56,28 @@ class DynamicsParameters(Quantities):
         "boyer2010",
         "",
         "name of a body, a table or .npz file with columns x, half_width, half_height [m], or links with their "
-        "numbers; what differs follows as NAME=VALUE",
+        "numbers; changes follow as NAME=VALUE",
         **LATER,
     )
     flow: str = quantity(
         "",
         "",
-        "how the water moves: a name with numbers (shear velocity=0.1,0,0 width=0.5), a .nc file of a grid, or several "
-        "with ' + ' between; empty: not by itself",
+        "flow of the water: a name with numbers (shear velocity=0.1,0,0 width=0.5), a .nc file of a grid, or several "
+        "with ' + ' between; empty: none",
         **LATER,
     )
     robot: str = quantity(
         "",
         "",
-        "what bends by itself: name of a robot, or a .yaml or URDF file (this with joints=flush or a number), "
-        "whose body is taken unless body is set; its servos follow the law; empty: the law is imposed",
+        "name of a robot, or its .yaml or URDF file (URDF with joints=flush or a number); the robot's body is used "
+        "unless body is set; its servos follow the law; empty: no robot, the law is imposed",
         **LATER,
     )
     command_interfaces: tuple[str, ...] = quantity(
         ("any",),
         "",
-        "what joint_commands drive, for all joints or for each in turn: position, velocity, effort, several with "
-        "a space between, none, or any: what a message has",
+        "interfaces that joint_commands drive, of all joints or of each in turn: position, velocity, effort, several "
+        "with spaces between, none, or any (whatever a message has)",
         **LATER,
     )
     command_timeout: float = quantity(
@@ -104,7 +104,7 @@ class DynamicsParameters(Quantities):
     wrenches: str = quantity(
         "",
         "",
-        "wrenches from outside: section or world with numbers (section station=0 force=2,0,0), several with ' + ' "
+        "external wrenches: section or world with numbers (section station=0 force=2,0,0), several with ' + ' "
         "between; empty: none",
         **LATER,
     )
@@ -136,7 +136,7 @@ class DynamicsParameters(Quantities):
     root_frame: str = quantity(
         "",
         "",
-        "frame id above world_frame, on /tf_static with publish_tf; empty: none; by default world below a namespace",
+        "frame id above world_frame, on /tf_static with publish_tf; empty: none; default in a namespace: world",
     )
     clock: bool = quantity(
         True, "", "publish /clock, unless another publisher of it is on the network, or follow_clock", **NOW
@@ -180,8 +180,8 @@ class DynamicsParameters(Quantities):
         ("",),
         "",
         "inputs that a run at real_time_factor 0 waits for: curvature_law, curvature_samples, joint_commands, "
-        "fin_command, current, external_wrench; /NAME for one joint, fin or frame, and a period in s behind a space "
-        "where it is not 1/rate; empty: what has come once",
+        "fin_command, current, external_wrench; TOPIC/NAME for one joint, fin or frame; then a space and a period in "
+        "s if it is not 1/rate; empty: inputs that have come once",
         **LATER,
     )
     subscriber_timeout: float = quantity(

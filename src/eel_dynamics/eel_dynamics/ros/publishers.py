@@ -6,7 +6,7 @@ possible, publishers are RELIABLE and KEEP_ALL: if the history is full, `publish
 subscriber has caught up, or is considered stuck. The topic then changes to a KEEP_LAST history, so that the run and the
 other subscribers go on.
 
-A new topic begins in eel_common/topics.py. What is costly to find for it is an entry of `PARTS` here.
+A new topic begins in eel_common/topics.py. If its quantities are costly to compute, it needs an entry in `PARTS`.
 """
 
 import math
@@ -32,8 +32,8 @@ from eel_msgs.msg import BodyGeometry
 RETRY = 0.002  # s between two attempts to publish, in which other threads can run
 BODY_TIMEOUT = 1.0  # s: longest wait for the present subscribers to have the body before the first sample
 END_TIMEOUT = 5.0  # s: longest wait for acknowledgements at the end of a paced run
-LOSSLESS_END_TIMEOUT = 30.0  # s: where no sample may be lost: time for a slow subscriber to read a full history
-SLICE = 0.02  # s: longest wait for one topic before signals and callbacks are looked at
+LOSSLESS_END_TIMEOUT = 30.0  # s: the same if no sample may be lost: a slow subscriber then reads a full history
+SLICE = 0.02  # s: longest wait for one topic before signals and callbacks are handled
 QUIET_TIME = 1.0  # s without a change, after which the subscribers that some topics have are considered complete
 MATCH_LIMIT = 5.0  # s: longest wait for the subscribers that exist to be matched
 PARTS = {"wrench": ("internal_wrench", "joint_states", "swim_state"), "load": ("hydrodynamic_load",)}
@@ -47,7 +47,7 @@ class Publishers:
     Attributes:
         lossless: the run is as fast as possible, and no sample may be lost.
         sensors: SensorMessages.
-        stopped: the run is over, and nobody is waited for.
+        stopped: the run is over, and waits for nobody.
     """
 
     def __init__(self, node: ServedNode, simulation: Simulation, parameters: Declaration, report: Report) -> None:
@@ -67,7 +67,7 @@ class Publishers:
         self.begin(simulation)
 
     def begin(self, simulation: Simulation) -> None:
-        """Change to the topics of another `simulation`, and publish its body."""
+        """Change to the topics of a new `simulation`, and publish its body."""
         values = self._parameters.values
         self._sample = SampleMessages(simulation, values)
         self.sensors = SensorMessages(self._parameters.sensors, simulation, values, self._sample)
@@ -81,7 +81,7 @@ class Publishers:
         self._description.publish(simulation, values)
 
     def publish_body(self, simulation: Simulation) -> None:
-        """Publish the geometry of the body of a `simulation`; later subscribers get it too."""
+        """Publish the geometry of the body of a `simulation`; late subscribers get it too."""
         self._body.publish(body_message(simulation, self._parameters.values.section_frame))
 
     def wait_until_body_received(self) -> None:
@@ -141,7 +141,7 @@ class Publishers:
         """
         own = [*self._channels.values()]
         if not wanted and self._clock is not None:
-            own.append(self._clock)  # who follows it needs it from the start
+            own.append(self._clock)  # a node that follows it needs it from the start
         counts = [channel.subscribers() for channel in own]
         known = [] if wanted else [channel.count_known() for channel in own]
         if (counts, known) != self._audience:
@@ -158,8 +158,8 @@ class Publishers:
     def all_received(self, others: list[Any], waited: float) -> bool:
         """Whether all messages are acknowledged, also those of the publishers `others`, `waited` [s] after the end.
 
-        Also true, with a warning, where that is no longer waited for: after `END_TIMEOUT`, or `LOSSLESS_END_TIMEOUT`
-        where no sample may be lost and no subscriber was stuck.
+        Also true, with a warning, once the longest wait is over: `END_TIMEOUT`, or `LOSSLESS_END_TIMEOUT` if no sample
+        may be lost and no subscriber was stuck.
         """
         samples = [*self._channels.values(), *([self._clock] if self._clock is not None else [])]
         backlog = max(LOSSLESS_END_TIMEOUT, self._parameters.values.subscriber_timeout)

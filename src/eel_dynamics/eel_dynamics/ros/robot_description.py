@@ -16,16 +16,16 @@ TOPIC = "robot_description"
 
 
 class RobotDescription:
-    """Publishes the URDF of a simulation's swimmer when it changes; later subscribers get it too."""
+    """Publishes the URDF of a simulation's swimmer when it changes. Late subscribers get it too."""
 
     def __init__(self, node: ServedNode) -> None:
         self._node, self._text = node, ""
         self._publisher: Any = None
 
     def publish(self, simulation: Simulation, parameters: DynamicsParameters) -> None:
-        """Publish the URDF of another `simulation`; a swimmer that has none is logged.
+        """Publish the URDF of a new `simulation`.
 
-        Without a URDF later subscribers get none: not that of the swimmer before.
+        If a URDF cannot describe the swimmer, that is logged. Late subscribers then get none, rather than the last one.
         """
         if not parameters.publish_robot_description:
             return

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Messages of sensors, and the frames where these sit.
+"""The messages of sensors, and their frames.
 
-imu, pressure, depth, velocity, joint_states and motor_states come at the sensor's rate, with the first sample once
-their latency is over, and those of t = 0 at once; their stamp is the time of the reading. Each sensor at a station has
-a frame NAME_link below the head's: on /tf_static where the body ahead of it is rigid, else on /tf with each sample.
+imu, pressure, depth, velocity, joint_states and motor_states are published at the sensor's rate. The stamp is the time
+of the reading. A message is published with the first sample after its latency; those of t = 0 are published at once.
+Each sensor at a station has a frame NAME_link below the head's frame: on /tf_static if the body ahead of it is rigid,
+else on /tf with each sample.
 """
 
 from collections.abc import Callable, Iterator
@@ -30,8 +31,8 @@ from eel_dynamics.sensors.velocity import VelocityReadings
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
 
-FRAMES = "sensor_frames"  # of messages on /tf
-NOT_MEASURED = 1e6  # variance, in SI units, of a number that a message has and the sensor does not tell
+FRAMES = "sensor_frames"  # key of the message for /tf
+NOT_MEASURED = 1e6  # variance, in SI units, of a number in a message that the sensor does not measure
 
 
 class SensorMessages:
@@ -40,8 +41,8 @@ class SensorMessages:
     sample: of the simulation. Encoders send its messages of joints, with their own angles, rates and currents.
 
     Attributes:
-        kinds: message type by topic, and of `FRAMES` where sensors move relative to the head.
-        static: frames that do not move, for /tf_static.
+        kinds: message type by topic, and for `FRAMES` if a sensor moves relative to the head.
+        static: transforms from the head to the other sensors, for /tf_static.
     """
 
     def __init__(
@@ -54,7 +55,7 @@ class SensorMessages:
         self.static: list[TransformStamped] = []
         moving: list[TransformStamped] = []
         rigid = rigid_until(simulation) if self._suite.sensors else 0.0
-        self._places: list[int] = []  # of the moving ones, in a snapshot
+        self._places: list[int] = []  # indices of the moving sensors in a snapshot
         space = parameters.head_frame.rpartition("/")[0]
         for name, sensor in self._suite.sensors.items():
             if isinstance(sensor.settings, Encoders):
@@ -76,9 +77,10 @@ class SensorMessages:
     def due(
         self, snapshot: Snapshot, nanoseconds: int, heard: Callable[[str], Any] = bool
     ) -> Iterator[tuple[str, bytes]]:
-        """Topic and message of all that is due at a sample [ns]. It must be given each sample; 0 begins anew.
+        """Topic and message of each message that is due at the sample of `nanoseconds`.
 
-        heard: whether a topic has subscribers. Messages of others are not made, but are read, so that noise goes on.
+        Call this for each sample; at time 0 all sensors restart. heard: tells whether a topic has subscribers. A sensor
+        without subscribers is read too, so that its noise continues, but its messages are not made.
         """
         if not self._messages:
             return
@@ -86,7 +88,7 @@ class SensorMessages:
             self._suite.begin()
             self._late = Delay()
         for name, readings in self._suite.read(snapshot).items():
-            # At the start they have been on for long: who commands by sensors alone could not start the run else.
+            # No latency at the start: a controller that listens to sensors alone could not start the run otherwise.
             due = nanoseconds + (round(self._suite.sensors[name].settings.latency * 1e9) if nanoseconds else 0)
             for topic in _FILL[type(readings)](self, name, readings, snapshot):
                 if heard(topic):
@@ -126,7 +128,7 @@ class SensorMessages:
         return OF_JOINTS
 
     def _fill_frames(self, snapshot: Snapshot) -> None:
-        """From the head to each sensor."""
+        """Set the transforms from the head to the moving sensors."""
         numbers = self._messages[FRAMES].numbers
         (x, y, z, w), places = snapshot.orientation.tolist(), snapshot.sensor_position - snapshot.position
         for k, place in enumerate(self._places):
@@ -156,7 +158,7 @@ def rigid_until(simulation: Simulation) -> float:
 
 
 def _messages_of(name: str, settings: Any, around: Surroundings, frame: str, world: str) -> dict[str, Any]:
-    """The messages of a sensor by topic, with all that does not change."""
+    """The messages of a sensor by topic, with their constant fields."""
     from sensor_msgs.msg import FluidPressure  # here: importing its package takes a tenth of the node's start
     from sensor_msgs.msg import Imu as ImuMessage
 

@@ -20,7 +20,7 @@ Sensors = tuple[SensorSettings, ...]
 
 
 def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene, sensors: Sensors = ()) -> Simulation:
-    """The simulation at t = 0, with the robot's own limits; `ValueError` names what does not fit."""
+    """The simulation at t = 0, with the robot's own limits. `ValueError` names an invalid parameter."""
     robot, places = robot_from_parameters(parameters), check_sensors(parameters, sensors)
     own, frames = has_own_body(robot, parameters), wrench_frames(parameters)
     return Simulation(
@@ -43,12 +43,12 @@ def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene, sen
 
 
 def has_own_body(robot: Robot | None, parameters: DynamicsParameters) -> bool:
-    """Whether the robot's body is taken."""
+    """Whether the simulation uses the body of the `robot`."""
     return robot is not None and robot.body is not None and parameters.body == DynamicsParameters.body
 
 
 def check_sensors(parameters: DynamicsParameters, sensors: Sensors) -> tuple[float, ...]:
-    """The places [m] of the `sensors` that are on; `ValueError` names one that does not fit."""
+    """The stations [m] of the `sensors` that are on. `ValueError` names an invalid one."""
     if not any(each.rate for each in sensors):
         return ()
     robot = robot_from_parameters(parameters)
@@ -59,7 +59,7 @@ def check_sensors(parameters: DynamicsParameters, sensors: Sensors) -> tuple[flo
 
 
 def robot_from_parameters(parameters: DynamicsParameters) -> Robot | None:
-    """The robot, with its own limits; `ValueError` also where there are no servos whose torque is to be limited."""
+    """The robot with its own limits. `ValueError` for an invalid robot, and for servo_torque_limit without servos."""
     robot, limit = robot_of(parameters.robot), parameters.servo_torque_limit
     if limit > 0.0 and (robot is None or not has_servos(robot)):
         given = f"{limit:g} N m with robot {shown(parameters.robot)}"

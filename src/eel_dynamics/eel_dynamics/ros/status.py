@@ -10,7 +10,7 @@ from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.loop.run_loop import RunLoop
 
 OVERDUE = 3.0  # s of wall time for one sample of a paced run, after which an error is reported
-MANY = 100  # commands in one sample, which then are why it takes long
+MANY = 100  # commands within one sample, which then explain its long computation
 PERIOD = 1.0  # s of wall time, and of simulation time, after which /diagnostics is published again
 
 
@@ -33,7 +33,7 @@ class Status:
         )
 
     def collect(self, publishers_of_laws: int, final: bool = False) -> tuple[int, str, dict[str, Any]]:
-        """Level, text and values; the real-time factor is the one since the last call, with `final` that of the run."""
+        """Level, text and values. The real-time factor is that since the last call, or with `final` that of the run."""
         run = self._run
         if publishers_of_laws > 1:
             self._report.begin("laws", f"{publishers_of_laws} publishers of curvature_law: the later message wins")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The frames of external_wrench (geometry_msgs/WrenchStamped): sections that it acts on, with axes turned as base_link.
 
-The head's frame is one. The parameter wrench_frames gives further ones, "NAME X" each, below the same namespace. They
-are on /tf where the sections are.
+The head's frame is one. The parameter wrench_frames adds others, each as "NAME X", in the same namespace. Their
+poses are on /tf.
 """
 
 import math
@@ -19,7 +19,7 @@ OTHERS = re.compile(r"(imu|pressure|velocity)(_\d+)?_link|section_\d+|link_\d+")
 
 
 def wrench_frames(parameters: DynamicsParameters) -> Frames:
-    """All frames by their ids. `ValueError` names a text of the parameter that does not fit."""
+    """All frames by their ids. `ValueError` names an invalid entry of the parameter."""
     head = parameters.head_frame
     space, taken = head.rpartition("/")[0], (head, parameters.world_frame, parameters.root_frame)
     frames = {head: 0.0}
@@ -39,5 +39,5 @@ def wrench_frames(parameters: DynamicsParameters) -> Frames:
 
 
 def stations_of(frames: Frames) -> tuple[ExternalWrench, ...]:
-    """Wrenches of nothing, for which panels end at the frames' stations from the start."""
+    """Zero wrenches at the stations of `frames`, so that panels end there from the start."""
     return tuple(ExternalWrench(station) for station in frames.values() if station > 0.0)

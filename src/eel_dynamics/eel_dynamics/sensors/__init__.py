@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sensors on the swimmer: what they read, with rate, latency, noise and bias. Each is off unless it has a rate."""
+"""Sensors on the swimmer: their readings, with rate, latency, noise and bias. A sensor without a rate is off."""

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a robot's joints tell: angle and speed by encoders, and the current of each motor.
+"""Encoders and ammeters of a robot's joints: angle, rate, and the current of each motor.
 
     current = torque / (gear * torque_constant)
 
-A motor without a torque constant tells NaN.
+The current is NaN for a motor without a torque constant.
 """
 
 from dataclasses import dataclass
@@ -32,11 +32,11 @@ class Encoders(SensorSettings):
 
     what, number = "encoders", 4
 
-    resolution: float = quantity(0.0, "rad", "step of the angle that is told; 0: none", 0.0)
-    angle_noise: float = quantity(0.0, "rad", "standard deviation of a reading, before the step", 0.0)
+    resolution: float = quantity(0.0, "rad", "step of a reading of the angle; 0: none", 0.0)
+    angle_noise: float = quantity(0.0, "rad", "standard deviation of a reading, before it is rounded", 0.0)
     angle_bias: float = quantity(0.0, "rad", "constant")
     angle_walk: float = quantity(0.0, "rad/sqrt(s)", "standard deviation of the bias after 1 s", 0.0)
-    rate_noise: float = quantity(0.0, "rad/s", "standard deviation of a reading of the speed", 0.0)
+    rate_noise: float = quantity(0.0, "rad/s", "standard deviation of a reading of the rate", 0.0)
     current_noise: float = quantity(0.0, "A", "standard deviation of a reading", 0.0)
     current_bias: float = quantity(0.0, "A", "constant")
 

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An inertial measurement unit: specific force, angular velocity and, where it estimates one, orientation.
+"""An inertial measurement unit: specific force, angular velocity and, if wanted, orientation.
 
-    f = a - g,   at rest 9.80665 m/s^2 upwards, whatever the body weighs
+    f = a - g
 
-a is the true acceleration of the section's centre. The orientation is that of the sensor in the world, as of an
-attitude filter within the unit, with an error that is a small rotation about each axis.
+a is the acceleration of the section's centre. At rest f is 9.80665 m/s^2 upwards, for any weight of the body. The
+orientation is that of the sensor in the world, as an attitude filter in the unit estimates it. Its error is a small
+rotation about each axis.
 """
 
 from dataclasses import dataclass
@@ -20,12 +21,12 @@ NONE = (0.0, 0.0, 0.0)
 
 
 class ImuReadings(NamedTuple):
-    """Readings of an IMU, in its axes; of one reading without the dimension N, and tuples of floats."""
+    """Readings of an IMU, in its axes. A single reading has no dimension N, and tuples of floats."""
 
     time: Any  # (N,) s
     specific_force: Any  # (N, 3) m/s^2
     angular_velocity: Any  # (N, 3) rad/s
-    orientation: Any  # (N, 4) x y z w, world from sensor; None where it gives none
+    orientation: Any  # (N, 4) x y z w, world from sensor; None for a unit without
 
 
 @documented
@@ -61,7 +62,7 @@ class Imu(StationedSettings):
 
 
 def up(orientation: Components) -> tuple[Any, Any, Any]:
-    """The world's z in the axes of a frame, by its `orientation` x y z w, world from frame."""
+    """The world's z axis in a frame with this `orientation` x y z w, world from frame."""
     x, y, z, w = orientation
     return 2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)
 

@@ -3,9 +3,9 @@
 
     error = bias + noise * n_k + walk * sum of sqrt(t_i - t_(i-1)) * m_i up to k
 
-n and m are independent standard normal numbers. They depend on the seed and on the number k of the reading alone, so a
-sensor gives the same readings to the last bit however many are asked for at once. The Allan deviation over the time tau
-is noise * sqrt(period / tau) of the white noise, and walk * sqrt(tau / 3) of the walk.
+n and m are independent standard normal numbers. They depend on the seed and on the number k of the reading alone. So
+a sensor gives the same readings to the last bit, however many are read at once. The Allan deviation over the time tau
+is noise * sqrt(period / tau) for the white noise, and walk * sqrt(tau / 3) for the walk.
 """
 
 import math
@@ -14,11 +14,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-BLOCK = 64  # readings whose normal numbers are drawn at once, where they are asked for one by one
+BLOCK = 64  # readings whose normal numbers are drawn at once, if they are read one by one
 
 
 class Spread(NamedTuple):
-    """Of each number (n,) of a reading: standard deviation of its noise, its bias, and the walk by sqrt(s)."""
+    """For each number (n,) of a reading: standard deviation of the noise, bias, and walk per sqrt(s)."""
 
     noise: np.ndarray
     bias: np.ndarray
@@ -26,13 +26,13 @@ class Spread(NamedTuple):
 
     @staticmethod
     def of(*groups: tuple[float, float | tuple[float, ...], float, int]) -> "Spread":
-        """From groups of so many numbers each: (noise, bias, walk, how many)."""
+        """From groups (noise, bias, walk, how many numbers)."""
         rows = [(np.full(n, noise), np.zeros(n) + bias, np.full(n, walk)) for noise, bias, walk, n in groups]
         return Spread(*(np.concatenate(row) for row in zip(*rows, strict=True)))
 
 
 class Errors:
-    """Draws the errors of one sensor from its first reading on, all at once or one by one. seed: of no other sensor."""
+    """Draws the errors of one sensor from its first reading on, all at once or one by one. seed: its own."""
 
     def __init__(self, spread: Spread, seed: tuple[int, ...]):
         self._spread, self._random = spread, np.random.default_rng(seed)
@@ -40,14 +40,14 @@ class Errors:
         self._normal, self._walks = self._drawn(), bool(spread.walk.any())
 
     def all(self, gaps: np.ndarray) -> list[np.ndarray]:
-        """The errors n times (N,) of all readings; `gaps` (N,) [s]: from the reading before each, 0 of the first."""
+        """The errors of all readings: n arrays (N,). gaps (N,) [s]: since the previous reading, 0 for the first."""
         noise, bias, walk = self._spread
         normal = self._random.standard_normal((len(gaps), 2, len(noise)))
         walked = np.cumsum(np.sqrt(gaps)[:, None] * walk * normal[:, 1], axis=0)
         return [*(bias + walked + noise * normal[:, 0]).T]
 
     def one(self, gap: float) -> list[float]:
-        """The errors (n,) of the next reading, `gap` [s] after the last."""
+        """The errors (n,) of the next reading, `gap` [s] after the previous one."""
         root, (white, steps) = math.sqrt(gap), next(self._normal)
         if self._walks:
             self._each = [

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A pressure gauge, and the depth that follows from its reading.
+"""A pressure gauge, and the depth by its reading.
 
     p = p_surface + rho_f g depth,   depth = z_surface - z
 
-That is the hydrostatic pressure. What the motion adds is left out: stagnation, the body's own field (both of the order
-rho_f V^2 / 2, 0.5 kPa at 1 m/s or 5 cm of water) and waves. z_surface is that of the flow, or 0; the water of the
-model goes on above it, where the depth is negative.
+This is the hydrostatic pressure. Left out are the stagnation pressure and the pressure field of the body (both of the
+order rho_f V^2 / 2: 0.5 kPa at 1 m/s, or 5 cm of water) and that of waves. z_surface is the flow's, or 0. The water of
+the model has no upper end: above the surface the depth is negative.
 """
 
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from eel_dynamics.sensors.sensor import Components, Motion, StationedSettings, S
 
 
 class PressureReadings(NamedTuple):
-    """Readings of a pressure gauge, each (N,); floats of one reading."""
+    """Readings of a pressure gauge, each (N,); or floats, of a single reading."""
 
     time: Any  # s
     pressure: Any  # Pa

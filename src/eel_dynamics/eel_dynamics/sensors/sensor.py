@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What all sensors have in common: settings, the motion they feel, and the stream of their readings.
+"""What all sensors have in common: settings, the motion that they measure, and their readings.
 
-A sensor sits on the backbone at a station X, in the frame of the section there, turned as the head's: x forward, y
-left, z up. The core finds its motion by the integrals that give all profiles (`show_sensors` in
-eel_core/march/observe.hpp): its acceleration is the true one, of head, turning and bending, and no difference in time.
+A sensor sits on the backbone at a station X. Its axes turn with the section there: x forward, y left, z up, as those
+of the head. The core computes its motion by the integrals that give all profiles (`show_sensors` in
+eel_core/march/observe.hpp). So its acceleration is that of the equations of motion, not a difference of velocities.
 """
 
 from abc import abstractmethod
@@ -21,12 +21,12 @@ from eel_dynamics.sensors.noise import Errors, Spread
 from eel_dynamics.sensors.timing import Timing, readings_among
 from eel_dynamics.simulation.observations import SENSORS, Observations, Snapshot
 
-SIZES = tuple(zip(SENSORS, (3, 4, 6, 6, 3), strict=True))  # numbers of each
-Components = Sequence[Any]  # of a vector: floats of one instant, or arrays (N,) of N
+SIZES = tuple(zip(SENSORS, (3, 4, 6, 6, 3), strict=True))  # of each quantity, how many numbers
+Components = Sequence[Any]  # of a vector: floats at one instant, or arrays (N,) at N instants
 
 
 class Motion(NamedTuple):
-    """The motion of one sensor, world and sensor axes, as of `Observations`: at one instant, or at N."""
+    """The motion of one sensor at one instant, or at N; quantities and axes as in `Observations`."""
 
     position: Components
     orientation: Components
@@ -36,7 +36,7 @@ class Motion(NamedTuple):
 
     @staticmethod
     def of(seen: Observations, index: int, rows: Any = slice(None)) -> "Motion":
-        """Of the sensor number `index` in what was `seen`: at some `rows` of a run's samples, or in a snapshot."""
+        """The motion of the sensor number `index`: at some `rows` of a run's samples, or in a snapshot."""
         if isinstance(seen, Snapshot):
             places = ((seen.places[name][0].start + index * n, n) for name, n in SIZES)
             return Motion(*(seen.whole[begin : begin + n].tolist() for begin, n in places))
@@ -57,7 +57,7 @@ class Surroundings(NamedTuple):
 
     @staticmethod
     def of(scene: Scene, flow: Flow | None) -> "Surroundings":
-        """Those of a scene. The surface is that of the `flow`, if it has one; else z = 0."""
+        """The surroundings in a scene. The surface is that of the `flow`, if it has one; else z = 0."""
         height = np.inf if flow is None else flow.traits.surface_height
         return Surroundings(scene.fluid_density, float(height) if np.isfinite(height) else 0.0)
 
@@ -69,13 +69,13 @@ class Surroundings(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class SensorSettings(Quantities):
-    """Settings of a kind of sensor. Immutable; `ValueError` names a field that does not fit."""
+    """Settings of a kind of sensor. Immutable; `ValueError` names an invalid field."""
 
-    number: ClassVar[int]  # of the kind, for its seeds
+    number: ClassVar[int]  # of the kind, as a part of seeds
 
-    rate: float = quantity(0.0, "Hz", "readings per simulated second, at samples of the run; 0: no such sensor", 0.0)
-    latency: float = quantity(0.0, "s", "from a reading, whose time its stamp is, to its message", 0.0, 60.0)
-    seed: int = quantity(0, "", "of the noise: the same gives the same readings to the last bit", 0, 2**31 - 1)
+    rate: float = quantity(0.0, "Hz", "readings per simulated second, at samples of the run; 0: no sensor", 0.0)
+    latency: float = quantity(0.0, "s", "from a reading to its message, whose stamp is that of the reading", 0.0, 60.0)
+    seed: int = quantity(0, "", "of the noise: an equal seed gives equal readings to the last bit", 0, 2**31 - 1)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -84,18 +84,18 @@ class SensorSettings(Quantities):
 
     @abstractmethod
     def spread(self, joints: int) -> Spread:
-        """Of the errors of a reading, on a robot with so many joints."""
+        """Noise, bias and walk of a reading, on a robot with this number of `joints`."""
 
     @abstractmethod
     def read(self, time: Any, motion: Any, around: Surroundings, errors: Components) -> Any:
-        """The reading at `time` [s], or those at `time` (N,), with their `errors`: a NamedTuple, time first."""
+        """The reading at `time` [s], or those at `time` (N,) [s], with these `errors`: a NamedTuple, time first."""
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class StationedSettings(SensorSettings):
     """Settings of a kind of sensor that sits at stations."""
 
-    stations: tuple[float, ...] = quantity((0.0,), "m", "X of each, from the nose", any_length=True)
+    stations: tuple[float, ...] = quantity((0.0,), "m", "X of each sensor, from the nose", any_length=True)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -104,25 +104,25 @@ class StationedSettings(SensorSettings):
 
 
 class Sensor:
-    """One sensor of a kind at X = `station` [m], or on all of a robot's `joints`: reads a run, or sample by sample."""
+    """One sensor at X = `station` [m], or on all `joints` of a robot. It reads a whole run, or sample by sample."""
 
     def __init__(self, settings: SensorSettings, around: Surroundings, station: float = 0.0, joints: int = 0):
         self.settings, self.station, self._around, self._joints = settings, station, around, joints
         self.begin()
 
     def begin(self) -> None:
-        """Begin anew: the same readings follow."""
+        """Restart: the same readings follow."""
         settings = self.settings
         seed = settings.seed, settings.number, round(self.station * 1e9)
         self._errors, self._timing = Errors(settings.spread(self._joints), seed), Timing(settings.rate)
 
     def readings(self, times: np.ndarray, motion_at: Callable[[np.ndarray], Any]) -> Any:
-        """All readings of a run with samples at `times` (T,) [s]. motion_at: the motion at some, by indices."""
+        """All readings of a run with samples at `times` (T,) [s]. motion_at: gives the motion at indices of samples."""
         rows, gaps = readings_among(times, self.settings.rate)
         self.begin()
         return self.settings.read(times[rows], motion_at(rows), self._around, self._errors.all(gaps))
 
     def reading(self, time: float, motion: Callable[[], Any]) -> Any:
-        """The reading at the next sample, at `time` [s]; None if none is due. motion: gives the present one."""
+        """The reading at the next sample, at `time` [s]; None if none is due. motion: gives the present motion."""
         gap = self._timing.gap(time)
         return None if gap is None else self.settings.read(time, motion(), self._around, self._errors.one(gap))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All sensors of a swimmer by name, as its march goes on."""
+"""All sensors of a swimmer by name, read sample by sample."""
 
 import math
 from collections.abc import Iterable
@@ -27,13 +27,13 @@ KINDS: dict[str, type[SensorSettings]] = {"imu": Imu, "pressure": Pressure, "vel
 
 
 class SensorSuite:
-    """The sensors on a `Simulation` that are on among the `settings`: `Imu`, `Pressure`, `Velocity`, `Encoders`.
+    """The sensors of a `Simulation` with these `settings`: `Imu`, `Pressure`, `Velocity`, `Encoders`.
 
-    `Simulation(sensors=)` must have their stations. signs: of each joint, by which encoders turn its angle, rate and
-    current; those of messages, or 1. `ValueError` for settings that do not fit the simulation.
+    `Simulation(sensors=)` must have their stations. signs: (J,) or one, factor of each joint's angle, rate and current
+    in readings of encoders: 1, or the sign in messages. `ValueError` for settings that do not fit the simulation.
 
     Attributes:
-        sensors: `Sensor` by name: `imu`, `pressure`, `velocity`, `encoders`; `imu_1`, `imu_2` ... of several stations.
+        sensors: `Sensor` by name (`SensorSettings.names`), of the settings with a rate.
     """
 
     def __init__(
@@ -42,7 +42,7 @@ class SensorSuite:
         self.sensors: dict[str, Sensor] = {}
         setup = simulation if isinstance(simulation, SimulationSetup) else simulation.setup
         self._robot, self._signs, places = setup.robot, np.asarray(signs), setup.sensors
-        self._index: dict[str, int] = {}  # of those at stations, in a snapshot
+        self._index: dict[str, int] = {}  # of sensors at stations: place in a snapshot
         kinds = set[str]()
         for each in settings:
             check_settings(each, setup.body, self._robot, math.inf)
@@ -66,7 +66,7 @@ class SensorSuite:
             sensor.begin()
 
     def read(self, snapshot: Snapshot) -> dict[str, Any]:
-        """The readings of the sensors that read at the `snapshot`, by name. It follows the last one."""
+        """The readings at the `snapshot` by name, of sensors that are due. Call this once for each sample, in order."""
         found = {}
         for name, sensor in self.sensors.items():
             if name in self._index:
@@ -79,7 +79,7 @@ class SensorSuite:
 
 
 def places_of(settings: Iterable[SensorSettings]) -> tuple[float, ...]:
-    """X (S,) [m], rising, each once, of the sensors that are on."""
+    """Stations (S,) [m] of the sensors with a rate, ascending, each once."""
     on_body = [each for each in settings if isinstance(each, StationedSettings) and each.rate]
     return tuple(sorted({station for each in on_body for station in each.stations}))
 
@@ -87,15 +87,15 @@ def places_of(settings: Iterable[SensorSettings]) -> tuple[float, ...]:
 def joints_of(
     time: Any, arrays: dict[str, np.ndarray], robot: Robot | None, signs: np.ndarray | float = 1.0
 ) -> JointReadings:
-    """The true values of the joints of a `robot`, times `signs`, from `arrays` (T, J) of a run, or (J,) of a snapshot,
-    by name."""
+    """The true values of the joints of a `robot`, times `signs`. arrays: by name, (T, J) of a run or (J,) of a
+    snapshot."""
     current = arrays["motor_torque"] * current_by_torque(robot.servos if robot else ())
     values = arrays["joint_angle"], arrays["joint_rate"], current
     return JointReadings(time, *(signs * each + 0.0 for each in values))  # no minus zeros
 
 
 def check_settings(settings: SensorSettings, body: Body, robot: Robot | None, rate: float) -> None:
-    """`ValueError` for `settings` of a sensor that is on and does not fit a swimmer, or samples at `rate` [Hz]."""
+    """`ValueError` for `settings`, with a rate, that do not fit a swimmer, or its samples at `rate` [Hz]."""
     checked_instance("sensor", settings, SensorSettings)
     if not settings.rate:
         return

@@ -9,25 +9,25 @@ from typing import Any
 
 import numpy as np
 
-ROUNDING = 1e-6  # of a period: a sample may lie that far before a multiple
+ROUNDING = 1e-6  # part of a period by which a sample may lie before a multiple
 
 
 def readings_among(times: np.ndarray, rate: float) -> tuple[np.ndarray, np.ndarray]:
-    """Which of the samples at `times` (T,) [s] a sensor of this `rate` [Hz] reads: indices (N,), and the gaps (N,) [s]
-    since the reading before each, 0 of the first."""
+    """The samples at which a sensor with this `rate` [Hz] reads: indices (N,) of `times` (T,) [s], and the time (N,)
+    [s] since the previous reading, 0 for the first."""
     count = np.floor(times * rate + ROUNDING)
     rows = np.flatnonzero(np.diff(count, prepend=-1.0) > 0.0)
     return rows, np.diff(times[rows], prepend=times[rows][:1])
 
 
 class Timing:
-    """The same, sample by sample."""
+    """The same as `readings_among`, sample by sample."""
 
     def __init__(self, rate: float):
         self._rate, self._count, self._last = rate, -1, math.nan  # count: periods up to the last sample
 
     def gap(self, time: float) -> float | None:
-        """The gap [s] of a reading at the next sample, at `time` [s]; None if it is not read."""
+        """Time [s] from the previous reading to one at the next sample, at `time` [s]; None if none is due there."""
         before, self._count = self._count, math.floor(time * self._rate + ROUNDING)
         if self._count <= before:
             return None

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A velocity log: the sensor's velocity over ground, or through the water, in its own axes.
 
-Through the water is relative to the flow, current included, that there would be at the sensor without the swimmer.
+The velocity through the water is relative to the undisturbed flow at the sensor, including the current.
 """
 
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from eel_dynamics.sensors.sensor import Components, Motion, StationedSettings, S
 
 
 class VelocityReadings(NamedTuple):
-    """Readings of a velocity log, in its axes; of one reading without the dimension N, and a tuple of floats."""
+    """Readings of a velocity log, in its axes. A single reading has no dimension N, and a tuple of floats."""
 
     time: Any  # (N,) s
     velocity: Any  # (N, 3) m/s

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Passes commands of a robot's joints and of fins, and currents, to the simulation at their times.
+"""Passes commands of joints and fins, currents and external wrenches to the simulation at their times.
 
-A command acts from its stamp on, or at once if the stamp is empty or past, until the next one. If several
-begin at one instant, only the newest for each joint or fin is kept, to save memory and time. A command
-older than one that has acted is left out.
+A command acts from its stamp on, or at once if the stamp is empty or past, until the next one. If several begin at one
+instant, only the newest for each joint or fin is kept, to save memory and time. A command older than one that has acted
+is dropped.
 """
 
 import math
@@ -26,21 +26,21 @@ from eel_dynamics.ros.loop.awaited import FINS, JOINTS, MESSAGES, Awaited
 from eel_dynamics.simulation.simulation import Simulation
 
 IN_A_ROW = 4  # commands that make a stream
-LONGEST_WAY = 5.0  # s: furthest that a command may lie ahead of the simulation
+LONGEST_WAY = 5.0  # s: most that a command may lie ahead of the simulation
 MOST_WAITING = 10_000  # instants ahead: 2 kHz for LONGEST_WAY
-STAND_IN = Law(name="joint_commands")  # of a swimmer that is straight except for its commands
+STAND_IN = Law(name="joint_commands")  # law of a swimmer that only joint commands bend
 INSTANT = itemgetter(0)
 UNITS = {"position": "rad", "velocity": "rad/s", "effort": "N m"}
 
 
 class CommandQueue:
-    """Commands for parts of the `simulation`, which may be replaced at a reset. For the run loop's thread.
+    """Commands for parts of a swimmer, such as its joints. For the run loop's thread.
 
-    awaited: the run's. lockstep: whether the run waits for stamps.
+    lockstep: whether the run waits for inputs.
 
     Attributes:
-        topic: where they come from; parts: that are commanded; hold: whether the same value again says nothing new.
-        simulation: Simulation.
+        topic: of the commands. parts: what they command, in words. hold: whether a repeated value changes nothing.
+        simulation: Simulation, which a reset may replace.
         names: of the parts that can be commanded.
     """
 
@@ -51,17 +51,17 @@ class CommandQueue:
         self._awaited, self._lockstep, self._report = awaited, lockstep, report
         self.simulation: Simulation
         self.names: tuple[str, ...] = ()
-        self._waiting: list[tuple[float, dict[str, tuple[float, Any]]]] = []  # instant; stamp and value by name
+        self._waiting: list[tuple[float, dict[str, tuple[float, Any]]]] = []  # instant [s]; stamp [s] and value by name
         self._present: Values = {}  # in force
         self._stamps: dict[str, float] = {}  # s, of commands that have acted
-        self._arrivals: deque[float] = deque(maxlen=IN_A_ROW)  # s, simulation time: when the last commands came
+        self._arrivals: deque[float] = deque(maxlen=IN_A_ROW)  # s, simulation time: arrival of the last commands
 
     def read(self, message: Any) -> tuple[float, Values]:
-        """Stamp [s] and values of a `message`. `ValueError` if they do not suit the present swimmer."""
+        """Stamp [s] and values of a `message`. `ValueError` if they do not fit the present swimmer."""
         raise NotImplementedError
 
     def give(self, values: Values) -> None:
-        """Command parts from now on. `ValueError` names an unsuitable value."""
+        """Let the simulation take these `values` from now on. `ValueError` names an invalid one."""
         raise NotImplementedError
 
     def add(self, stamp: float, values: Values) -> None:
@@ -114,7 +114,7 @@ class CommandQueue:
         return min(before, max(self._waiting[0][0], self.simulation.time)) if self._waiting else before
 
     def act(self) -> bool:
-        """Give the commands of the present time; whether there are any. What no longer fits is told, and left out."""
+        """Let the commands of the present time act. Returns whether there are any. An invalid one is logged."""
         if self.next_instant(math.inf) > self.simulation.time:
             return False
         values: Values = {}
@@ -124,7 +124,7 @@ class CommandQueue:
         held = self._present if self.hold else {}
         changed = {name: value for name, value in values.items() if held.get(name) != value}
         try:
-            if changed:  # not sent again
+            if changed:
                 self.give(changed)
             self._present |= changed
         except ValueError as error:
@@ -132,9 +132,9 @@ class CommandQueue:
         return True
 
     def check(self, timeout: float) -> None:
-        """Warn where commands that came in a row have stopped for `timeout` [s] of simulation time; 0: never.
+        """Warn if a stream of commands has stopped for `timeout` [s] of simulation time; 0: never.
 
-        Commands with longer pauses are set points, and hold without a word.
+        Commands with longer pauses are set points. They hold without a warning.
         """
         time, arrivals, topic = self.simulation.time, self._arrivals, self.topic
         if not timeout > 0.0 or len(arrivals) < IN_A_ROW or time - arrivals[-1] <= timeout:
@@ -157,9 +157,9 @@ class CommandQueue:
 
 
 class JointCommands(CommandQueue):
-    """Commands for the servos of a robot. The first starts a swimmer without a law, which is straight but for it.
+    """Commands for the servos of a robot. The first one starts a swimmer without a law.
 
-    Values have the signs of messages until they are given to the simulation.
+    Values have the signs of messages, and `give` converts them.
     """
 
     topic, parts = JOINTS, "joints"
@@ -167,9 +167,9 @@ class JointCommands(CommandQueue):
     def __init__(self, awaited: Awaited, lockstep: bool, report: Report) -> None:
         super().__init__(awaited, lockstep, report)
         self._interfaces: Mapping[str, tuple[str, ...]] = {}
-        self._limited: Robot | None = None  # whose `_limits` are, by joint and interface
-        self._limits: dict[tuple[str, str], tuple[float, float]] = {}
-        self._beyond: set[str] = set()  # what has been told of
+        self._limited: Robot | None = None  # the robot that has the `_limits`
+        self._limits: dict[tuple[str, str], tuple[float, float]] = {}  # by joint and interface
+        self._beyond: set[str] = set()  # kinds of warnings that were given
         self._signs: dict[str, int] = {}  # `message_sign` by joint
 
     def begin(self, simulation: Simulation, interfaces: Mapping[str, tuple[str, ...]]) -> None:
@@ -194,7 +194,7 @@ class JointCommands(CommandQueue):
             if values.pop(name):
                 self.simulation.check_driven(name)
         robot = self.simulation.robot
-        if robot is not None and robot is not self._limited:  # another limit of torque makes another robot
+        if robot is not None and robot is not self._limited:  # a new torque limit makes a new robot
             self._limited, self._limits = robot, limits_of(robot)
         for name, given in values.items():
             for interface, value in given.items():
@@ -207,7 +207,8 @@ class JointCommands(CommandQueue):
         return stamp, values
 
     def _warn_of_limit(self, name: str, interface: str, value: float, limit: float) -> None:
-        """Once in a run, as a wave goes beyond a limit again and again; it lasts until the joint is within again."""
+        """Warn once in a run, since a wave may exceed a limit in each period. A value within the limit ends the
+        warning."""
         kind, unit = limit_of(name, interface), UNITS[interface]
         if kind not in self._beyond:
             said = f"{interface} {value:g} {unit} of joint {shown(name)} is beyond its limit {limit:g} {unit}: clipped"
@@ -245,7 +246,7 @@ class FinCommands(CommandQueue):
 
 
 def limits_of(robot: Robot) -> dict[tuple[str, str], tuple[float, float]]:
-    """The least and the greatest value of each interface of a `robot`'s joints that have a servo, signs of messages."""
+    """Least and greatest value by joint and interface, for the joints of a `robot` with a servo; signs of messages."""
     limits = {}
     for joint, servo in zip(robot.joints, robot.servos, strict=True):
         if servo is not None:

@@ -14,7 +14,7 @@ from eel_dynamics.simulation.simulation import Simulation
 
 
 class Currents(CommandQueue):
-    """Samples of a current in the frame `world_frame`. Each is reached after it has acted (`CurrentStream`)."""
+    """Samples of a current in the frame `world_frame`. The water changes to it from its time on (`CurrentStream`)."""
 
     topic, hold = CURRENT, False
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tells when the error of a run exceeds its target: each time once in the log, and in /diagnostics until a reset."""
+"""Reports an error of a run above its target: once in the log, and in /diagnostics until a reset."""
 
 from eel_common.ros.loop.diagnostics import Report
 
 from eel_dynamics.simulation.simulation import Simulation
 
-OFF = "off"  # where no error is estimated
+OFF = "off"  # if no error is estimated
 TARGET, LOST = "accuracy target", "lost accuracy"  # kinds of conditions
 
 
@@ -13,7 +13,7 @@ class ErrorMonitor:
     """Watches the error estimate of a `simulation` from its start on, if it has one.
 
     Attributes:
-        values: the figures for /diagnostics, by name, at the last check; "off" where no error is estimated.
+        values: figures for /diagnostics by name, as of the last check; "off" if no error is estimated.
     """
 
     def __init__(self, simulation: Simulation, report: Report) -> None:
@@ -23,7 +23,7 @@ class ErrorMonitor:
         report.end(LOST)
 
     def check(self) -> None:
-        """Tell of a missed target, and of a motion whose errors have grown beyond all bounds."""
+        """Report a missed target, and a motion whose errors have grown without bound."""
         simulation, error = self._simulation, self._simulation.error_estimate
         if error is None:
             return

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What comes to a swimmer besides laws: commands of joints and fins, currents, wrenches; and what a run waits for."""
+"""The inputs of a run besides laws: commands of joints and fins, currents, external wrenches; and which are awaited."""
 
 from eel_common.ros.loop.diagnostics import Report
 
@@ -15,13 +15,13 @@ from eel_dynamics.simulation.simulation import Simulation
 
 
 class Inputs:
-    """The inputs of a `simulation`, by the parameters `values`.
+    """The inputs of a `simulation` with the parameters `values`.
 
     Attributes:
-        joints: JointCommands. fins: FinCommands. current: Currents. wrenches: ExternalWrenches. queues:
-            all of them.
+        joints: JointCommands. fins: FinCommands. current: Currents. wrenches: ExternalWrenches.
+        queues: these four.
         awaited: Awaited.
-        acted: the number of times that commands have taken effect since the last sample.
+        acted: the number of times since the last sample that commands took effect.
     """
 
     def __init__(self, simulation: Simulation, values: DynamicsParameters, report: Report) -> None:
@@ -34,34 +34,34 @@ class Inputs:
         self.begin(simulation, values)
 
     def begin(self, simulation: Simulation, values: DynamicsParameters) -> None:
-        """Begin at time 0 of a `simulation`, which may be another one, before anything has come."""
+        """Begin at time 0 of a `simulation`, perhaps a new one, without any input so far."""
         self.joints.begin(simulation, interfaces_of(simulation.robot, values.command_interfaces))
         self.fins.begin(simulation)
         self.current.begin(simulation)
         self.wrenches.begin(simulation, values)
         self.awaited.begin(values.wait_for, parts_of(simulation, values), 1.0 / values.rate)
         if self.awaited.names(JOINTS) and not simulation.ready:
-            simulation.adopt(STAND_IN)  # a controller manager begins to command once time goes on
+            simulation.adopt(STAND_IN)  # a controller manager sends its first command after time has begun
         self.acted = 0
 
     def next_instant(self, before: float) -> float:
-        """The time [s] of the next command, or of the next sample, `before` [s], if none comes first."""
+        """The time [s] of the next command, or `before` [s] if no command comes earlier."""
         return min(queue.next_instant(before) for queue in self.queues)
 
     def act(self) -> None:
-        """Give the commands of the present time."""
+        """Let the commands of the present time act."""
         for queue in self.queues:
             self.acted += queue.act()
 
 
 def parts_of(simulation: Simulation, values: DynamicsParameters) -> dict[str, tuple[str, ...]]:
-    """Names of the joints and fins of a `simulation` that can be commanded, and frames of wrenches, by topic."""
+    """Names of the joints and fins of a `simulation` that can be commanded, and of frames of wrenches, by topic."""
     robot, fins = simulation.robot, commanded_names(simulation.fins)
     joints = () if robot is None else robot.driven_names
     return {JOINTS: joints, FINS: fins, WRENCH: tuple(wrench_frames(values))}
 
 
 def check_inputs(simulation: Simulation, values: DynamicsParameters) -> None:
-    """`ValueError` for parameters `values` of inputs that do not fit a `simulation`."""
+    """`ValueError` if the parameters of inputs among `values` do not fit a `simulation`."""
     interfaces_of(simulation.robot, values.command_interfaces)
     wanted_inputs(values.wait_for, parts_of(simulation, values))

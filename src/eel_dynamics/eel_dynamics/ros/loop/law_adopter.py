@@ -14,29 +14,29 @@ from eel_dynamics.ros.messages import refused
 from eel_dynamics.simulation.bending.slow_motors import slow_motors
 from eel_dynamics.simulation.simulation import Simulation
 
-LONGEST_WAY = 5.0  # s from the last sample, or from the simulation, to the next one: it is not on the same way
-LOOKED_AT = 20.0  # s of a law, for what it asks of motors
+LONGEST_WAY = 5.0  # s: greatest distance of a sample from the last one, or from the simulation
+LOOKED_AT = 20.0  # s of a law that are checked against the speed of motors
 REFUSALS = ValueError, ArithmeticError, MemoryError  # errors with which the simulation refuses laws and samples
 
 
 class LawAdopter:
-    """Passes laws and samples to the `simulation`. For the run loop's thread. awaited: of the run.
+    """Passes laws and samples to the `simulation`. For the run loop's thread.
 
     `SimulationStopped` if the simulation cannot continue with a law.
 
     Attributes:
-        simulation: may be replaced at a reset.
+        simulation: Simulation, which a reset may replace.
     """
 
     def __init__(self, simulation: Simulation, awaited: Awaited, report: Report) -> None:
         self.simulation, self._awaited, self._report = simulation, awaited, report
         self._origin = 0.0  # s: simulation time of the law's t = 0
-        self._first: dict[float, int] = {}  # of instants [s] added at the start: a hash of the values
+        self._first: dict[float, int] = {}  # samples added at the start: hash of the values by time [s]
         self._driven = False  # whether a controller's samples drove the swimmer when it was last looked at
 
     @property
     def name(self) -> str:
-        """Name of the law that the swimmer follows, or of the topic of samples."""
+        """Name of the law that the swimmer follows, or the topic curvature_samples."""
         simulation = self.simulation
         if simulation.sampled or simulation.resting:
             return "curvature_samples"
@@ -68,12 +68,12 @@ class LawAdopter:
             )
 
     def add_samples(self, samples: dict[str, Any], period: float = 0.0) -> None:
-        """Add one instant of a law: the arguments of `Simulation.add_samples`, in a run of one every `period` [s].
+        """Add one sample of a controller: the arguments of `Simulation.add_samples`. period: [s], between samples of
+        the run.
 
-        An instant that is the same as one from before the start is an answer to a repeated sample 0, and changes
-        nothing. Shortly after a reset, a sample that lies more than twice as far ahead as any before was sent before
-        the controller saw the reset, and is left out. One far from all others would be the end of a long, wide
-        swing of the body once they run out, and is refused.
+        A sample equal to one from before the start is an answer to a repeated sample 0, and changes nothing. Shortly
+        after a reset, a sample that lies farther ahead than any before was sent before the reset, and is dropped. A
+        sample far from all others is refused: the body would swing there slowly and widely.
         """
         ahead = samples["time"] - self.simulation.time
         if self._awaited.is_echo(SAMPLES, ahead):
@@ -115,5 +115,5 @@ class LawAdopter:
 
 
 def _hash(samples: dict[str, Any]) -> int:
-    """A hash of the values of an instant."""
+    """A hash of the values of a sample."""
     return hash(tuple(np.asarray(row).tobytes() for name, row in samples.items() if name != "time"))

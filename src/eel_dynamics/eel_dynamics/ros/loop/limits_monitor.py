@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Monitors the model's limits during a run: each violation is logged once, and stays in /diagnostics until a reset.
 
-That the tail leads ends with the first window in which it does not. The windows are simulated time: whole periods of
-the law, of at least `WINDOW` together. They begin `SETTLING` after the start, and after each new law.
+A leading tail is reported until the first window of time in which the tail does not lead. Windows are whole periods of
+the law, together at least `WINDOW` of simulated time. They begin `SETTLING` after the start, and after each new law.
 """
 
 import math
@@ -30,7 +30,7 @@ class LimitsMonitor:
         self._current = np.array(simulation.scene.current)
         self._report = report
         self._reported: set[str] = set()  # kinds of violations
-        self._excess, self._above = (0.0, ""), 0  # of the torque since it was last reported: the greatest; samples
+        self._excess, self._above = (0.0, ""), 0  # torque since its last report: greatest, text; samples above
         self._torque_reported = -math.inf  # s, steady clock
         self._law, self._window = simulation.law, (math.inf, math.inf)  # s: begin and end, for the tail
         self._wake_power: list[float] = []  # W, in the window
@@ -82,7 +82,7 @@ class LimitsMonitor:
             )
 
     def _check_tail(self, time: float, wake_power: float) -> None:
-        if self._simulation.flow is not None:  # the power of the wake is no sign of V1(l) in water that moves
+        if self._simulation.flow is not None:  # in moving water the power of the wake does not have the sign of V1(l)
             return
         law, (begin, end) = self._simulation.law, self._window
         if law is not self._law or begin == math.inf:

@@ -12,14 +12,14 @@ from eel_dynamics.simulation.simulation import Simulation
 
 
 class RunGate:
-    """Lets the next sample of a `simulation` through, or says why not.
+    """Lets the next sample of a `simulation` through, or tells why not.
 
-    publishers: of its samples. wanted: subscribers to wait for before the first sample.
+    wanted: number of subscribers to wait for before the first sample.
 
     Attributes:
-        simulation: may be replaced at a reset.
-        failed: the simulation has stopped and waits for a reset.
-        held: says which other node has the topics; empty if none has.
+        simulation: Simulation, which a reset may replace.
+        failed: whether the simulation has stopped and waits for a reset.
+        held: text that names the other node with the same topics; empty without one.
     """
 
     def __init__(self, simulation: Simulation, publishers: Publishers, wanted: int) -> None:
@@ -33,8 +33,8 @@ class RunGate:
     def held_by(self, simulation_time: float, late: list[str], missing: Callable[[], list[str]]) -> str:
         """What holds the run, as text, at `simulation_time` [s]; empty if nothing does.
 
-        late: inputs that must come before the next sample. missing(): the inputs still awaited; it is
-        called once all else is there.
+        late: inputs that must arrive before the next sample. missing: gives the inputs that are still awaited; it is
+        called once nothing else is missing.
         """
         if self.held:
             return self.held

@@ -2,12 +2,12 @@
 """The run loop, in a thread of its own: waits, paces, advances the simulation, and publishes each sample.
 
 Only this thread uses the simulation. Callbacks put requests into `requests`, which are executed between two samples. An
-urgent request interrupts the computation of a sample, and so does any request once that has taken long.
+urgent request interrupts the computation of a sample. Once that computation has taken long, any request does.
 
-Why no executor of rclpy runs it: a turn of rclpy's executor takes 140 us of CPU time, as it builds its wait set anew; a
-sample with its messages takes 60 us, and the wait in CurvatureInbox 18 us. A law may also need seconds for a sample, in
-which services have to answer, and a publisher whose history is full has to wait. A callback group or a timer would
-move that wait to a thread of the executor's pool, and could not be interrupted.
+An executor of rclpy would be too slow: one of its turns takes 140 us of CPU time, as it builds its wait set anew. A
+sample with its messages takes 60 us, and the wait in CurvatureInbox 18 us. Besides, a law may need seconds for a
+sample, while services must answer, and a publisher whose history is full must wait. A callback group or a timer would
+wait in a thread of the executor's pool, and could not be interrupted.
 """
 
 import math
@@ -39,23 +39,23 @@ from eel_dynamics.ros.publishers import Publishers
 from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.stopping import SimulationStopped
 
-STAMP_ERROR = 1.5e-9  # s: of a stamp that is rounded down, with that of the one that it was added to
+STAMP_ERROR = 1.5e-9  # s: rounding error of a stamp that a controller computes from another stamp
 
 
 class RunLoop:
     """Publishes samples k = 0 ... `last_sample` of the `simulation`, at times k/rate, paced by the `parameters`.
 
-    While the run stands at its start, it repeats sample 0 ten times a second, so that a controller that answers samples
-    begins. It goes on with sample 1, unless a law changes sample 0, or a subscriber has not had it.
+    While the run waits at its start, it repeats sample 0 ten times a second, so that a controller that answers samples
+    begins. It then continues with sample 1, unless a law has changed sample 0 or a subscriber has not received it.
 
     `run` is the thread's function: it returns after the last sample, or after `requests.stop`. A simulation that has
     stopped waits for a reset; an unattended one (with a duration, as fast as possible) returns and has `given_up`.
 
     Attributes:
         time: simulation time of the last sample [s].
-        samples_published: number of samples, which is the index of the next one.
+        samples_published: number of samples, and index of the next one.
         standing: what the simulation waits for, as text; empty while it runs.
-        requests: RequestQueue, for other threads.
+        requests: RequestQueue, into which other threads put requests.
         wall_time: [s] spent on samples.
         gate: RunGate. laws: LawAdopter. inputs: Inputs. servo_limit: ServoLimit.
         output: SampleOutput. pace: Pace.
@@ -148,7 +148,7 @@ class RunLoop:
         self._sample_begun = None
         if reason != self.standing:
             before, self.standing = self.standing, reason
-            if not waited_for(reason) <= waited_for(before):  # what is left of it needs no line
+            if not waited_for(reason) <= waited_for(before):  # a shorter list of the same needs no line
                 self._report.info(reason)
         now = time.monotonic()
         self.output.clock.repeat(self._stamp, now)
@@ -157,7 +157,7 @@ class RunLoop:
         self.requests.wait(TICK)
 
     def _held_by(self) -> str:
-        """What holds the run, as text; at the start of one as fast as possible also the inputs that it awaits."""
+        """What holds the run, as text. At the start of a run as fast as possible that includes its awaited inputs."""
         if self.samples_published or self.pace.factor > 0.0:
             return self.gate.held_by(self.time, [], list)
         return self.gate.held_by(self.time, self.inputs.awaited.late(0.0), self._missing)
@@ -244,7 +244,7 @@ class RunLoop:
         return nanoseconds(max(0, self.samples_published - 1), self._parameters.values.rate)
 
     def _meant(self, stamp: float) -> float:
-        """The instant [s] of the sample that a controller's `stamp` [s] means, but for what nanoseconds cannot hold."""
+        """A controller's `stamp` [s], or the instant [s] of a sample if the two differ by rounding alone."""
         rate = self._parameters.values.rate
         instant = round(stamp * rate) / rate
         return instant if abs(instant - stamp) < STAMP_ERROR else stamp
@@ -277,11 +277,11 @@ class RunLoop:
         self.gate.held = reason
 
     def step(self, samples: int, steps: Answer) -> None:
-        """Publish so many `samples` of a paused run; `steps` is answered with the last. Sample 0 is none of them."""
+        """Publish this number of `samples` of a paused run, besides sample 0. `steps` is answered with the last."""
         self.gate.begin_steps(samples, steps, self.time)
 
     def set_state(self, position: np.ndarray, orientation: np.ndarray, twist: np.ndarray) -> None:
-        """Put the head elsewhere, as `Simulation.set_state` does."""
+        """Set the state of the head, as `Simulation.set_state` does."""
         self._simulation.set_state(position, orientation, twist)
         self.output.change_state()
 
@@ -291,9 +291,9 @@ class RunLoop:
         values: DynamicsParameters | None = None,
         sensors: Sensors = (),
     ) -> None:
-        """Reset state and time to the start; the law stays. `ValueError` if it cannot begin.
+        """Reset state and time to the start, and keep the law. `ValueError` if the law cannot begin there.
 
-        simulation, values, sensors: of a new run, with other parameters.
+        simulation, values, sensors: of a run with changed parameters.
         """
         law = self._simulation.law
         try:
@@ -325,7 +325,7 @@ class RunLoop:
 
 
 def waited_for(reason: str) -> set[str]:
-    """What is waited for by a `reason` to stand still, part by part; or the whole reason."""
+    """The parts of a `reason` to wait; or the whole reason, if it is another."""
     return {*reason.removeprefix("waiting for ").split(", ")}
 
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Publishes the samples of a run, and checks each: its totals, the model's limits, and the estimate of its error.
 
-While a run stands at its start, sample 0 is repeated. The run does not publish it again if all subscribers have had it.
+While a run waits at its start, sample 0 is repeated. When the run starts, sample 0 is not published again if all
+subscribers have received it.
 """
 
 import math
@@ -17,7 +18,7 @@ from eel_dynamics.ros.loop.saturation_monitor import SaturationMonitor
 from eel_dynamics.ros.publishers import Publishers
 from eel_dynamics.simulation.simulation import Simulation
 
-START_PERIOD = 0.1  # s of wall time between two messages of sample 0 while the run stands at its start
+START_PERIOD = 0.1  # s of wall time between two messages of sample 0
 
 
 class SampleOutput:
@@ -37,7 +38,7 @@ class SampleOutput:
         self.errors, self._limits = ErrorMonitor(simulation, report), LimitsMonitor(simulation, report)
         self.saturation = self._watch()
         self._whole_snapshot_due = True
-        self._start_shown = -math.inf  # s, steady clock: last sample 0
+        self._start_shown = -math.inf  # s, steady clock: when sample 0 was last published
         self._start_audience: dict[str, int] | None = None  # its subscribers
 
     def _watch(self) -> SaturationMonitor | None:
@@ -48,7 +49,8 @@ class SampleOutput:
         self._whole_snapshot_due = True
 
     def publish(self, sample: int, last: bool) -> None:
-        """Publish `sample` of the present time; `last`: whether it ends the run. `SimulationStopped` for a bad one."""
+        """Publish the `sample` of the present time. last: whether it ends the run. `SimulationStopped` if it is not
+        finite."""
         whole, self._whole_snapshot_due = self._whole_snapshot_due or last, False
         self._publish(sample, whole)
 
@@ -88,7 +90,7 @@ class SampleOutput:
 
     @property
     def start_is_known(self) -> bool:
-        """Whether all subscribers have had the present sample 0."""
+        """Whether all subscribers have received the present sample 0."""
         return self._start_audience is not None and self._start_audience == self._publishers.audience()
 
     def forget_start(self) -> None:
@@ -98,13 +100,13 @@ class SampleOutput:
     # -- another state
 
     def change_state(self) -> None:
-        """Check the limits afresh: the head has been moved."""
+        """Restart the checks of the limits, because the head has been moved."""
         self.forget_start()
         self._limits.end()
         self._limits = LimitsMonitor(self._simulation, self._report)
 
     def restart(self, simulation: Simulation) -> None:
-        """Begin again with the start of a `simulation`, which may be another one."""
+        """Restart at time 0 of a `simulation`, perhaps a new one."""
         self._simulation = simulation
         self.totals, self.errors = RunTotals(), ErrorMonitor(simulation, self._report)
         if self.saturation is not None:

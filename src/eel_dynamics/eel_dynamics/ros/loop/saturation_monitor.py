@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Finds which servos are at their torque limit, and for how long: for /diagnostics and the log.
 
-A step of a set point saturates a servo for a moment, which is not reported. A gait saturates it again and again, which
-is reported once.
+A short saturation, as after a step of a set point, is not reported. A saturation that a gait repeats is reported once.
 """
 
 from typing import Any
@@ -46,10 +45,10 @@ class SaturationMonitor:
             self._report.end("saturated", f"all motors are below their torque limits at t = {snapshot.time:.4g} s")
 
     def end(self) -> None:
-        """The run begins anew."""
+        """End the report, because the run restarts."""
         self._report.end("saturated")
 
     def values(self) -> dict[str, Any]:
-        """For each motor that was at its limit: how long since the start."""
+        """For /diagnostics: time at the limit since the start, of each motor that was there."""
         found = [f"{self._names[k]} {self._total[k]:.4g} s" for k in np.flatnonzero(self._total > 0.0)]
         return {"at_torque_limit": ", ".join(found)} if found else {}

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Passes the parameter servo_torque_limit to the simulation, between two samples, in place of servos' own limits."""
+"""Applies the parameter servo_torque_limit to the simulation, between two samples, in place of the servos' own
+limits."""
 
 from eel_common.ros.loop.diagnostics import Report
 
@@ -19,14 +20,14 @@ class ServoLimit:
         self.begin(simulation)
 
     def begin(self, simulation: Simulation) -> None:
-        """Go on with another `simulation`, whose servos have their own limits."""
+        """Begin with a new `simulation`, whose servos have their own limits."""
         self._simulation, self._own, self.present = simulation, simulation.robot, 0.0
 
     def change(self, limit: float) -> None:
         """Limit each servo's torque at rest to `limit` [N m] from now on; 0: to its own limit."""
         self.present = limit
         if self._own is None or not has_servos(self._own):
-            return  # a robot with servos comes with the next reset
+            return  # the next reset may bring a robot with servos
         limited = self._own.changed("servos", torque_limit=limit) if limit > 0.0 else self._own
         self._simulation.change_robot(limited)
         most = f"is {limit:g} N m" if limit > 0.0 else "is its own"

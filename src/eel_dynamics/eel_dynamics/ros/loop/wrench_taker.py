@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Passes wrenches of the topic `external_wrench` to the simulation at their times: each holds until the next there."""
+"""Passes wrenches of the topic `external_wrench` to the simulation at their times. Each holds until the next one in its
+frame."""
 
 from typing import Any
 
@@ -14,7 +15,7 @@ from eel_dynamics.simulation.simulation import Simulation
 
 
 class ExternalWrenches(CommandQueue):
-    """Wrenches from outside on the sections of `wrench_frames`."""
+    """External wrenches on the sections of `wrench_frames`."""
 
     topic, parts = WRENCH, "wrenches"
 
