@@ -7,8 +7,8 @@ import pytest
 from builtin_interfaces.msg import Time
 from eel_common.ros.loop.diagnostics import Report
 from eel_common.ros.testing.log import Log
+from eel_dynamics.ros.inputs.awaited import Awaited
 from eel_dynamics.ros.law_subscription import LawSubscription
-from eel_dynamics.ros.loop.awaited import Awaited
 from eel_dynamics.ros.loop.law_adopter import LawAdopter
 from eel_gaits.ros.messages import law_to_message
 from rclpy.serialization import serialize_message

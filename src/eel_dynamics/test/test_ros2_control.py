@@ -17,7 +17,7 @@ from eel_common.ros.loop.diagnostics import Report
 from eel_common.ros.testing.log import Log
 from eel_dynamics.model.robot.joint_signs import sense_of
 from eel_dynamics.model.robot.ready import READY
-from eel_dynamics.ros.command_messages import interfaces_of, joint_command_from_message
+from eel_dynamics.ros.inputs.command_messages import interfaces_of, joint_command_from_message
 from fake_publishers import fake_publishers, run_loop
 from sensor_msgs.msg import JointState
 

@@ -398,7 +398,7 @@ def test_a_command_that_fits_no_more_when_it_acts_is_told_and_left_out():
 def test_a_run_begins_once_the_publishers_are_there_that_wait_for_names(monkeypatch):
     """However long that takes; then it gives timers half a second to see the clock at 0, and waits for messages."""
     time, log, begun = MadeUpTime(monkeypatch), Log(), []
-    monkeypatch.setattr("eel_dynamics.ros.loop.awaited.wall", SimpleNamespace(monotonic=lambda: time.now))
+    monkeypatch.setattr("eel_dynamics.ros.inputs.awaited.wall", SimpleNamespace(monotonic=lambda: time.now))
     values = {"real_time_factor": 0.0, "duration": 0.05, "subscriber_timeout": 2.0}
     values["wait_for"] = ("joint_commands/joint_2 0.02", "curvature_law")
     simulation = Simulation(accuracy=1e-2, robot=Robot.named("eight_servos"))

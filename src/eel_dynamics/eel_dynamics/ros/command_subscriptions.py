@@ -10,7 +10,7 @@ from geometry_msgs.msg import Vector3Stamped, WrenchStamped
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
-from eel_dynamics.ros.loop.command_queue import CommandQueue
+from eel_dynamics.ros.inputs.command_queue import CommandQueue
 from eel_dynamics.ros.loop.run_loop import RunLoop
 
 DEPTH = 100  # messages of currents

@@ -45,6 +45,7 @@ from eel_msgs.srv import SetState
 JOIN = "a controller that joins a running simulation begins 1/rate or more after the stamp of the last odom"
 Numbers = dict[str, np.ndarray]  # of a SerialisedMessage, by path
 SECOND = 1_000_000_000  # ns
+STAMP_ERROR = 1.5e-9  # s: rounding error of a stamp that a controller computes from another stamp
 FAR_AHEAD = 3600.0  # s: a stamp further ahead of the simulation is wall time by mistake
 LARGEST_LAW = 2**19  # bytes, without the name: 1,000 terms of 30 knots, which are adopted in half a second
 
@@ -307,6 +308,12 @@ def stamped(stamp: Time | Stamp, now: float) -> float:
             "that looks like wall time, does its publisher have use_sim_time set?"
         )
     return time
+
+
+def on_sample(stamp: float, rate: float) -> float:
+    """A controller's `stamp` [s], or the time [s] of a sample at `rate` [Hz] if the two differ by rounding alone."""
+    instant = round(stamp * rate) / rate
+    return instant if abs(instant - stamp) < STAMP_ERROR else stamp
 
 
 def samples_from_message(data: bytes, now: float) -> dict[str, Any]:

@@ -25,7 +25,7 @@ from eel_dynamics.model.robot.continuous import Muscle, PassiveTail
 from eel_dynamics.model.robot.joint import LONGEST_NAME, Joint
 from eel_dynamics.model.robot.ready import READY
 from eel_dynamics.model.robot.robot_file import robot_in_yaml
-from eel_dynamics.model.robot.urdf import robot_in_urdf
+from eel_dynamics.model.robot.urdf.reader import robot_in_urdf
 
 MOST_PARTS = 64
 

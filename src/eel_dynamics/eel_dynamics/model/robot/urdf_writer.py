@@ -32,7 +32,7 @@ from eel_dynamics.model.robot.compiled import mode_table
 from eel_dynamics.model.robot.joint import Joint
 from eel_dynamics.model.robot.joint_signs import message_limits, sense_of
 from eel_dynamics.model.robot.robot import Robot, checked_robot
-from eel_dynamics.model.robot.urdf_elements import UNLIMITED
+from eel_dynamics.model.robot.urdf.elements import UNLIMITED
 
 MOST_JOINTS = 1000  # per axis, of an imposed shape
 SLICES = 50  # boxes to look at, by length of the body

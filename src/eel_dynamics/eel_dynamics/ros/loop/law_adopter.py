@@ -9,7 +9,7 @@ from eel_common.wording import shown
 from eel_gaits.laws.law import Law
 
 from eel_dynamics.curvature.curvature_samples import LateSample
-from eel_dynamics.ros.loop.awaited import LAW, SAMPLES, Awaited
+from eel_dynamics.ros.inputs.awaited import LAW, SAMPLES, Awaited
 from eel_dynamics.ros.messages import refused
 from eel_dynamics.simulation.bending.slow_motors import slow_motors
 from eel_dynamics.simulation.simulation import Simulation

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from eel_common.ros.loop.requests import Answer
 
-from eel_dynamics.ros.loop.awaited import JOINTS, LAW, SAMPLES
+from eel_dynamics.ros.inputs.awaited import JOINTS, LAW, SAMPLES
 from eel_dynamics.ros.publishers import Publishers
 from eel_dynamics.simulation.simulation import Simulation
 
@@ -88,3 +88,8 @@ class RunGate:
         self._steps_left -= 1
         if self._steps_left == 0:
             self.end_steps(simulation_time)
+
+
+def parts_of_reason(reason: str) -> set[str]:
+    """What the run waits for, part by part; or the whole `reason` to stand still, if it is another."""
+    return {*reason.removeprefix("waiting for ").split(", ")}

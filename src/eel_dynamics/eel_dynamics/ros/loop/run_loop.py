@@ -22,24 +22,24 @@ from eel_common.ros.loop.followed_clock import FollowedClock
 from eel_common.ros.loop.lateness import Lateness
 from eel_common.ros.loop.pacing import Pace
 from eel_common.ros.loop.requests import Answer, RequestQueue
-from eel_common.wording import one_line
+from eel_common.ros.serving import reason_of
 from eel_gaits.laws.law import Law
 
 from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration, Sensors
-from eel_dynamics.ros.loop.awaited import MESSAGES
-from eel_dynamics.ros.loop.command_queue import STAND_IN, CommandQueue
-from eel_dynamics.ros.loop.inputs import Inputs
+from eel_dynamics.ros.inputs.awaited import MESSAGES
+from eel_dynamics.ros.inputs.command_queue import STAND_IN, CommandQueue
+from eel_dynamics.ros.inputs.inputs import Inputs
 from eel_dynamics.ros.loop.law_adopter import LawAdopter
-from eel_dynamics.ros.loop.run_gate import RunGate
+from eel_dynamics.ros.loop.next_sample import NextSample
+from eel_dynamics.ros.loop.run_gate import RunGate, parts_of_reason
 from eel_dynamics.ros.loop.sample_output import SampleOutput, nanoseconds
 from eel_dynamics.ros.loop.servo_limit import ServoLimit
+from eel_dynamics.ros.messages import on_sample
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.publishers import Publishers
 from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.stopping import SimulationStopped
-
-STAMP_ERROR = 1.5e-9  # s: rounding error of a stamp that a controller computes from another stamp
 
 
 class RunLoop:
@@ -80,15 +80,14 @@ class RunLoop:
         self.laws = LawAdopter(simulation, self.inputs.awaited, report)
         self.servo_limit = ServoLimit(simulation, report)
         self.output = SampleOutput(simulation, parameters, publishers, report)
-        self._sample_begun: float | None = None  # s, steady clock: when the computation of the next sample began
+        self._next_sample = NextSample(simulation, self.inputs, self.requests)
         self.time, self.samples_published, self.standing = 0.0, 0, ""
         self.wall_time, self._lap = 0.0, time.monotonic()  # _lap: s, steady clock: up to when wall_time counts
 
     @property
     def overdue(self) -> float:
         """Wall time [s] that the computation of the next sample has taken so far; 0 in a run as fast as possible."""
-        since = self._sample_begun
-        return time.monotonic() - since if since is not None and self.pace.factor > 0.0 else 0.0
+        return self._next_sample.lasted if self.pace.factor > 0.0 else 0.0
 
     @property
     def given_up(self) -> bool:
@@ -106,7 +105,7 @@ class RunLoop:
             except SimulationStopped as error:
                 self._fail(f"simulation {error}")
             except Exception as error:  # unforeseen: the last good state is kept, and the node goes on
-                self._fail(f"the run stopped at t = {self.time:g} s: {unforeseen(error)}")
+                self._fail(f"the run stopped at t = {self.time:g} s: {reason_of(error)}")
                 self.requests.wait(TICK)
         self.output.end()
         self._lateness.end(self.time)
@@ -117,7 +116,7 @@ class RunLoop:
     def _turn(self) -> None:
         """Take what has come, then wait, or go on to the next sample."""
         for samples in self._inbox.take(self.time):
-            samples["time"] = self._meant(samples["time"])
+            samples["time"] = on_sample(samples["time"], self._parameters.values.rate)
             self._execute(self.laws.add_samples, samples, self.pace.period)
         for request in self.requests.take():
             request.answer.give(*self._execute(request.action, *request.arguments))
@@ -127,7 +126,7 @@ class RunLoop:
         if reason:
             self._idle(reason)
         elif self._wait_for_turn():
-            self._next_sample()
+            self._publish_next()
 
     def _execute(self, action: Callable[..., None], *arguments: Any) -> tuple[float, str]:
         """Execute `action(*arguments)`; returns the simulation time [s] afterwards, and why it was refused."""
@@ -139,16 +138,16 @@ class RunLoop:
         except ValueError as error:
             failure = str(error)
         except Exception as error:  # unforeseen: the caller gets the text, and the run goes on
-            failure = unforeseen(error)
+            failure = reason_of(error)
             self._report.event("request", f"a request is refused: {failure}", ERROR)
         return self.time, failure
 
     def _idle(self, reason: str) -> None:
         """Wait for one tick while something holds the run; /clock continues."""
-        self._sample_begun = None
+        self._next_sample.forget()
         if reason != self.standing:
             before, self.standing = self.standing, reason
-            if not waited_for(reason) <= waited_for(before):  # a shorter list of the same needs no line
+            if not parts_of_reason(reason) <= parts_of_reason(before):  # a shorter list of the same needs no line
                 self._report.info(reason)
         now = time.monotonic()
         self.output.clock.repeat(self._stamp, now)
@@ -191,9 +190,9 @@ class RunLoop:
             return not self.requests.wait(pause) and pause == delay
         return True
 
-    def _next_sample(self) -> None:
+    def _publish_next(self) -> None:
         """Advance to the next sample and publish it."""
-        if self._next_time > self._simulation.time and not self._advance():
+        if self._next_time > self._simulation.time and not self._next_sample.advance(self._next_time):
             return
         if self.samples_published > 0 or not self.output.start_is_known:
             self.output.publish(self.samples_published, last=self.samples_published == self._last_sample)
@@ -207,25 +206,9 @@ class RunLoop:
             self.gate.count_step(self.time)
         self.samples_published += 1
 
-    def _advance(self) -> bool:
-        """Advance to the next sample; False if a request or the end of the run interrupts it."""
-        if self._sample_begun is None:
-            self._sample_begun = time.monotonic()
-        since, requests = self._sample_begun, self.requests
-        while True:  # a step ends where commands take effect
-            instant = self.inputs.next_instant(self._next_time)
-            if not self._simulation.advance(instant, lambda: requests.interrupt(since)):
-                return False
-            if instant == self._next_time:
-                break
-            self.inputs.act()
-            if requests.interrupt(since):
-                return False
-        self._sample_begun, self.inputs.acted = None, 0
-        return True
-
     def _fail(self, reason: str) -> None:
-        self.gate.failed, self._sample_begun = True, None
+        self.gate.failed = True
+        self._next_sample.forget()
         self.gate.end_steps(self.time, reason)
         then = "this run ends here, with status 1" if self.given_up else "reset starts it again"
         self._report.begin("stopped", f"{reason}; {then}", ERROR)
@@ -243,12 +226,6 @@ class RunLoop:
         """Simulation time [ns] of the last sample; before the first one, its own."""
         return nanoseconds(max(0, self.samples_published - 1), self._parameters.values.rate)
 
-    def _meant(self, stamp: float) -> float:
-        """A controller's `stamp` [s], or the instant [s] of a sample if the two differ by rounding alone."""
-        rate = self._parameters.values.rate
-        instant = round(stamp * rate) / rate
-        return instant if abs(instant - stamp) < STAMP_ERROR else stamp
-
     # Requests, executed between two samples.
 
     def take_law(self, law: Law, origin: float) -> None:
@@ -260,7 +237,7 @@ class RunLoop:
         """Put the command in a `message` into a `queue`; log a refusal."""
         try:
             stamp, values = queue.read(message)
-            queue.add(self._meant(stamp), values)
+            queue.add(on_sample(stamp, self._parameters.values.rate), values)
         except ValueError as error:
             self._report.event(queue.topic, f"{MESSAGES[queue.topic]} refused: {error}", ERROR, differing=True)
 
@@ -308,13 +285,14 @@ class RunLoop:
         if simulation is not None and values is not None:
             self._parameters.begin(values, simulation.scene, sensors)
             self._publishers.begin(simulation)
-            self._simulation = self.gate.simulation = self.laws.simulation = simulation
+            self._simulation = self._next_sample.simulation = self.gate.simulation = self.laws.simulation = simulation
             self.servo_limit.begin(simulation)
             self.pace.period = 1.0 / values.rate
         self._lateness.end(self.time)
         now = time.monotonic()
         self.time, self.samples_published = 0.0, 0
-        self.gate.failed, self._sample_begun = False, None
+        self.gate.failed = False
+        self._next_sample.forget()
         self.output.restart(self._simulation)
         self.wall_time, self._lap = 0.0, now
         self._report.end("stopped")
@@ -322,13 +300,3 @@ class RunLoop:
         self.laws.reset()
         self.inputs.begin(self._simulation, self._parameters.values)
         self._report.info("reset to t = 0 s")
-
-
-def waited_for(reason: str) -> set[str]:
-    """The parts of a `reason` to wait; or the whole reason, if it is another."""
-    return {*reason.removeprefix("waiting for ").split(", ")}
-
-
-def unforeseen(error: Exception) -> str:
-    """An `error` that no argument explains, in one line with its kind."""
-    return f"{type(error).__name__}: {one_line(error)}"

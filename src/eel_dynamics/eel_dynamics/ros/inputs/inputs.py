@@ -4,11 +4,11 @@
 from eel_common.ros.loop.diagnostics import Report
 
 from eel_dynamics.model.fins.fins import commanded_names
-from eel_dynamics.ros.command_messages import interfaces_of
-from eel_dynamics.ros.loop.awaited import FINS, JOINTS, WRENCH, Awaited, wanted_inputs
-from eel_dynamics.ros.loop.command_queue import STAND_IN, FinCommands, JointCommands
-from eel_dynamics.ros.loop.current_taker import Currents
-from eel_dynamics.ros.loop.wrench_taker import ExternalWrenches
+from eel_dynamics.ros.inputs.awaited import FINS, JOINTS, WRENCH, Awaited, wanted_inputs
+from eel_dynamics.ros.inputs.command_messages import interfaces_of
+from eel_dynamics.ros.inputs.command_queue import STAND_IN, FinCommands, JointCommands
+from eel_dynamics.ros.inputs.current_taker import Currents
+from eel_dynamics.ros.inputs.wrench_taker import ExternalWrenches
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.wrench_frames import wrench_frames
 from eel_dynamics.simulation.simulation import Simulation

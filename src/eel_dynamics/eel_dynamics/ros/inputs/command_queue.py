@@ -21,8 +21,8 @@ from eel_gaits.laws.law import Law
 from eel_dynamics.model.fins.fins import checked_commands, commanded_names
 from eel_dynamics.model.robot.joint_signs import message_limits, message_sign
 from eel_dynamics.model.robot.robot import Robot
-from eel_dynamics.ros.command_messages import Values, fin_command_from_message, joint_command_from_message
-from eel_dynamics.ros.loop.awaited import FINS, JOINTS, MESSAGES, Awaited
+from eel_dynamics.ros.inputs.awaited import FINS, JOINTS, MESSAGES, Awaited
+from eel_dynamics.ros.inputs.command_messages import Values, fin_command_from_message, joint_command_from_message
 from eel_dynamics.simulation.simulation import Simulation
 
 IN_A_ROW = 4  # commands that make a stream

@@ -6,9 +6,9 @@ from typing import Any
 
 from eel_common.ros.loop.diagnostics import Report
 
-from eel_dynamics.ros.command_messages import Values, wrench_from_message
-from eel_dynamics.ros.loop.awaited import WRENCH, Awaited
-from eel_dynamics.ros.loop.command_queue import CommandQueue
+from eel_dynamics.ros.inputs.awaited import WRENCH, Awaited
+from eel_dynamics.ros.inputs.command_messages import Values, wrench_from_message
+from eel_dynamics.ros.inputs.command_queue import CommandQueue
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.wrench_frames import Frames, wrench_frames
 from eel_dynamics.simulation.simulation import Simulation

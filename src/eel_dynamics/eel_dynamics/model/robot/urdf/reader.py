@@ -27,8 +27,8 @@ from eel_dynamics.model.body.body import Body
 from eel_dynamics.model.body.links import BASE, OF_LINKS, joint_drag_of
 from eel_dynamics.model.robot.actuators import Servo
 from eel_dynamics.model.robot.joint import LONGEST_NAME, Joint
-from eel_dynamics.model.robot.urdf_chain import ChainJoint, Link, UrdfChain
-from eel_dynamics.model.robot.urdf_elements import UNLIMITED, fail, float_of, name_of, number_of
+from eel_dynamics.model.robot.urdf.chain import ChainJoint, Link, UrdfChain
+from eel_dynamics.model.robot.urdf.elements import UNLIMITED, fail, float_of, name_of, number_of
 
 STRAIGHT = 0.02  # of the length: greatest distance of a joint from the line
 UPRIGHT = 0.8  # z component of the chain's direction beyond which the base link's z is not up

@@ -10,7 +10,7 @@ import numpy as np
 from eel_common.files.xml_tree import Element
 from eel_common.wording import shown
 
-from eel_dynamics.model.robot.urdf_elements import fail, name_of, number_of, origin_of, positive_of, vector_of
+from eel_dynamics.model.robot.urdf.elements import fail, name_of, number_of, origin_of, positive_of, vector_of
 
 MOVABLE = ("revolute", "continuous")
 NEEDED = "a chain of revolute joints"
