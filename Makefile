@@ -2,7 +2,7 @@
 # The two commands are `make demo` and `make test`; each does all the set-up itself, inside this folder.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: docs wheels notebook evidence pictures help demo test sanitize aarch64 validation build bench lint soak robustness clean
+.PHONY: docs wheels alone notebook evidence pictures help demo test sanitize aarch64 validation build bench lint soak robustness clean
 RUN := tools/run.sh
 
 help:   ## this list
@@ -34,6 +34,9 @@ docs: build   ## the site of docs/ in out/docs with its gallery, links checked
 
 wheels: build   ## wheels of the library without ROS, in out/wheels (ARGS=test also installs them on a bare machine)
 	@$(RUN) tools/wheels/build.sh $(ARGS)
+
+alone: build   ## each package built and tested with those it depends on alone (ARGS=NAME for some), in out/alone
+	@tools/each_package.sh $(ARGS)
 
 notebook: build   ## run docs/tutorials/swim.ipynb anew, with its outputs in out/notebook
 	@$(RUN) tools/docs.sh notebook

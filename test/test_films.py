@@ -18,6 +18,7 @@ from eel_dynamics import Body, Scene, simulate
 
 ROOT = Path(__file__).resolve().parents[1]
 LAMPREY = ROOT / "docs" / "data" / "lamprey_midlines.csv"
+HINGES = sorted(LAMPREY.parent.glob("tendon_fish_hinges_*.csv"))
 PLANAR = Scene(planar=True, friction="blended", internal_wrench=False)
 
 
@@ -27,6 +28,11 @@ def test_a_noisy_film_swims_as_fast_as_the_motion_that_was_filmed():
     (found,) = speeds_of([beat], body, PLANAR)
     true = simulate(WAVE, "settled", body=body, scene=PLANAR, accuracy=1e-2).mean_speed
     assert found == pytest.approx(true, rel=0.05)  # the noise is 6 % of the points' distance
+
+
+@pytest.mark.parametrize("path", [LAMPREY, *HINGES], ids=lambda path: path.stem)
+def test_published_films_are_not_doubted(path):
+    assert beat_of(read_film(path), rigid=0.64 if path in HINGES else 0.0).doubts == []
 
 
 def speed_told(path, capsys):

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Films that lie are told, with the names of the points; good films are not."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from eel_gaits.film.beat import beat_of
@@ -12,7 +10,6 @@ from measured import midline_of
 
 from eel_gaits import Law, Term
 
-DATA = Path(__file__).resolve().parents[3] / "docs" / "data"
 ARC = np.linspace(0.0, 1.0, 10)
 NAMES = tuple(f"p{place}" for place in range(10))
 ASIDE = np.array([0.6, 0.8])  # across the way of `swimming` and along it
@@ -32,13 +29,7 @@ def read(tmp_path, points):
     return read_film(path, units="px", scale=1e-3, rate=50.0)
 
 
-@pytest.mark.parametrize("name", sorted(path.name for path in DATA.glob("tendon_fish_hinges_*.csv")))
-def test_films_of_a_robot_by_its_hinges_are_not_doubted(name):
-    assert beat_of(read_film(DATA / name), rigid=0.64).doubts == []
-
-
 def test_good_films_are_not_doubted():
-    assert beat_of(read_film(DATA / "lamprey_midlines.csv")).doubts == []
     for seed in range(6):
         assert doubts(seen(seed)) == []
     nearer = swimming(noise=2e-3, arc=ARC) * (1.0 + 0.2 * TIMES / TIMES[-1])[:, None, None]  # to the camera

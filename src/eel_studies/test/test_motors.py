@@ -2,7 +2,6 @@
 """Whether motors follow a gait: figures of joints, tables over a field of the robot, tails, and the command."""
 
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,7 +14,6 @@ from eel_gaits import falling, straight
 
 SERVOS = Robot.named("eight_servos")
 SWIM = Swim(straight(), Body.boyer2010(), Scene(planar=True), Accuracy.of("draft"), duration=8.0)
-TUTORIAL = Path(__file__).resolve().parents[3] / "docs" / "tutorials" / "motors.md"
 
 
 def test_figures_are_those_of_the_run():
