@@ -225,7 +225,7 @@ PARTS = {  # names of what there is with each robot, and with each fin
     "while running, paused, and after a reset with another robot, other fins and another body",
     "refused, or acted on within the limits; the node publishes as before",
 )
-@pytest.mark.parametrize("factor", ["1.0", "0.0"])
+@pytest.mark.parametrize("factor", ["1.0", pytest.param("0.0", marks=pytest.mark.soak)])
 def test_the_dynamics_node_stands_any_command(start, network, fresh_domain, tmp_path, factor):
     other = tmp_path / "tail.yaml"
     other.write_text(TAIL)
@@ -274,6 +274,7 @@ def test_the_dynamics_node_stands_any_command(start, network, fresh_domain, tmp_
 @pytest.mark.fault(
     "time", "/clock with a negative time, or any other", "said and left out; the gait generator goes on with the next"
 )
+@pytest.mark.soak
 def test_the_gait_generator_stands_any_message(start, network, fresh_domain):
     node = start("gait_generator")
     send_extremes(network, node, "gait_generator")
@@ -306,6 +307,7 @@ def positions(path) -> list:
     "any topic of a swimmer with any extreme in any field, cut short, or with text that is no UTF-8",
     "the visualiser leaves out what it cannot show, and shows what comes next",
 )
+@pytest.mark.soak
 def test_the_visualiser_stands_any_message(start, network, tmp_path):
     node = start("visualiser", "--ros-args", "-p", "sink:=[save]", "-p", f"recording:={tmp_path}/run.rrd")
     node.wait_for_output("saving to", LIMIT)
@@ -345,6 +347,7 @@ def followed(network, name, node) -> None:
     "odom, goals and swim_state with any extreme, any stamp (one that lies years ahead too), cut short, or huge",
     "said and left out, or begun with anew; the pilot answers the next odom, each call, and a signal at once",
 )
+@pytest.mark.soak
 def test_the_pilot_stands_any_message(start, network):
     node = start("pilot", "--ros-args", "-p", "torque_limit:=1.0")
     send_extremes(network, node, "pilot", {"/swim_state"})
@@ -368,6 +371,7 @@ def test_the_heading_controller_stands_any_message(start, network):
     "the same messages to the node `markers`",
     "it leaves out what it cannot show, and shows what comes next",
 )
+@pytest.mark.soak
 def test_the_markers_stand_any_message(start, network):
     node = start("markers")
     send_extremes(network, node, "markers")
@@ -391,7 +395,9 @@ def test_the_markers_stand_any_message(start, network):
     "SIGINT or SIGTERM in the middle of a flood of huge messages and jumping stamps, to any node",
     "prompt exit, status 0, no traceback",
 )
-@pytest.mark.parametrize("name", NODES)
+@pytest.mark.parametrize(
+    "name", [name if name in CALLED else pytest.param(name, marks=pytest.mark.soak) for name in NODES]
+)
 def test_a_signal_ends_any_node_in_a_flood(start, network, tmp_path, name):
     number = signal.SIGINT if len(name) % 2 else signal.SIGTERM
     files = ("-p", "sink:=[save]", "-p", f"recording:={tmp_path}/run.rrd") if name == "visualiser" else ()

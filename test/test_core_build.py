@@ -50,6 +50,7 @@ def test_compiler_without_cxx20(configure, tmp_path):
     assert "missing: C++20" in said and "apt-get install g++" in said
 
 
+@pytest.mark.soak
 def test_no_pybind11(configure):
     said = configure("-DCMAKE_DISABLE_FIND_PACKAGE_pybind11=ON")
     assert "missing: pybind11" in said and "apt-get install pybind11-dev" in said and "pip install pybind11" in said
@@ -71,7 +72,8 @@ exec "$@"
 
 
 @pytest.mark.timeout(400)
-@pytest.mark.parametrize("compiles", [False, pytest.param(True, marks=pytest.mark.soak)])
+@pytest.mark.soak
+@pytest.mark.parametrize("compiles", [False, True])
 def test_pip_installs_the_library_without_ros(tmp_path, compiles):
     """`pip install ./src/eel_{common,core,gaits,dynamics}` gives `simulate`. Of the module that it compiles for
     another level the build has no objects."""

@@ -38,6 +38,7 @@ def test_every_script_is_named_and_can_be_imported():
         assert callable(importlib.import_module(name).main)
 
 
+@pytest.mark.soak
 def test_figures_of_the_paper(tmp_path):
     assert figures.main(["--accuracy", "draft", "--format", "png", "--out", str(tmp_path)]) == 0
     assert {path.stem for path in tmp_path.glob("*.png")} == set(figures.FIGURES)
@@ -50,6 +51,7 @@ def test_a_law_of_swimming(monkeypatch, tmp_path):
     assert (tmp_path / "law.png").stat().st_size > 5000
 
 
+@pytest.mark.soak
 def test_steering(monkeypatch, tmp_path):
     monkeypatch.setattr(steering, "GAITS", dict([next(iter(ballast.GAITS.items()))]))
     monkeypatch.setattr(steering, "LOOKS", steering.LOOKS[:1])
@@ -58,6 +60,7 @@ def test_steering(monkeypatch, tmp_path):
     assert (tmp_path / "steering.png").stat().st_size > 5000
 
 
+@pytest.mark.soak
 def test_drafting(monkeypatch, tmp_path):
     monkeypatch.setattr(cylinder, "SETTLE", 3)
     monkeypatch.setattr(cylinder, "MEASURED", 2)
@@ -84,6 +87,7 @@ def test_a_robot_log_with_its_band(tmp_path, capsys):
     assert "lateral_added_mass" in capsys.readouterr().out and "x_low" in out.read_text()
 
 
+@pytest.mark.soak
 def test_robots_swim_as_the_page_says():
     rows = {row[1]: row for row in robot_swims.amphibot()}
     before, after = rows["without the new terms"], rows["c_s 0, as its coasting says"]
@@ -103,6 +107,7 @@ def test_midlines_come_out_as_they_went_in(tmp_path, capsys):
     assert 0.0 < apart < 0.3 and (tmp_path / "fish.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.soak
 def test_delivered(tmp_path):
     assert delivered.main(["--count", "2", "--seed", "3", "--out", str(tmp_path)]) == 0
     assert (tmp_path / "delivered.png").is_file()

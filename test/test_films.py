@@ -43,6 +43,7 @@ def speed_told(path, capsys):
     return told, [float(each) for each in re.search(r"speed +([0-9.]+) m/s, ([0-9.]+) to ([0-9.]+) m/s", told).groups()]
 
 
+@pytest.mark.soak
 def test_two_points_that_a_tracker_lost_in_a_third_of_the_frames_leave_the_speed(tmp_path, capsys):
     points, draw = 1e3 * swimming(noise=1e-3, arc=ARC), np.random.default_rng(6)
     scores = np.full(points.shape[:2], 0.9)

@@ -40,7 +40,7 @@ from eel_gaits import Law, Term
 
 LIMIT, SECONDS = 4000, 20  # MB of address space, and s of wall time, of a case
 LONGEST = 330  # characters of a line
-SEED, FEW, MANY = 56, 300, 5000
+SEED, FEW, MANY = 56, 100, 5000
 # what Python or numpy says of an error that nobody foresaw
 FOREIGN = re.compile(
     r"Traceback|__init__|NoneType|unhashable|object is not|has no attribute|positional argument|unexpected keyword|"

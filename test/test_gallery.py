@@ -65,6 +65,7 @@ def colours_in(page: browser.Page) -> list:
 
 
 @needs_browser
+@pytest.mark.soak
 def test_a_click_opens_the_recording_in_the_page_s_theme_its_time_runs_and_nothing_leaves_the_site(opened, site):
     page, theme = opened
     end = time.monotonic() + 180.0

@@ -126,6 +126,7 @@ def test_the_page_names_the_controller():
     assert 90 <= lines <= 130, lines
 
 
+@pytest.mark.soak
 def test_a_parameter_file_for_all_nodes_makes_none_warn_of_the_others_names(start, tmp_path):
     """One file with names of each node under /**; a name that nobody has is named by the node that has one like it."""
     path = tmp_path / "all.yaml"

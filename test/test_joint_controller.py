@@ -56,6 +56,7 @@ def test_it_holds_heading_and_depth_in_lockstep_as_in_one_process(start, fresh_d
         library.advance((k + 1) / 50.0)
 
 
+@pytest.mark.soak
 def test_it_holds_heading_and_depth_where_nobody_waits(start, fresh_domain):
     poses, said = swim_with(start, fresh_domain, "real_time_factor:=3", "accuracy:=draft")
     assert holds(poses[14.0]), said

@@ -112,6 +112,7 @@ def test_a_name_of_its_own(start, fresh_domain):
     "two dynamics nodes with the same topics",
     "the later one publishes nothing; both say ERROR, with the other's name, host, process and start",
 )
+@pytest.mark.soak
 def test_two_dynamics_nodes_with_the_same_topics(start, fresh_domain):
     swim = SwimClient(domain=fresh_domain, topics=("head_pose",), clock=True)
     swim.laws.publish(law_to_message(falling()))

@@ -6,10 +6,13 @@ import io
 import json
 from pathlib import Path
 
+import pytest
+
 NOTEBOOK = Path(__file__).resolve().parents[1] / "docs" / "tutorials" / "swim.ipynb"
 SMALL = 200_000  # bytes, pictures included
 
 
+@pytest.mark.soak
 def test_every_cell_runs_in_order(tmp_path, monkeypatch):
     import matplotlib
 

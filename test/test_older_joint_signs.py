@@ -128,6 +128,7 @@ def test_joints_of_an_older_bag_have_the_signs_of_today(run, bags):
     assert np.array_equal([each.torque for each in told], run.motor_torque * [-1.0, 1.0, -1.0, -1.0])
 
 
+@pytest.mark.soak
 def test_an_older_bag_of_an_imposed_motion_has_its_pitch_turned(tmp_path):
     """There the joints are those of `yaw_joints` and `pitch_joints`, and the body has none."""
     swum = simulate(straight(), 0.2, sample_period=0.02, load=True, estimate=False)
@@ -136,6 +137,7 @@ def test_an_older_bag_of_an_imposed_motion_has_its_pitch_turned(tmp_path):
     assert len(states) == len(swum.time) and all(each.position.tolist() == [0.1, -0.2] for each in states)
 
 
+@pytest.mark.soak
 def test_an_older_bag_is_replayed(bags, tmp_path, capsys):
     numbers = []
     for bag in bags:

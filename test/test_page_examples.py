@@ -26,7 +26,8 @@ from eel_gaits import straight
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 BLOCK = re.compile(r"(?:<!-- (listing)[^\n]*-->\n)?^```([^\n`]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-DEAR = ("gallery",)  # `make docs` runs it too
+DEAR = ("bag_to_figure", "gallery", "identify", "index", "motions", "motors", "optimise", "own_controller")
+DEAR += ("own_robot", "pilot", "recordings", "scenes", "sensors", "sweeps")  # a second or more; the README stays
 RUN = ("eel simulate", "eel identify", "eel ballast")
 FOREIGN = ("colcon", "dask", "export", "pip", "python", "python3", "rerun", "rosdep", "source", "sudo", "touch")
 FOREIGN += ("ekf_node", "robot_state_publisher", "ros2_control_node", "rviz2", "spawner")  # of ROS 2

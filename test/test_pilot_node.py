@@ -78,6 +78,7 @@ def test_a_short_course_is_swum_and_goals_that_do_not_fit_are_refused(start, fre
     swim.close()
 
 
+@pytest.mark.soak
 def test_fins_in_place_of_a_keel_hold_the_roll_of_a_piloted_swim(start, fresh_domain):
     """A course with a turn and a dive; the fins follow the roll, and both nodes end without a word of error."""
     swim = SwimClient(domain=fresh_domain, topics=("head_pose", "odom"))

@@ -88,6 +88,7 @@ def test_a_disk_that_is_full(start, fresh_domain, tmp_path):
     "SIGKILL while the visualiser and `eel record` record",
     "what was recorded up to about a second before opens, the recording as `run.part.rrd`; the run goes on",
 )
+@pytest.mark.soak
 def test_what_is_killed_leaves_what_it_had(start_to_kill, fresh_domain, tmp_path):
     start = start_to_kill
     node = visualise(start, "sink:=[save]", f"recording:={tmp_path / 'run.rrd'}")
@@ -149,6 +150,7 @@ time.sleep(1000)
     "the viewer gets data again once it reads",
 )
 @pytest.mark.fault("nodes", "a viewer that is killed and started again", "said; the visualiser finds the new one")
+@pytest.mark.soak
 def test_a_viewer_that_stops_reading_or_is_killed(start, fresh_domain, tmp_path):
     """A server in the viewer's place, which takes what a viewer would, without drawing it."""
     port = free_port()

@@ -80,6 +80,7 @@ def masses(recording) -> np.ndarray:
     "it finds the law on the network and swims from 0; a third recording; the late one has body, law and what follows",
 )
 @pytest.mark.timeout(240)
+@pytest.mark.soak
 def test_nodes_die_and_come_back(start_to_kill, fresh_domain, tmp_path):
     start = start_to_kill
     swim = SwimClient(domain=fresh_domain, topics=("curvature",))

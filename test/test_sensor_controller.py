@@ -71,6 +71,7 @@ def test_it_holds_heading_and_depth_by_an_imu_and_a_pressure_gauge(example):
     assert rows[-1, 0, 0] == pytest.approx(0.6, abs=0.15) and rows[-1, 0, 3] == pytest.approx(-0.3, abs=0.1)
 
 
+@pytest.mark.soak
 def test_over_topics_it_swims_as_in_one_process(example, start, fresh_domain):
     """To 1e-5 m after 4 s: servos at their limits make round-off grow, 1e-7 m was seen."""
     swim = SwimClient(domain=fresh_domain, topics=())

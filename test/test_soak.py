@@ -27,6 +27,7 @@ MOST = 600.0  # MB of any node: histories of 5,000 samples on both sides, librar
     "load", "five seconds as fast as possible, a subscriber on every topic", "no sample lost, memory bounded"
 )
 @pytest.mark.timeout(400)
+@pytest.mark.soak
 def test_five_seconds(start, fresh_domain):
     result = soak(start, SHORT, limit=300.0, look=0.1)
     assert set(result.counts.values()) == {round(SHORT * RATE) + 1}, result.counts

@@ -67,6 +67,7 @@ def test_the_nodes_swim_without_shared_memory(without_shared_memory, fresh_domai
 
 
 @pytest.mark.fault("names", "Python without asserts and docstrings (`-OO`)", "the three nodes swim and end")
+@pytest.mark.soak
 def test_the_nodes_swim_without_asserts_and_docstrings(fresh_domain, tmp_path):
     swims(tmp_path / "run.rrd", PYTHONOPTIMIZE="2")
 
@@ -75,6 +76,7 @@ def test_the_nodes_swim_without_asserts_and_docstrings(fresh_domain, tmp_path):
     "names", "`eel sweep` without /dev/shm", "threads sweep; processes: one line with what to do, status 2"
 )
 @pytest.mark.parametrize(("more", "status"), [((), 0), (("--scheduler", "processes"), 2)])
+@pytest.mark.soak
 def test_a_sweep_without_shared_memory_says_what_to_do(without_shared_memory, tmp_path, more, status):
     words = f"eel sweep straight --vary period=0.9,1.0 --duration 0.1 --out {tmp_path / 's.nc'}".split()
     done = subprocess.run([*without_shared_memory, *words, *more], capture_output=True, text=True, timeout=120)

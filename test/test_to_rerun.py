@@ -21,7 +21,7 @@ from eel_viz.recording.dispatcher import READERS
 from eel_viz.recording.reading import read
 from rclpy.serialization import deserialize_message
 
-from eel_dynamics import Scene, simulate
+from eel_dynamics import Body, Scene, simulate
 from eel_gaits import falling, straight
 from eel_msgs.msg import CurvatureLaw
 from eel_viz import entities
@@ -97,14 +97,15 @@ def properties(path, group):
 
 
 def test_a_recording_says_what_it_is_of(tmp_path):
-    swim = simulate(straight(period=0.5), duration=3.0, accuracy=1e-3, scene=Scene(friction="laminar"))
+    swim = simulate(straight(period=0.5), duration=3.0, accuracy=1e-3, scene=Scene(friction="laminar", density=500.0))
     swim.to_rerun(tmp_path / "swim.rrd", load=False, numbers={"colour": "red", "trial": 3})
     of = partial(properties, tmp_path / "swim.rrd")
     assert of("numbers") == {"colour": "red", "trial": 3.0}
     assert of("swim")["gait"] == "straight" and of("swim")["duration"] == 3.0
     assert of("swim")["version"] == software()
     assert law_of(json.loads(of("law")["json"])) == swim.law and of("law")["period"] == 0.5
-    assert (of("body")["length"], of("body")["mass"]) == (1.0, pytest.approx(swim.body_mass))
+    half = pytest.approx(0.5 * Body.boyer2010().mass)  # the mass that swam
+    assert of("body")["length"] == 1.0 and of("body")["mass"] == half == dict(messages_of_run(swim))["body"].mass
     assert of("scene")["friction"] == "laminar" and of("scene")["wake"] is True
     assert of("accuracy")["target"] == 1e-3
     assert of("error_estimate")["position"] == swim.error_estimate.position
@@ -230,7 +231,7 @@ def test_a_full_disk_leaves_the_older_file(form, small_disk, capsys):
     assert out.read_bytes() == older and sorted(os.listdir(small_disk)) == ["other", out.name]
 
 
-@pytest.mark.parametrize("short", [10, 100, 1000, 10_000, 100_000, 10_000_000])
+@pytest.mark.parametrize("short", [10, 1000, 10_000_000])
 def test_a_recording_is_whole_or_not_there(run, short, tmp_path, limit_of_files):
     """Past a limit of the size of files: in the index at the end, in the middle, and at the first bytes.
 

@@ -67,6 +67,15 @@ def test_names_of_columns_end_in_their_units():
     assert is_table("A.CSV") and not is_table("a.npz") and is_table("a.NPZ", ".npz")
 
 
+def test_arrays_of_an_archive_are_columns_row_by_row_also_where_they_are_square(tmp_path):
+    square, time, arc = np.arange(9.0).reshape(3, 3), np.array([0.0, 0.1, 0.2]), np.array([0.0, 0.5, 1.0])
+    np.savez(tmp_path / "a.npz", time=time, arc=arc, y=square)
+    table = read_table(tmp_path / "a.npz")
+    assert np.array_equal(table.column("y"), square.ravel())
+    assert np.array_equal(table.column("time"), np.repeat(time, 3))
+    assert np.array_equal(table.column("arc"), np.tile(arc, 3))
+
+
 DATES = 1764340000.0 + TIME
 
 

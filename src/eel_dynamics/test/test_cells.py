@@ -55,7 +55,9 @@ def test_a_batch_shows_its_paths_and_a_table_of_the_first():
 def test_a_body_shows_its_outlines_and_its_mass():
     body = Body.boyer2010()
     _, text = shown(body)
-    assert "mass 1.944 kg" in text and "width at most" in text
+    assert "length 1 m, mass 1.944 kg, mean density 1000 kg/m^3" in text and "width at most" in text
+    heavy = shown(body.changed(mass_per_length=2.0))[1]
+    assert f"mass 2 kg, mean density {2.0 / body.volume:.4g} kg/m^3" in heavy
     assert max(
         np.max(line.get_ydata()) for line in body.plot().axes[0].lines if len(line.get_ydata()) > 2
     ) == pytest.approx(

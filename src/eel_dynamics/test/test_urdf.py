@@ -59,6 +59,11 @@ def test_a_chain_of_boxes_becomes_joints_and_a_body(tmp_path):
     assert all("becomes" in note for note in robot.notes)  # the rounded nose has less mass than its link
 
 
+def test_a_chain_of_two_links_is_a_robot_of_one_joint(tmp_path):
+    (only,) = robot_of(tmp_path, chain(links=2)).joints
+    assert (only.name, only.position) == ("j1", pytest.approx(0.1))
+
+
 def test_a_base_at_the_tail_keeps_the_sign_of_its_angles(tmp_path):
     """A positive turn about z of the part ahead bends the robot to the left, as one of the part behind to the right."""
     from_nose, from_tail = robot_of(tmp_path, chain()), robot_of(tmp_path, chain(sign=1))

@@ -201,9 +201,12 @@ def test_a_law_of_rows_is_saved_read_and_pickled(tmp_path):
         ({}, []),
         ({"time": (lambda t: np.where(t == 0.4, 0.1, t))}, ["line 422", "time must rise, got 0.1 s after 0.38 s"]),
         ({"time": (lambda t: np.where(t > 1.0, t + 0.5, t))}, ["lines 1052 to 1093", "a gap of 0.52 s", "quarter"]),
-        (
-            {"x": (lambda x: 1.4 * x), "y": (lambda y: 1.4 * y)},
-            ["lines 2 to ", "as long as the body, 1 m", "scale of 0.714"],
+        *(
+            (
+                {name: (lambda each, by=by: by * each) for name in "xy"},
+                ["lines 2 to ", f"body, 1 m, got {by:.4g}", "scale"],
+            )
+            for by in (0.67, 0.94, 1.06)
         ),
         ({"x": (lambda x: np.where(np.arange(len(x)) == 30, np.nan, x))}, ["line 32", "x must be finite, got nan"]),
         ({"arc_length": (lambda s: np.where(np.arange(len(s)) == 30, 0.4, s))}, ["line 32", "arc_length must rise"]),

@@ -305,8 +305,8 @@ def test_unknown_and_bad_parameters_are_named_in_one_line():
 
 
 def test_step_and_render_before_reset_are_refused():
-    env = HeadingEnv(render_mode="rgb_array")
-    for act in (lambda: env.step([0.0]), env.render):
+    env, envs = HeadingEnv(render_mode="rgb_array"), gymnasium.make_vec("Eel/Heading-v0", num_envs=2)
+    for act in (lambda: env.step([0.0]), env.render, lambda: envs.step(np.zeros((2, 1)))):
         with pytest.raises(gymnasium.error.ResetNeeded):
             act()
 

@@ -46,7 +46,8 @@ def fitted(true_path, seed: int, factor: float = 0.0, **options):
     return identify(GUESS, path, gait="turning", **FAST | options)
 
 
-@pytest.mark.parametrize("factor", [pytest.param(0.0, marks=pytest.mark.soak), 0.7])
+@pytest.mark.soak
+@pytest.mark.parametrize("factor", [0.0, 0.7])
 def test_intervals_cover_the_truth_as_often_as_they_say(true_path, factor):
     """8 trials of 2 parameters: 0.95 of 16 is 15.2, and 12 or fewer have a chance of 1 %; the seeds are fixed.
 
