@@ -84,7 +84,7 @@ class Swim:
         return small.getvalue()
 
     def _shape(self, axes):
-        """Midlines over the strongest part of the swim, one period long, relative to the centre of mass."""
+        """Midlines of one period in the strongest part of the swim, relative to the centre of mass, the nose marked."""
         steps = round(self.period / SAMPLE)
         last = self.at(SHAPES.get(self.name, DURATION))
         moved = self.path[last] - self.path[last - steps]
@@ -95,13 +95,13 @@ class Swim:
             axes.plot(*line.T, color=plt.cm.cividis(k / 8.0), linewidth=1.0)
             axes.plot(*line[0], "o", color=plt.cm.cividis(k / 8.0), markersize=2.5)
         axes.set_aspect("equal", "datalim")
-        axes.set(title="shape over a period, from above", xlabel="m", ylabel="m")
+        axes.set(title="from above, dark to light; dot: nose", xlabel="m", ylabel="m")
 
     def _path(self, axes):
         axes.plot(self.path[:, 0], self.path[:, 1], color=BLUE, linewidth=1.2, label="from above: y")
         if np.ptp(self.path[:, 2]) > 1e-6:
             axes.plot(self.path[:, 0], self.path[:, 2], color=ORANGE, linewidth=1.2, label="from the side: z")
-        axes.plot(*self.path[0, :2], "o", color="black", markersize=3)
+        axes.plot(*self.path[0, :2], "o", color="black", markersize=3, label="start")
         axes.set_aspect("equal", "datalim")
         axes.legend()
         axes.set(title="path", xlabel="x [m]", ylabel="m")
@@ -116,7 +116,7 @@ class Swim:
         axes.grid(False)
         how = {"cmap": "PuOr", "vmin": -bound, "vmax": bound, "shading": "gouraud"}
         figure.colorbar(axes.pcolormesh(self.run.time[shown], self.run.x, torque.T, **how), ax=axes)
-        axes.set(title=f"torque C{component + 1} [N m]", xlabel="t [s]", ylabel="X [m]")
+        axes.set(title=f"torque C{component + 1} [N m]", xlabel="t [s]", ylabel="X from the nose [m]")
 
 
 ONCE = {"c_start": 2.0, "roll_over": 8.0, "falling": 9.0, "rising": 9.0, "diving": 6.0}  # s: what happens at the start

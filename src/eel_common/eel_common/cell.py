@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 BLUE, ORANGE, GREY = "#0072B2", "#D55E00", "#888888"  # the palette of Okabe and Ito
-STYLE: Any = {"font.size": 8.5, "axes.spines.top": False, "axes.spines.right": False}
+STYLE: Any = {"font.size": 8.5, "axes.titlesize": "medium", "axes.spines.top": False, "axes.spines.right": False}
 DOTS = 90  # per inch
 
 

@@ -42,6 +42,8 @@ SETTINGS: dict[str, Any] = {
 PICTURES = ".png", ".svg", ".pdf"
 METADATA = {".png": {"Software": None}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}  # None: left out
 COLOUR_BAR = "<colorbar>"  # label that matplotlib gives the axes of a colour bar
+WIDE = 5.0  # ratio of the greatest to the least value, above which an axis is logarithmic
+MOST_TICKS = 7
 PITCH_RAMPS = ((1.0, 3.0), (6.0, 8.0))  # s, intervals with pitch bends of the falling gait: t1 to t3 and t4 to t6
 
 
@@ -59,6 +61,40 @@ def legend_above(figure: Figure, columns: int = 2) -> None:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
             named.setdefault(label, handle)
     figure.legend(named.values(), named.keys(), loc="outside upper center", ncols=columns, frameon=False)
+
+
+def is_wide(values: Iterable[float]) -> bool:
+    """Whether the axis of these `values` is logarithmic: they are above 0 and range over more than `WIDE`."""
+    known = np.asarray([*values])
+    return bool(known.min() > 0.0 and known.max() > WIDE * known.min())
+
+
+def scale_axis(axes: Axes, values: Iterable[float], dimension: str = "x") -> None:
+    """Make the axis `dimension`, x or y, logarithmic where its `values` are wide; ticks are then among them."""
+    known = sorted({*values})
+    if is_wide(known):
+        getattr(axes, f"set_{dimension}scale")("log")
+        getattr(axes, f"{dimension}axis").set_minor_locator(_no_ticks())
+        ticks = known[:: -(-len(known) // MOST_TICKS)]
+        getattr(axes, f"set_{dimension}ticks")(ticks, [f"{each:.3g}" for each in ticks])
+
+
+def _no_ticks() -> Any:
+    from matplotlib.ticker import NullLocator
+
+    return NullLocator()
+
+
+def spread(values: Iterable[float], gap: float, low: float = -np.inf) -> np.ndarray:
+    """The `values` (n,), moved as little as possible until none is below `low` and no two are closer than `gap`."""
+    from scipy.optimize import isotonic_regression
+
+    given = np.asarray([*values], dtype=float)
+    order, steps = np.argsort(given, kind="stable"), gap * np.arange(len(given))
+    apart = np.empty_like(given)
+    if len(given):
+        apart[order] = np.maximum(isotonic_regression(given[order] - steps).x, low) + steps
+    return apart
 
 
 def along_way(points: np.ndarray, ahead: np.ndarray) -> np.ndarray:

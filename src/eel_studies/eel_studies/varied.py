@@ -22,14 +22,18 @@ import numpy as np
 from eel_common.quantity import number
 from eel_common.wording import shown
 from eel_dynamics.model.fins.fins import Fin, RollHold
+from eel_dynamics.model.flow.plain import KINDS
 from eel_dynamics.model.robot.actuators import Servo
 from eel_dynamics.model.robot.continuous import Muscle, PassiveTail
 from eel_dynamics.model.robot.joint import Joint
-from eel_gaits.gaits.numbers import Periodic
+from eel_gaits.gaits.registry import GAITS
 
 from eel_dynamics import Accuracy, Scene, Swim
-from eel_studies.points import point_at
+from eel_studies.points import POSITIONS, VELOCITIES, point_at
 
+PARTS = Scene, Fin, RollHold, Joint, Servo, PassiveTail, Muscle  # whose numbers have units
+UNITS = {"spin": "turns/s", "flow_speed": "m/s", "step": "s", "centre_of_mass_offset": "m", "mass_per_length": "kg/m"}
+UNITS |= dict.fromkeys(POSITIONS, "m") | dict(zip(VELOCITIES, ("rad/s",) * 3 + ("m/s",) * 3, strict=True))
 RESOLUTION = 36.0  # points per body length for given settings in time: the error in space stays below 1e-3
 
 
@@ -47,9 +51,11 @@ def varied(swim: Swim, values: dict[str, Any]) -> Swim:
 
 def labelled(name: str) -> str:
     """The `name` of a number for an axis, with its unit in brackets unless that depends on the part."""
-    kinds, field = (Scene, Fin, RollHold, Joint, Servo, PassiveTail, Muscle, Periodic), name.rpartition(".")[2]
+    group, _, field = name.rpartition(".")
+    gaits = () if group else (gait.numbers for gait in GAITS.values())
+    kinds = KINDS.values() if group == "flow" else (*PARTS, *gaits)
     units = {item.metadata.get("unit") for kind in kinds for item in fields(kind) if item.name == field}
-    unit = units.pop() if len(units) == 1 else ""
+    unit = UNITS.get(field) or (units.pop() if len(units) == 1 else "")
     return f"{name} [{unit}]" if unit else name
 
 

@@ -48,6 +48,11 @@ def test_blue_is_one_colour():
         ("fins.aspect_ratio", "fins.aspect_ratio"),
         ("robot.damping", "robot.damping"),  # of joints and of tails, in two units
         ("density_ratio", "density_ratio"),
+        ("spin", "spin [turns/s]"),
+        ("initial.v_x", "initial.v_x [m/s]"),
+        ("initial.omega_z", "initial.omega_z [rad/s]"),
+        ("flow.circulation", "flow.circulation [m^2/s]"),
+        ("body.centre_of_mass_offset", "body.centre_of_mass_offset [m]"),
     ],
 )
 def test_an_axis_has_the_unit_of_its_number(name, label):

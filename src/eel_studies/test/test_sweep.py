@@ -18,6 +18,7 @@ from eel_studies.points import SwimSettings, base_point, batch_of_points, point_
 from eel_studies.sweeps import command as sweep_command
 from eel_studies.sweeps.command import main
 from eel_studies.sweeps.sweep_key import key_of
+from eel_studies.sweeps.sweep_picture import draw_sweep
 
 from eel_dynamics import (
     Accuracy,
@@ -594,3 +595,52 @@ def test_a_sweep_varies_the_numbers_of_a_flow():
     point = point._replace(duration=1.0, sample_period=0.25, stations=2)
     swims = batch_of_points([point, point._replace(flow=None)], SwimSettings(("mean_speed",), False))
     assert not np.allclose(swims.position[0], swims.position[1])
+
+
+WORDS = "straight --duration 1.2 --accuracy 1e-2 --bare --measures mean_speed,head_x --vary period=0.5,0.8"
+
+
+@pytest.mark.parametrize(
+    "words, drawn",
+    [
+        ("--vary scene.friction=laminar", {"period [s]": "x"}),
+        ("--vary scene.friction=laminar,none", {"period [s]": "x", "scene.friction": "y"}),
+        ("--vary wavelength=0.2,1,2", {"period [s]": "x", "wavelength [m]": "y"}),
+    ],
+)
+def test_the_picture_names_axes_and_extremes(words, drawn, tmp_path, monkeypatch, capsys):
+    figures = []
+
+    def kept(figure, *arguments):
+        draw_sweep(figure, *arguments)
+        figures.append((figure, *arguments))
+
+    monkeypatch.setattr(sweep_command, "draw_sweep", kept)
+    outs = ["--out", str(tmp_path / "out.nc"), "--plot", str(tmp_path / "out.png")]
+    assert main([*WORDS.split(), *words.split(), *outs]) == 0
+    assert (tmp_path / "out.png").stat().st_size > 5000
+    ((figure, data, *_),) = figures
+    panels = [axes for axes in figure.axes if axes.get_title()]
+    assert [axes.get_title() for axes in panels] == ["mean speed [m/s]", "head x [m]"]
+    for axes, name in zip(panels, ("mean_speed", "head_x"), strict=True):
+        assert {axes.get_xlabel(): "x"} | ({axes.get_ylabel(): "y"} if axes.get_ylabel() else {}) == drawn
+        told = {f"least {float(data[name].min()):.3g}", f"most {float(data[name].max()):.3g}"}
+        assert {text.get_text() for text in axes.texts} == told
+        at = data[name].values.max()
+        (most,) = [line for line in axes.lines if line.get_marker() == "^"]
+        period = float(data.period[np.argwhere(data[name].values == at)[0][list(data[name].dims).index("period")]])
+        assert most.get_xdata()[0] == period
+    assert "mean_speed" in (said := capsys.readouterr().out) and "(period 0.5" in said
+
+
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        ("--vary period=1", "--plot needs one or two --vary with several values, got 0"),
+        ("--vary period=1,2 --vary wavelength=1,2 --vary body=boyer2010,kern2006", "several values, got 3"),
+    ],
+)
+def test_a_picture_needs_one_or_two_axes(words, message, tmp_path, capsys):
+    outs = ["--out", str(tmp_path / "out.nc"), "--plot", str(tmp_path / "out.png")]
+    assert main([*words.split(), *outs]) == 2 and message in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())

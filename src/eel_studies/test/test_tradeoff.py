@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The measured trade: errors against a converged run, fronts, poorer models, and what the command leaves behind."""
 
+from dataclasses import replace
+from io import BytesIO
+from itertools import combinations
 from pathlib import Path
 from shutil import copyfile
 from types import SimpleNamespace
@@ -9,11 +12,14 @@ import numpy as np
 import pytest
 from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.swim import AT_REST, Swim
+from eel_studies.pictures import spread
 from eel_studies.reference import front, reference_of
 from eel_studies.tradeoff import measuring, report
 from eel_studies.tradeoff.command import main
 from eel_studies.tradeoff.measuring import ASKED_FOR, REFERENCE, settings
-from eel_studies.tradeoff.report import _grouped
+from eel_studies.tradeoff.report import draw_trade
+from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from eel_dynamics import Accuracy, Body, Robot, Scene, SimulationStopped, simulate
 from eel_gaits import falling, straight
@@ -135,9 +141,41 @@ def test_a_scene_that_is_too_sensitive_for_its_reference_is_said(monkeypatch):
         reference_of(swim_of(straight(), Scene(density=10.0, reactive=False)), 1e-9)
 
 
-def test_names_of_terms_share_a_line_where_their_errors_are_close():
-    found = _grouped({"nose": 0.03, "wake": 0.2, "friction": 0.22, "drag": 0.8}, 0.1)
-    assert found == [(0.03, ["nose"]), (0.2, ["wake", "friction"]), (0.8, ["drag"])]
+def test_no_two_names_of_the_picture_overlap(trade):
+    row = trade.rows[0]
+    close = {f"target {k}": (1e-4 * (1.0 + 0.01 * k), 1.0 + 0.001 * k) for k in range(4)}
+    asked = [
+        replace(
+            row, accuracy=replace(row.accuracy, name=name), position=error, torque=error, seconds=row.seconds * slow
+        )
+        for name, (error, slow) in close.items()
+    ]
+    named = {each.accuracy.name: "" for each in asked}
+    figure = Figure(figsize=report.SIZE, layout="constrained")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(measuring, "ASKED_FOR", named)
+        draw_trade(figure, replace(trade, rows=[*trade.rows, *asked]))
+    figure.savefig(BytesIO())
+    for axes in figure.axes:
+        boxes = [Text.get_window_extent(text) for text in axes.texts]  # without arrows
+        assert len(boxes) == len(trade.terms) + len(named) + 1
+        for first, second in combinations(boxes, 2):
+            assert not first.overlaps(second)
+        assert all(axes.bbox.y0 <= box.y0 and box.y1 <= axes.bbox.y1 + 1.0 for box in boxes)
+
+
+@pytest.mark.parametrize(
+    "given, apart",
+    [
+        ([0.0, 3.0], [0.0, 3.0]),
+        ([1.0, 1.0, 1.0], [0.0, 1.0, 2.0]),
+        ([2.0, 0.2, 0.0], [2.0, 0.6, -0.4]),
+    ],
+)
+def test_values_are_spread_with_the_least_movement(given, apart):
+    assert spread(given, 1.0) == pytest.approx(apart)
+    assert spread(given, 1.0, low=0.0).min() >= 0.0 and np.diff(np.sort(spread(given, 1.0, low=0.0))).min() > 1.0 - 1e-9
+    assert len(spread([], 1.0)) == 0
 
 
 def test_command_leaves_pictures_a_page_and_a_table(tmp_path, capsys):

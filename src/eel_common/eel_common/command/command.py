@@ -49,12 +49,13 @@ def command(
     return main_of
 
 
-def checked_out(command: str, out: str, suffixes: tuple[str, ...]) -> Path:
-    """The path of an output of the `command`. Prints a notice if the file exists. `ValueError` for other suffixes."""
+def checked_out(command: str, out: str, suffixes: tuple[str, ...], option: str = "--out") -> Path:
+    """The path of an output of the `command`, given by its `option`. Prints a notice if the file exists. `ValueError`
+    for other suffixes."""
     path = Path(out)
     if path.suffix not in suffixes:
-        raise ValueError(f"--out must end in {', '.join(suffixes[:-1])} or {suffixes[-1]}, got {shown(out)}")
-    check_output("--out", path)
+        raise ValueError(f"{option} must end in {', '.join(suffixes[:-1])} or {suffixes[-1]}, got {shown(out)}")
+    check_output(option, path)
     if path.exists():
         print_to_stderr(command, f"{path} exists and will be overwritten")
     return path

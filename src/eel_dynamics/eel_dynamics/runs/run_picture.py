@@ -14,12 +14,13 @@ MOST_PATHS = 200
 def picture_of_run(run: Any) -> Any:
     """A matplotlib figure: the path of the head with the body at some instants, from above; speed; torque C3."""
     panels = 2 if run.torque is None else 3
-    made, (panels_of_row,) = figure(3.4 * panels, 2.5, (1, panels), width_ratios=[1.3, 1.0, 1.25][:panels])
+    made, (panels_of_row,) = figure(3.5 * panels, 2.5, (1, panels), width_ratios=[1.35, 1.0, 1.2][:panels])
     above, speed = panels_of_row[:2]
     for line in run.backbone[np.linspace(0, len(run.time) - 1, BODIES).astype(int)]:
         above.plot(line[:, 0], line[:, 1], color=BLUE, linewidth=1.6)
+        above.plot(line[0, 0], line[0, 1], "o", color=BLUE, markersize=3.5)
     above.plot(run.position[:, 0], run.position[:, 1], color=GREY, linewidth=0.7)
-    above.set(title="body and head's path, from above", xlabel="x [m]", ylabel="y [m]", aspect="equal")
+    above.set(title="body and path from above; dot: nose", xlabel="x [m]", ylabel="y [m]", aspect="equal")
     above.set_adjustable("datalim")
     speed.plot(run.time, np.linalg.norm(run.twist[:, 3:], axis=1), color=BLUE, linewidth=1.1)
     speed.set(title="speed of the head [m/s]", xlabel="time [s]", ylim=(0.0, None))
@@ -41,9 +42,13 @@ def picture_of_batch(batch: Any) -> Any:
     for k in chosen:
         kept = slice(0, int(batch.samples[k]))
         look = {"color": BLUE, "linewidth": 0.8, "alpha": max(0.15, 1.0 / len(chosen) ** 0.5)}
-        above.plot(batch.position[k, kept, 0], batch.position[k, kept, 1], **look)
+        above.plot(
+            batch.position[k, kept, 0], batch.position[k, kept, 1], **look, marker="o", markersize=3, markevery=[-1]
+        )
         speed.plot(batch.time[kept], np.linalg.norm(batch.twist[k, kept, 3:], axis=1), **look)
-    above.set(title=f"paths of {len(chosen)} heads, from above", xlabel="x [m]", ylabel="y [m]", aspect="equal")
+    above.set(
+        title=f"paths of {len(chosen)} heads (dot: end), from above", xlabel="x [m]", ylabel="y [m]", aspect="equal"
+    )
     above.set_adjustable("datalim")
     speed.set(title="speeds of the heads [m/s]", xlabel="time [s]", ylim=(0.0, None))
     return made

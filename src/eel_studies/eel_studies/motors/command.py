@@ -28,15 +28,13 @@ from eel_gaits import Law
 from eel_studies.motors.motor_figures import Comparison, MotorFigures, comparison, motor_swim, with_number, word_of
 from eel_studies.options import add_scene_options, chosen
 from eel_studies.outputs import Table, checked_outs, write_files
-from eel_studies.pictures import LOOKS, Figure, legend_above
+from eel_studies.pictures import LOOKS, Figure, legend_above, scale_axis
 from eel_studies.varied import labelled
 
 NAME = "eel motors"
 RECORDED = ".nc", ".mcap", ".db3"
 DEMAND = 8  # joints per axis, for the torques of an imposed swim
 MOST_VARIED = 2
-WIDE = 5.0  # ratio of the greatest to the least value, above which the axis is logarithmic
-MOST_TICKS = 7
 PANELS: dict[str, Callable[[MotorFigures], float]] = {
     "speed [m/s]": lambda figures: figures.speed,
     "tracking error [%]": lambda figures: 100.0 * figures.tracking_error,
@@ -150,11 +148,6 @@ def draw(figure: Figure, comparisons: Sequence[Comparison], panels: Panels) -> N
             style = {"color": colour, "linestyle": dash, "marker": mark, "markersize": 3.5, "linewidth": 1.2}
             axes.plot(x, y, label=each.named or None, **style)
         axes.set(xlabel=labelled(comparisons[0].field), ylabel=label)
-        known = sorted({value for each in comparisons for value in each.values if value is not None})
-        if known[0] > 0.0 and known[-1] > WIDE * known[0]:
-            axes.set_xscale("log")
-            axes.minorticks_off()
-            ticks = known[:: -(-len(known) // MOST_TICKS)]
-            axes.set_xticks(ticks, [f"{each:g}" for each in ticks])
+        scale_axis(axes, (value for each in comparisons for value in each.values if value is not None))
     if comparisons[0].named:
         legend_above(figure, len(comparisons))

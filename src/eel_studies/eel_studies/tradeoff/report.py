@@ -18,7 +18,7 @@ from eel_dynamics.accuracy.accuracy import PRESETS
 
 import eel_core
 from eel_studies.outputs import Table
-from eel_studies.pictures import BLACK, BLUE, GREEN, GREY, ORANGE, Axes, Figure
+from eel_studies.pictures import BLACK, BLUE, GREEN, GREY, ORANGE, Axes, Figure, spread
 from eel_studies.tradeoff.measuring import METHODS, REACHED, SECONDS, Measured, Trade
 
 COLUMNS: dict[str, Callable[[Measured], str]] = {  # head: text of a row
@@ -35,7 +35,8 @@ PARTS = "digits", "picture", "scenes"  # of the page
 LOOKS = {"adams": (BLUE, "o"), "dormand_prince": (GREEN, "s"), "classical": (ORANGE, "^")}
 SIZE = 11.0, 5.4  # inches
 FLOOR = 3.0  # times the reference's own error: smaller differences are not significant
-CLOSE = 0.04  # of a panel's height: closer names of terms share a line
+CLOSE, CLOSER = 0.044, 0.031  # of a panel's height: least distance of two names of settings, and of terms
+TERMS_AT, LINES_FROM = 0.41, 0.46  # of a panel's width: end of the names of terms, and begin of their lines
 
 
 def trade_table(trade: Trade, everything: bool = False) -> Table:
@@ -155,29 +156,22 @@ def _draw_panel(axes: Axes, trade: Trade, quantity: str, floor: float) -> None:
     if trade.asked:
         looks = {"markerfacecolor": "white", "markeredgecolor": BLACK, "markersize": 7, "linestyle": ""}
         plot(trade.asked, "D", **looks, label="presets and targets")
-    white = {"path_effects": [withStroke(linewidth=3, foreground="white")]}
-    for row in trade.asked:
-        beside = {"xytext": (-7, 3), "textcoords": "offset points", "ha": "right", **white}
-        axes.annotate(row.accuracy.name, (row.times_real_time, error(row)), **beside)
     terms = {name: error(errors) for name, errors in trade.terms.items() if error(errors) > floor}
     low, high = 0.1 * floor, max(3.0, 2.0 * max(terms.values(), default=1.0))
     axes.set(xscale="log", yscale="log", xlabel="times real time", ylim=(low, high))
     axes.set_xlim(0.2 * min(map(attrgetter("times_real_time"), trade.rows)), None)
     axes.axhspan(low, floor, color=GREY, alpha=0.25, linewidth=0)
-    across = {"transform": axes.get_yaxis_transform(), "va": "center"}
-    axes.text(0.98, 0.33 * floor, "as exact as the converged run itself", ha="right", **across)
-    for value in terms.values():
-        axes.axhline(value, zorder=0, color=GREY, linewidth=0.8, linestyle=(0, (5, 3)))
-    for value, names in _grouped(terms, CLOSE * np.log10(high / low)):
-        axes.text(0.01, value, "without " + ", ".join(names), fontsize="x-small", color=GREY, **across, **white)
-
-
-def _grouped(terms: dict[str, float], gap: float) -> list[tuple[float, list[str]]]:
-    """Names of terms whose errors lie within `gap` decades of the first one's, with that error, the least first."""
-    groups: list[tuple[float, list[str]]] = []
-    for name, value in sorted(terms.items(), key=lambda item: item[1]):
-        if groups and np.log10(value / groups[-1][0]) < gap:
-            groups[-1][1].append(name)
-        else:
-            groups.append((value, [name]))
-    return groups
+    across = axes.get_yaxis_transform()
+    axes.text(0.98, 0.33 * floor, "as exact as the converged run itself", ha="right", va="center", transform=across)
+    gap, closer = CLOSE * np.log10(high / low), CLOSER * np.log10(high / low)
+    beside = {"path_effects": [withStroke(linewidth=3, foreground="white")], "ha": "right", "va": "center"}
+    leader = {"arrowstyle": "-", "color": GREY, "linewidth": 0.6, "shrinkA": 1.0, "shrinkB": 3.0, "relpos": (1.0, 0.5)}
+    heights = 10.0 ** spread(np.log10([error(row) for row in trade.asked]), gap, np.log10(floor) + 0.5 * gap)
+    for row, height in zip(trade.asked, heights, strict=True):
+        point, place = (row.times_real_time, error(row)), (0.86 * row.times_real_time, height)
+        axes.annotate(row.accuracy.name, point, place, arrowprops=leader, **beside)
+    heights = 10.0 ** -spread(-np.log10([*terms.values()]), closer, 0.5 * closer - np.log10(high))
+    for (name, value), height in zip(terms.items(), heights, strict=True):
+        axes.plot([LINES_FROM, 1.0], [value] * 2, zorder=0, color=GREY, linewidth=0.8, dashes=(5, 3), transform=across)
+        words = {"xycoords": across, "fontsize": "x-small", "color": GREY, "arrowprops": leader | {"shrinkB": 0.0}}
+        axes.annotate(f"without {name}", (LINES_FROM, value), (TERMS_AT, height), **words, **beside)

@@ -24,7 +24,10 @@ def picture_of_body(body: Any) -> Any:
         axes.plot(each.x, each.z or each.y, "s", color="#444444", markersize=3)
     for kink in body.kinks:
         axes.axvline(kink, color="#888888", linewidth=0.5, linestyle=":")
-    axes.set(aspect="equal", xlabel="X from the nose [m]", ylabel="[m]", xlim=(-0.01 * body.length, 1.01 * body.length))
+    axes.set(aspect="equal", xlabel="X from the nose [m]", ylabel="[m]", xlim=(-0.08 * body.length, 1.08 * body.length))
+    for end, name, aside in ((0.0, "nose", "right"), (1.0, "tail", "left")):
+        gap = (2.0 * end - 1.0) * 0.015 * body.length
+        axes.text(end * body.length + gap, 0.0, name, ha=aside, va="center", fontsize="small")
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
     return made
 
