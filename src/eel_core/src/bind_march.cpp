@@ -19,8 +19,8 @@ std::shared_ptr<Modes> modes_from(const py::object& table, const py::object& x, 
     const auto axis = array_of<std::int64_t>(table, "axis");
     const auto degree = Array<std::int64_t>::sized(table.attr("degree"), "degree", axis.size());
     const std::size_t n = modes->modes = axis.size(),
-                      c = modes->coordinates = array_of<double>(table, "inertia").size();
-    if (degree.size() != n || c < n) throw py::value_error("modes must have a degree and an inertia each");
+                      c = modes->coordinates = array_of<double>(table, "armature").size();
+    if (degree.size() != n || c < n) throw py::value_error("modes must have a degree and an armature each");
     const auto start = numbers("start", n), end = numbers("end", n), limits = numbers("limits", 2 * n),
                stiffness = numbers("stop_stiffness", n), damping = numbers("stop_damping", n);
     const Numbers nodes(x, "x");
@@ -39,7 +39,7 @@ std::shared_ptr<Modes> modes_from(const py::object& table, const py::object& x, 
         if (std::isfinite(low) || std::isfinite(high))
             modes->stops.push_back({m, low, high, stiffness.data()[m], damping.data()[m]});
     }
-    modes->inertia = numbers("inertia", c).vector(), modes->rest = numbers("rest", c).vector();
+    modes->armature = numbers("armature", c).vector(), modes->rest = numbers("rest", c).vector();
     modes->stiffness = numbers("stiffness", c * c).vector(), modes->damping = numbers("damping", c * c).vector();
     for (const py::handle motor : table.attr("motors")) {
         const auto number = [servo = py::object(motor.attr("servo"))](const char* name) {  // none: no limit

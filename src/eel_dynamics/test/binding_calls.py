@@ -182,7 +182,7 @@ ATTRIBUTES = (
     "end",
     "limits",
     "stop_stiffness",
-    "inertia",
+    "armature",
     "rest",
     "stiffness",
     "damping",

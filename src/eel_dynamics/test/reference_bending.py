@@ -52,7 +52,7 @@ class BentReference(Reference):
         self.series = [m for m, part in enumerate(self.owner) if _servo(part) and _servo(part).series_stiffness]
         self.armature = np.array(
             [
-                part.armature + (_servo(part).inertia if _servo(part) and m not in self.series else 0.0)
+                part.armature + (_servo(part).reflected_inertia if _servo(part) and m not in self.series else 0.0)
                 if isinstance(part, Joint)
                 else 0.0
                 for m, part in enumerate(self.owner)
@@ -127,7 +127,7 @@ class BentReference(Reference):
                     motor, motor_rate = sign * th[s], sign * thdot[s]
                     joint = servo.series_stiffness * (motor - angle) + servo.series_damping * (motor_rate - rate)
                     tau = _servo_torque(servo, sign * reference[m], sign * reference_rate[m], motor, motor_rate)
-                    thdd[s] = sign * (tau - joint - servo.friction * motor_rate) / servo.inertia
+                    thdd[s] = sign * (tau - joint - servo.friction * motor_rate) / servo.reflected_inertia
                     torque -= joint
                     ledger.motor += tau * motor_rate
                     ledger.lost += servo.friction * motor_rate**2 + servo.series_damping * (motor_rate - rate) ** 2

@@ -154,7 +154,7 @@ def test_the_ledger_closes_along_the_motion():
     mu_rate, qddot, thdd = reference.bent_accelerations(time, mu, q, qdot, th, thdot)
     found = reference.fields(*reference.bent_motion(time, mu, q, qdot, th, thdot))
     *_, ledger = reference.forces(time, q, qdot, th, thdot)
-    inertia = np.array([reference.owner[m].actuator.inertia for m in reference.series])
+    inertia = np.array([reference.owner[m].actuator.reflected_inertia for m in reference.series])
 
     def energy(h):
         moved = q + h * qdot + h * h / 2 * qddot, qdot + h * qddot
@@ -203,7 +203,7 @@ def test_tables_give_the_reference_s_torques(time):
         table = mode_table(robot, Body.boyer2010())
         Q = torques_of_table(table, time, falling(), q, qdot, th, thdot)
         assert pytest.approx(reference.forces(time, q, qdot, th, thdot)[0], abs=1e-10) == Q
-        assert table.inertia[: len(table)] == pytest.approx(reference.armature)
+        assert table.armature[: len(table)] == pytest.approx(reference.armature)
         free = reference.imposed(time)[0]
         law = falling().curvature(time, reference.space.x)[0]
         assert np.allclose(free[:, 1:], law[:, 1:] * table.imposed(reference.space.x).T, atol=1e-15)

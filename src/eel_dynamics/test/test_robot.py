@@ -208,11 +208,11 @@ def test_a_stiff_gear_adds_rotor_and_friction_to_the_joint_and_a_series_spring_d
     table = mode_table(
         Robot([Joint(0.3, armature=1e-3, damping=0.1, actuator=stiff), Joint(0.5, armature=1e-3, actuator=soft)]), BODY
     )
-    assert table.inertia == pytest.approx([2e-3, 1e-3, 1e-3])
+    assert table.armature == pytest.approx([2e-3, 1e-3, 1e-3])
     assert np.diag(table.damping) == pytest.approx([0.12, 0.0, 0.02])
     assert table.stiffness == pytest.approx(50.0 * np.array([[0, 0, 0], [0, 1, -1], [0, -1, 1]]))
     assert table.motors == ((stiff, 0, 0), (soft, 1, 2)) and table.name == ("joint_1", "joint_2", "joint_2")
-    assert [each.inertia for each in (stiff, soft)] == pytest.approx([1e-3, 1e-3])
+    assert [each.reflected_inertia for each in (stiff, soft)] == pytest.approx([1e-3, 1e-3])
     assert [each.has_spring for each in (stiff, soft)] == [False, True]
 
 

@@ -95,7 +95,7 @@ class BentBody {
     double rotor_energy() const
     {
         double sum = 0.0;
-        for (std::size_t i = 0; i < rate.size(); ++i) sum += 0.5 * modes_->inertia[i] * rate[i] * rate[i];
+        for (std::size_t i = 0; i < rate.size(); ++i) sum += 0.5 * modes_->armature[i] * rate[i] * rate[i];
         return sum;
     }
 

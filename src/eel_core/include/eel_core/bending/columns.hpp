@@ -6,7 +6,7 @@
 //
 // in the axes of the head, zero at the nose and ahead of the support. Behind the support a column is a rigid motion.
 // M_ab = integral (omega_a . s_b + v_a . p_b) dX with the momentum (s, p) of a column; plus the fins' added masses
-// m_a y_a y_b, y = e_n . (v + omega x x_f), the nose's m_o and the coordinates' inertia.
+// m_a y_a y_b, y = e_n . (v + omega x x_f), the nose's m_o and the coordinates' armature.
 #pragma once
 
 #include "eel_core/algorithm.hpp"
@@ -84,7 +84,7 @@ class Columns {
             for (std::size_t j = 0; j < head + i; ++j) mass.at(head + i, j) = 0.0;
         for (std::size_t i = 0; i < modes.coordinates; ++i) {
             double& own = mass.at(head + i, head + i);
-            own = (i < modes.modes ? own : 0.0) + modes.inertia[i];
+            own = (i < modes.modes ? own : 0.0) + modes.armature[i];
         }
         if constexpr (!M::planar)
             if (!work.fins.empty()) add_fins(swimmer, work);

@@ -41,7 +41,7 @@ struct CoordinateRow {
         std::ranges::copy(now.rate, row + begin[rate]);
         std::ranges::copy(body.acceleration, row + begin[acceleration]);
         for (std::size_t m = 0; m < modes.modes; ++m)
-            row[begin[moment] + m] = body.forces.total[m] + modes.inertia[m] * body.acceleration[m];
+            row[begin[moment] + m] = body.forces.total[m] + modes.armature[m] * body.acceleration[m];
         std::ranges::copy(body.forces.torque, row + begin[torque]);
         std::ranges::copy(body.forces.pushing, row + begin[pushing]);
         row[begin[elastic]] = body.forces.elastic, row[begin[rotors]] = body.rotor_energy();

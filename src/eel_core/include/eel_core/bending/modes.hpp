@@ -55,7 +55,7 @@ struct Modes {
     std::vector<std::size_t> first, last;    // first node of the support, and the node after its last
     std::vector<bool> continuous;            // whether it is one of several on its support, not a joint
     std::vector<double> span, moment;        // integral of |B| [1, or m]; torque for a unit of force [1, or 1/m]
-    std::vector<double> inertia, rest;       // of each coordinate: armature or rotor, and rest position of its springs
+    std::vector<double> armature, rest;      // of each coordinate: armature or rotor, and rest position of its springs
     std::vector<double> stiffness, damping;  // (coordinates, coordinates)
     std::vector<Servo> servos;
     std::vector<Stop> stops;

@@ -56,7 +56,7 @@ class Servo(Quantities):
             raise ValueError(f"servo series_damping goes with series_stiffness, got {self.series_damping:g} alone")
 
     @property
-    def inertia(self) -> float:
+    def reflected_inertia(self) -> float:
         """gear^2 rotor_inertia [kg m^2]: the rotor's inertia at the joint."""
         return self.gear**2 * self.rotor_inertia
 
@@ -128,8 +128,8 @@ AT_LIMIT = 1.0 - 1e-9  # of a servo's greatest torque at its speed: above this i
 
 
 def most_torque(servos: Sequence[Servo | None], torque: np.ndarray, power: np.ndarray) -> np.ndarray:
-    """The greatest torques of motors (..., J) with this `torque` [N m] and `power` [W] at their speed; inf: no
-    limit."""
+    """Greatest possible torques (..., J) [N m] of motors at their present speeds, which follow from their `torque`
+    [N m] and `power` [W]; inf: no limit."""
     limit, fastest = (
         np.array([np.inf if each is None else getattr(each, name) or np.inf for each in servos])
         for name in ("torque_limit", "speed_limit")
@@ -140,11 +140,11 @@ def most_torque(servos: Sequence[Servo | None], torque: np.ndarray, power: np.nd
 
 
 def current_by_torque(servos: Sequence[Servo | None]) -> np.ndarray:
-    """Current of motors (J,) by their torque at the joint [A/(N m)]; NaN where no torque constant is known."""
+    """Current per torque at the joint (J,) [A/(N m)] of motors; NaN without a torque constant."""
     constants = [each and each.torque_constant and 1.0 / (each.gear * each.torque_constant) for each in servos]
     return np.array([np.nan if each is None else each for each in constants], dtype=float)
 
 
 def at_limit(servos: Sequence[Servo | None], torque: np.ndarray, power: np.ndarray) -> np.ndarray:
-    """Whether motors (..., J) with this `torque` [N m] and `power` [W] are at their limits. A None has no servo."""
+    """Whether motors (..., J) with this `torque` [N m] and `power` [W] are at their limits. None: no servo."""
     return np.asarray(np.abs(torque) >= AT_LIMIT * most_torque(servos, torque, power))

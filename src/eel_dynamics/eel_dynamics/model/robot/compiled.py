@@ -27,15 +27,15 @@ from eel_dynamics.model.robot.robot import Robot
 
 HINGE = -1  # degree of a joint's mode
 GAUSS = legendre.leggauss(16)  # of each interval of a reference, and of a continuous part
-# Equal intervals of a continuous part: for a bending_stiffness(X) that is not smooth, or local, and for a moment.
+# Equal intervals of a continuous part: for a bending_stiffness(X) that is not smooth or changes locally, and a moment.
 PARTS_OF_SUPPORT, PARTS_OF_MOMENT = 256, 16
-LONE_WIDTH = 0.05  # of the length: of a joint that is alone in its axis
-BETWEEN = np.array(((1.0, -1.0), (-1.0, 1.0)))  # what a spring between two coordinates does to each, by the other
-SAME = 1e-9  # of the length: places that are nearer are the same
+LONE_WIDTH = 0.05  # of the length: width of the only joint in an axis
+BETWEEN = np.array(((1.0, -1.0), (-1.0, 1.0)))  # stiffness matrix of a unit spring between two coordinates
+SAME = 1e-9  # of the length: closer places count as one
 
 
 class Motor(NamedTuple):
-    """A servo, the mode of its joint, and the coordinate that it drives: behind a spring its own, else the mode's."""
+    """A servo, the mode of its joint, and its coordinate: an own one with a series spring, else that of the mode."""
 
     servo: Servo
     mode: int
@@ -62,23 +62,23 @@ class ModeTable:
     start: np.ndarray  # (M,) m, of the support
     end: np.ndarray  # (M,) m
     degree: np.ndarray  # (M,) int, of the Legendre polynomial; `HINGE`: a joint, B = 1/(end - start)
-    sign: np.ndarray  # (M,) the library's angle over q
+    sign: np.ndarray  # (M,) the library's angle divided by q
     name: tuple[str, ...]  # (C,), of the part
     stiffness: np.ndarray  # (C, C) N m/rad, or N m^4 over a continuous part
     damping: np.ndarray  # (C, C) N m s/rad, or N m^4 s; with the friction of the gears
-    rest: np.ndarray  # (C,) rad, or rad/m; of a motor as of its joint, whose own spring it is
-    inertia: np.ndarray  # (C,) kg m^2, armature with the rotor of a stiff gear; behind a spring the rotor
-    initial: np.ndarray  # (M,) rad, of q at the start; NaN where it is not given
-    limits: np.ndarray  # (M, 2) rad, of q, infinite where there are none
+    rest: np.ndarray  # (C,) rad, or rad/m; of a motor equal to that of its joint
+    armature: np.ndarray  # (C,) kg m^2, with the rotor of a stiff gear; behind a spring the rotor alone
+    initial: np.ndarray  # (M,) rad, of q at the start; NaN if not given
+    limits: np.ndarray  # (M, 2) rad, of q; infinite without limits
     stop_stiffness: np.ndarray  # (M,) N m/rad
-    stop_damping: np.ndarray  # (M,) N m s/rad^2, by the depth
+    stop_damping: np.ndarray  # (M,) N m s/rad^2, damping per depth
     motors: tuple[Motor, ...]  # the servos
-    torques: tuple[tuple[int, Torque], ...]  # of joints whose torque is given over time: the mode, and that
+    torques: tuple[tuple[int, Torque], ...]  # of joints with a torque given over time: mode and torque
     muscles: tuple[MuscleTable, ...]
     points: np.ndarray  # (P,) m, at which the law is read for the servos' references
     projection: np.ndarray  # (M, P) m: reference q_m = projection @ K_axis(t, points), K in section axes
     free: tuple[tuple[int, float, float], ...]  # (axis, start, end): where the law is not imposed
-    edges: tuple[float, ...]  # m, inside the body, where a panel must end: of supports, and jumps of what is imposed
+    edges: tuple[float, ...]  # m, inside the body, where panels must end: ends of supports and of imposed parts
 
     def __len__(self) -> int:
         return len(self.axis)
@@ -130,13 +130,13 @@ def mode_table(robot: Robot, body: Body, planar: bool = False) -> ModeTable:
     motors, size = _motors(placed, total)
 
     def column(name: str, of_others: Any) -> np.ndarray:
-        """A field of the parts, for each mode; `of_others` where it is None, or a part has none."""
+        """A field of the parts, for each mode; `of_others` for None, and for parts without the field."""
         given = [getattr(part, name, None) for part in parts]
         return np.repeat([of_others if value is None else value for value in given], sizes, axis=0)
 
     sign = np.repeat([float(AXES[part.axis][1]) if isinstance(part, Joint) else 1.0 for part in parts], sizes)
-    rest, inertia = np.zeros((2, size))
-    rest[:total], inertia[:total] = sign * column("rest_angle", 0.0), column("armature", 0.0)
+    rest, armature = np.zeros((2, size))
+    rest[:total], armature[:total] = sign * column("rest_angle", 0.0), column("armature", 0.0)
     stiffness, damping = np.zeros((2, size, size))
     for part, support, first, count in zip(parts, supports, firsts, sizes, strict=True):
         block = slice(first, first + count)
@@ -147,7 +147,7 @@ def mode_table(robot: Robot, body: Body, planar: bool = False) -> ModeTable:
             rest[coordinate] = rest[mode]
             stiffness[np.ix_(pair, pair)] += servo.series_stiffness * BETWEEN
             damping[np.ix_(pair, pair)] += servo.series_damping * BETWEEN
-        inertia[coordinate] += servo.inertia
+        armature[coordinate] += servo.reflected_inertia
         damping[coordinate, coordinate] += servo.friction
     names = np.repeat([part.name for part in parts], sizes).tolist()
     points, projection = _references(placed, total, body)
@@ -161,7 +161,7 @@ def mode_table(robot: Robot, body: Body, planar: bool = False) -> ModeTable:
         stiffness=stiffness,
         damping=damping,
         rest=rest,
-        inertia=inertia,
+        armature=armature,
         initial=sign * column("initial_angle", np.nan),
         limits=np.sort(sign[:, None] * column("limits", (-np.inf, np.inf)), axis=1),
         stop_stiffness=column("stop_stiffness", 0.0),
@@ -194,7 +194,7 @@ def _located(part: Any, robot: Robot, body: Body) -> Any:
 
 
 def _supports(parts: list[Any], body: Body) -> list[tuple[float, float]]:
-    """The supports [m], where places that differ by round-off, from one another or from a kink, are one."""
+    """The supports [m], with places that differ by round-off from each other, or from a kink, set equal."""
     known, snapped = [0.0, *body.panel_ends], []
     for part in parts:
         ends = []
@@ -278,7 +278,7 @@ def _quadrature(start: float, end: float, parts: int = 1) -> tuple[np.ndarray, n
 
 
 def _motors(placed: list[Any], size: int) -> tuple[tuple[Motor, ...], int]:
-    """The servos of `placed` parts with their first mode, and how many coordinates there are with `size` modes."""
+    """The servos of `placed` parts with their first mode, and the number of coordinates for `size` modes."""
     motors = []
     for part, mode in placed:
         if isinstance(servo := _actuator(part), Servo):
@@ -295,7 +295,7 @@ def _actuator(part: Any) -> Any:
 
 
 def _references(placed: list[Any], total: int, body: Body) -> tuple[np.ndarray, np.ndarray]:
-    """Points of the law, and the rows that make the servos' references of its values there.
+    """Points at which the law is read, and the rows that give the servos' references from its values there.
 
     placed: parts with their first mode. total: of all modes.
     """
