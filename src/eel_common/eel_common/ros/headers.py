@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Headers of messages: stamps to seconds of simulation time and back, and frame ids below a namespace. `FieldReader`
-reads the length or the numbers of a sequence from the serialised message.
+"""Headers of messages: stamps from and to seconds of simulation time, and frame ids in a namespace.
+
+`FieldReader` reads single fields of a serialised message.
 """
 
 from struct import Struct, error, unpack_from

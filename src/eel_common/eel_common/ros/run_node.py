@@ -114,7 +114,7 @@ def _serve(
 
 
 def _goes_on(poll: Callable[[Any], bool], node: Any) -> bool:
-    """Whether `poll(node)` lets the node go on. An exception is logged, and the node goes on."""
+    """Whether the node continues, by `poll(node)`. After an exception, which is logged, it does."""
     try:
         return poll(node)
     except Exception as error:

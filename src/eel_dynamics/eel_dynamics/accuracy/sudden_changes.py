@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sudden changes of torques, wrenches and flows given over time: steps end there, and are short in between.
 
-A step is chosen by its error at a few instants, and would pass over anything that begins and ends between them. So
+A step's error is estimated at a few instants, so a change that begins and ends between them would be missed. Therefore
 given functions are sampled beforehand, at one random instant in each `STEP`. A change is sudden if cubics through four
-even instants do not follow it: first through instants `GAPS[0]` apart; where these fail, through closer ones.
+equidistant instants do not follow it: first with instants `GAPS[0]` apart, and where these fail, with closer ones.
 """
 
 import math
@@ -52,10 +52,9 @@ def sudden_changes(
     until: float,
     wrenches: tuple[ExternalWrench, ...] = (),
 ) -> frozenset[float]:
-    """Times [s] at which torques, flows and functions among `wrenches` begin or end to change suddenly, before `until`
-    [s] (0: all of tables).
+    """Times [s] before `until` [s] at which a sudden change of a torque, flow or wrench function begins or ends.
 
-    A flow is sampled along a straight body of this `length` [m], at its start.
+    until: 0 for all changes of tables. A flow is sampled along a straight body of this `length` [m], at its start.
     """
     found: set[float] = set()
     for torque in given_torques(robot):
@@ -86,7 +85,7 @@ def _velocities(field: FlowField, places: np.ndarray, times: np.ndarray) -> np.n
 
 
 def changes_of(value_at: Values, start: float, end: float, others: Iterable[float] = ()) -> set[float]:
-    """Times between `start` and `end` [s] at which values begin or end to change suddenly.
+    """Times between `start` and `end` [s] at which a sudden change of values begins or ends.
 
     others: [s], further instants at which they are sampled.
     """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Mass, centre of mass and inertia of the parts of the straight body between places along it.
 
-They are of the body alone, without its water: integrals of the section data that the mechanics march with.
+They are integrals of the section data, of the body without its water.
 """
 
 from typing import NamedTuple
@@ -15,8 +15,8 @@ from eel_dynamics.model.body.panels import panels_of
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.section_data import sections_of
 
-RESOLUTION = 40  # points by length, as of the integrals of `Body`
-SAME = 1e-9  # of the length: places that are nearer are the same
+RESOLUTION = 40  # points per length, as for the integrals of `Body`
+SAME = 1e-9  # of the length: closer places count as one
 
 
 class RigidPart(NamedTuple):
@@ -28,9 +28,9 @@ class RigidPart(NamedTuple):
 
 
 def rigid_parts(body: Body, places: list[float], density: float | None = None) -> list[RigidPart]:
-    """The parts of `body` between `places` [m], which rise inside it: one more than these.
+    """The parts between the nose, the `places` [m] in ascending order, and the tail of `body`.
 
-    density: [kg/m^3] in place of a homogeneous body's own, as of a scene.
+    density: [kg/m^3] of a scene, instead of a homogeneous body's own.
     """
     ends = body.panel_ends
     cuts = np.array([min((end for end in ends if abs(end - x) < SAME * body.length), default=x) for x in places])
@@ -53,7 +53,7 @@ def rigid_parts(body: Body, places: list[float], density: float | None = None) -
 def _part(
     middle: float, mass: float, ahead: float, lever: float, product: float, roll: float, pitch: float, yaw: float
 ) -> RigidPart:
-    """Of sums over its sections, along E1 from its `middle` [m]; levers are below the axis."""
+    """A part from sums over its sections, about its `middle` [m]; levers are depths below the axis."""
     inertia = np.array([[roll, 0.0, -product], [0.0, pitch, 0.0], [-product, 0.0, yaw]])
     if not mass > 0.0:
         return RigidPart(0.0, np.array([-middle, 0.0, 0.0]), inertia)

@@ -34,6 +34,6 @@ class Lateness:
             self.end(time)
 
     def end(self, time: float) -> None:
-        """It is over at simulation time `time` [s]."""
+        """End the report of a late run, at simulation time `time` [s]."""
         lasted = f"it was for {self._last - self._since:.3g} s, by {self._most:.3g} s at most"
         self._report.end(LATE, f"no longer late at t = {time:g} s: {lasted}")

@@ -24,7 +24,7 @@ class Waking(Protocol):
 
 
 class Answer:
-    """The run loop's answer. While a callback awaits it, the executor runs callbacks of other groups.
+    """The run loop's answer to a request. While a callback awaits it, the executor runs callbacks of other groups.
 
     Attributes:
         done: whether it has been given.

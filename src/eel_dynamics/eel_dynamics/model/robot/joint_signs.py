@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The signs of joints in messages: those of REP-103, as of a URDF whose base link is the head.
+"""The signs of joints in messages: those of REP-103, as in a URDF whose base link is the head.
 
-In joint_commands, joint_states and motor_states an angle above 0 turns the part behind a joint about +z (yaw) or +y
-(pitch) of the part ahead; with the axes -yaw, -pitch, -z, -y about -z or -y (`sense_of`). In the library a joint's
-own `axis` gives the sign: "yaw" is positive to the left, where the part behind turns about -z. Rates and torques have
-the sign of their angle.
+In joint_commands, joint_states and motor_states a positive angle turns the part behind the joint about +z (yaw) or +y
+(pitch) of the part ahead; for the axes -yaw, -pitch, -z, -y about -z or -y (`sense_of`). In the library the joint's
+`axis` gives the sign: "yaw" is positive to the left, which turns the part behind about -z. Rates and torques have the
+sign of the angle.
 """
 
 import numpy as np
@@ -14,12 +14,12 @@ from eel_dynamics.model.robot.joint import Joint
 from eel_dynamics.model.robot.part import AXES
 from eel_dynamics.model.robot.robot import Robot
 
-TO_THE_LEFT = "yaw", "-yaw"  # axes whose sign is that of the gaits: the others have that of messages
-OF_SECTIONS = VECTOR  # (3,) sign in messages of a turn of the part behind about each section axis
+TO_THE_LEFT = "yaw", "-yaw"  # axes with the sign of gaits: the others have the sign of messages
+OF_SECTIONS = VECTOR  # (3,) sign in messages of a turn of the part behind, about each section axis
 
 
 def message_sign(axis: str) -> int:
-    """What an angle of a joint with this `axis` is multiplied by, from library to message and back: 1 or -1."""
+    """The factor of a joint's angle from library to message and back, for this `axis`: 1 or -1."""
     return -1 if axis in TO_THE_LEFT else 1
 
 
@@ -29,7 +29,7 @@ def message_signs(robot: Robot | None) -> np.ndarray:
 
 
 def message_limits(joint: Joint) -> tuple[float, float] | None:
-    """The stops [rad] of a `joint` in the sign of messages; None without."""
+    """The limits [rad] of a `joint` in the sign of messages; None without limits."""
     if joint.limits is None or message_sign(joint.axis) > 0:
         return joint.limits
     low, high = joint.limits

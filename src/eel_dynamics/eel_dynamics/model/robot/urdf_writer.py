@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """A swimmer as a URDF: a straight chain of rigid links, from the head to the tail.
 
-The base link has the head's frame: x forward, y left, z up (REP-103), at the nose. It has no mass, as KDL wants it; the
-link at the nose is fixed to it. The frame of each other link lies in its joint, and is turned as the head's at angles
-of 0. A joint of the robot, short and bending, becomes a hinge in its middle, with the axis and the sign of
-`joint_states`. The links have the mass, the centre of mass and the inertia of their part of the body. Two joints at
-one place have a short link between them, which takes a slice of the body there.
+The base link has the head's frame: x forward, y left, z up (REP-103), at the nose. It has no mass, as KDL requires; the
+link at the nose is fixed to it. The frame of each other link lies in its joint. At angles of 0 its axes are parallel to
+the head's. A joint of the robot bends over a short width; here it is a hinge in the middle of it, with the axis and the
+sign of `joint_states`. Each link has the mass, the centre of mass and the inertia of its part of the body. Between two
+joints at one place there is a short link, with a slice of the body.
 
-Boxes stand for elliptic sections, as URDF has none: short ones to look at, and one for collisions, with the section in
-the link's middle. What a URDF has no word for is listed in a comment, and in `left_out`.
+URDF has no elliptic sections, so boxes replace them: a row of short ones as visual shapes, and one as collision shape,
+with the section in the link's middle. `left_out`, and a comment, list what a URDF cannot describe.
 """
 
 import re
@@ -34,27 +34,27 @@ from eel_dynamics.model.robot.joint_signs import message_limits, sense_of
 from eel_dynamics.model.robot.robot import Robot, checked_robot
 from eel_dynamics.model.robot.urdf.elements import UNLIMITED
 
-MOST_JOINTS = 1000  # per axis, of an imposed shape
-SLICES = 50  # boxes to look at, by length of the body
-SLICE_OF_CROSS = 0.125  # of the distance to the nearest joint or end: the slice of a link between joints at one place
-DIGITS = 15  # of numbers
+MOST_JOINTS = 1000  # per axis, for an imposed shape
+SLICES = 50  # visual boxes per length of the body
+SLICE_OF_CROSS = 0.125  # of a link between joints at one place: its length by the distance to the next joint or end
+DIGITS = 15  # of numbers in the file
 SKIN = "0.30 0.48 0.50 1"  # colour, rgba
 VECTORS = {"yaw": (0, 0, 1), "pitch": (0, 1, 0)}
-WRITTEN = {"position", "axis", "limits", "damping", "actuator", "name"}  # of a Joint
+WRITTEN = {"position", "axis", "limits", "damping", "actuator", "name"}  # fields of a Joint
 WRITTEN_OF_SERVO = {"torque_limit", "speed_limit"}
 NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 ABOUT = "the straight body in kg, m and rad, without its water; the frame of the base link is the head's"
 
 
 class Urdf(NamedTuple):
-    """A URDF, and what it leaves out of the swimmer."""
+    """A URDF, and the properties of the swimmer that it cannot describe."""
 
     text: str
     left_out: tuple[str, ...]
 
 
 class Hinge(NamedTuple):
-    """A joint as a URDF has it."""
+    """A joint of a URDF."""
 
     name: str
     place: float  # m, X
@@ -79,16 +79,16 @@ def urdf_of(
     """The URDF of a `robot`, or of a `body` whose shape is imposed.
 
     Args:
-        body: None: the robot's own, or that of Boyer, Porez and Leroyer 2010.
-        robot: its joints are those of the URDF.
-        yaw_joints, pitch_joints: without a robot, how many joints the chain has in each axis, as the parameters of the
-            node `dynamics`: yaw_1, ..., at the middles of equal parts of the body. Without them it is one rigid link.
-        density: [kg/m^3] of a scene, in place of a homogeneous body's own.
-        fins: a URDF has no word for them.
-        base_link: name of the base link, the head's frame. Up to its last "/" it begins the names of all links.
-        frames: further links without mass, as of sensors, by name: X [m] of each, on the link that is there.
+        body: by default the robot's own, or that of Boyer, Porez and Leroyer 2010.
+        robot: its joints become the joints of the URDF.
+        yaw_joints, pitch_joints: without a robot, numbers of joints per axis, as the parameters of the node `dynamics`:
+            yaw_1, ..., in the middles of equal parts of the body. Without any, the URDF is one rigid link.
+        density: [kg/m^3] of a scene, instead of a homogeneous body's own.
+        fins: they are listed in `left_out`.
+        base_link: name of the base link, the head's frame. Its part up to the last "/" is a prefix of all links' names.
+        frames: X [m] by name of further links without mass, such as those of sensors. Each is fixed to the link at X.
 
-    `ValueError` names what does not fit.
+    `ValueError` names a bad argument.
     """
     robot = checked_robot(robot)
     body = checked_body(robot.body if body is None and robot is not None else body)
@@ -100,7 +100,7 @@ def urdf_of(
     if robot is None:
         hinges = _imposed(body, {"yaw": int(yaw_joints), "pitch": int(pitch_joints)})
     else:
-        mode_table(robot, body)  # refuses what does not fit the body
+        mode_table(robot, body)  # checks that the robot fits the body
         hinges = [_hinge(joint) for joint in robot.joints]
     called = (body if robot is None else robot).name or "eel"
     checked_instance("frames", frames, Mapping)
@@ -119,7 +119,7 @@ def urdf_of(
 
 
 def _check_names(root: ElementTree.Element) -> None:
-    """`ValueError` where two links, or two joints, have one name."""
+    """`ValueError` if two links, or two joints, have the same name."""
     for tag in ("link", "joint"):
         names = [each.get("name") for each in root.findall(tag)]
         for name in names:
@@ -147,7 +147,7 @@ def _hinge(joint: Joint) -> Hinge:
 
 
 def _left_out(robot: Robot | None, hinges: int) -> list[str]:
-    """What a URDF has no word for, in words."""
+    """The properties that a URDF cannot describe, in words."""
     if robot is None:
         return [] if hinges else ["bending: it is one rigid link without yaw_joints and pitch_joints"]
     said = [
@@ -173,7 +173,7 @@ def _changed_fields(given: Any, written: set[str], always: tuple[str, ...] = ())
 
 
 class _Writer:
-    """Makes the elements of a URDF of a `body` with `hinges`, which follow one another from the nose."""
+    """Makes the elements of a URDF, for a `body` with `hinges` in order from the nose."""
 
     def __init__(self, body: Body, hinges: list[Hinge], base_link: str, density: float | None) -> None:
         self._body, self._hinges, self._base = body, hinges, base_link
@@ -184,7 +184,7 @@ class _Writer:
         self._parts = rigid_parts(body, cuts, density)
 
     def _cuts(self, places: list[float]) -> list[float]:
-        """Where the body is cut [m]: in each joint, and on both sides of joints at one place."""
+        """Places [m] at which the body is cut: each joint, and both sides of joints at one place."""
         length = self._body.length
         groups: list[list[float]] = []
         for place in places:
@@ -218,7 +218,7 @@ class _Writer:
             self._add_link(root, link, part, origin, self._bounds[k], self._bounds[k + 1])
         places = [hinge.place for hinge in self._hinges]
         for frame, x in frames.items():
-            k = bisect_left(places, x)  # joints ahead of it
+            k = bisect_left(places, x)  # number of joints ahead of it
             ElementTree.SubElement(root, "link", name=f"{self._prefix}{frame}")
             along = x - (places[k - 1] if k else 0.0)
             self._join(root, f"{frame}_joint", "fixed", self._links[k], f"{self._prefix}{frame}", along)
@@ -227,7 +227,7 @@ class _Writer:
     def _add_link(
         self, root: ElementTree.Element, name: str, part: RigidPart, origin: float, start: float, end: float
     ) -> None:
-        """A link whose part of the body goes from X = start to end, with its frame at X = origin [m]."""
+        """A link with the part of the body from X = start to end [m], and its frame at X = origin [m]."""
         link = ElementTree.SubElement(root, "link", name=name)
         if part.mass > 0.0:
             inertial = ElementTree.SubElement(link, "inertial")
@@ -269,7 +269,7 @@ class _Writer:
     def _join(
         self, root: ElementTree.Element, name: str, kind: str, parent: str, child: str, along: float
     ) -> ElementTree.Element:
-        """A joint whose frame lies `along` [m] behind that of the parent."""
+        """A joint whose frame lies `along` [m] behind the frame of its parent."""
         joint = ElementTree.SubElement(root, "joint", name=name, type=kind)
         ElementTree.SubElement(joint, "parent", link=parent)
         ElementTree.SubElement(joint, "child", link=child)

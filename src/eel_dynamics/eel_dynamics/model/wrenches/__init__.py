@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wrenches from outside: tows, tethers, thrusters; and the same as texts for commands and nodes."""
+"""External wrenches, such as tows, tethers and thrusters; and their texts for commands and nodes."""

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wrenches from outside on sections: tows, tethers, thrusters (eel_core/loads/external_wrenches.hpp).
+"""External wrenches on sections: tows, tethers, thrusters (eel_core/loads/external_wrenches.hpp).
 
     ExternalWrench(0.0, force=(2.0, 0.0, 0.0))                        # tows the head forwards, as it is turned
     ExternalWrench(1.0, force=(-0.5, 0.0, 0.0), frame="world")        # a tether holds the tail back
     ExternalWrench(0.0, force=((0, 0, 0), (3, 0, 0)), time=(1, 1))    # from 1 s on
     ExternalWrench(0.5, torque=lambda t: (0.0, 0.0, 0.1 * math.sin(t)))
 
-A table is joined by straight lines. Where an instant stands twice the wrench jumps there, and a step of the march ends.
+A table is interpolated linearly. If an instant stands twice in it, the wrench jumps there, and a time step ends there.
 """
 
 import math
@@ -35,7 +35,7 @@ IN_PLANE = {"force": (0, 1), "torque": (2,)}  # components that a planar scene a
 @documented
 @dataclass(frozen=True, repr=False)
 class ExternalWrench(Quantities):
-    """A wrench from outside on the section at a station. Immutable; `ValueError` names what does not fit."""
+    """An external wrench on the section at a station. Immutable; `ValueError` names a bad field."""
 
     what: ClassVar[str] = "external wrench"
 
@@ -95,7 +95,7 @@ class ExternalWrench(Quantities):
 
     @property
     def acts(self) -> bool:
-        """Whether it is anything but zero: a wrench that is zero has a section's panel end there, and costs nothing."""
+        """Whether it is not zero. A zero wrench only lets a panel end at its station, and costs nothing."""
         return self.is_function or any(np.any(getattr(self, name)) for name in UNITS)
 
     @property
@@ -104,9 +104,10 @@ class ExternalWrench(Quantities):
         return tuple(self.time[k] for k in self._ends[1:-1])
 
     def at(self, time: float, behind: float | None = None) -> np.ndarray:
-        """(6,) force [N] and torque [N m] at `time` [s]: at a jump before it, unless that is `behind` [s].
+        """(6,) force [N] and torque [N m] at `time` [s]. At a jump: the value before it, or after it if `behind` is its
+        time [s].
 
-        `ValueError` where a function gives anything but three finite numbers.
+        `ValueError` if a function does not return three finite numbers.
         """
         return np.concatenate([self._part_at(name, time, behind) for name in UNITS])
 
@@ -121,20 +122,21 @@ class ExternalWrench(Quantities):
         return np.array([np.interp(time, instants, column) for column in rows.T])
 
     def _piece(self, time: float, behind: bool) -> slice:
-        """The instants between two jumps that `time` [s] lies between; one at a jump lies ahead of it, or `behind`."""
+        """The instants of the piece between two jumps that holds `time` [s]. At a jump: the piece before it, or
+        after it if `behind` is its time."""
         passed = sum(jump <= time if behind else jump < time for jump in self.jumps)
         return slice(*self._ends[passed : passed + 2])
 
     @property
     def _ends(self) -> list[int]:
-        """Where the pieces between jumps begin among the instants, and where the last one ends."""
+        """Indices of the instants at which the pieces between jumps begin, and the end of the last piece."""
         instants = self.time or ()
         return [0, *(k for k, (a, b) in enumerate(pairwise(instants), start=1) if a == b), len(instants)]
 
     def cubics(self, now: float) -> tuple[np.ndarray, np.ndarray]:
-        """Knots (n,) [s] and coefficients (n - 1, 4, 6) of cubics from `now` [s] to the next jump; torque, then force.
+        """Knots (n,) [s] and coefficients (n - 1, 4, 6) of cubics from `now` [s] to the next jump. Not for functions.
 
-        From the constant on. Not of functions.
+        Coefficients begin with the constant; of six numbers the first three are the torque.
         """
         knots = np.array([now] if self.time is None else np.unique(self.time[self._piece(now, True)]))
         values = np.array([self.at(time, now)[[3, 4, 5, 0, 1, 2]] for time in knots.tolist()])
@@ -147,7 +149,7 @@ class ExternalWrench(Quantities):
 
 
 def checked_wrenches(given: Any, body: Body, planar: bool) -> tuple[ExternalWrench, ...]:
-    """The wrenches of a run on its `body`. `ValueError` names one that it, or a `planar` scene, does not allow."""
+    """The wrenches of a run as a tuple. `ValueError` names one that the `body` or a `planar` scene does not allow."""
     if given is None:
         return ()
     if isinstance(given, (str, ExternalWrench)) or not np.iterable(given):
@@ -161,7 +163,7 @@ def checked_wrenches(given: Any, body: Body, planar: bool) -> tuple[ExternalWren
 
 
 def check_wrench(wrench: ExternalWrench, body: Body, planar: bool) -> None:
-    """`ValueError` for a `wrench` off its `body`, or out of the plane of a `planar` scene."""
+    """`ValueError` for a `wrench` off the `body`, or out of the plane of a `planar` scene."""
     if wrench.station > body.length * (1.0 + APART):
         what = f"external wrench station must lie on the body, 0 to {body.length:g} m"
         raise ValueError(f"{what}, got {wrench.station:g} m")
@@ -206,7 +208,8 @@ def core_wrenches(
 
 
 def _called(wrench: ExternalWrench, now: float, planar: bool) -> Callable[[float], tuple[float, ...]]:
-    """Torque and force of a `wrench` that is a function, as six numbers; of a table beside it from `now` [s] on."""
+    """Torque and force of a `wrench` with functions, as a function of time. If one of the two is a table, it begins at
+    `now` [s]."""
 
     def called(time: float) -> tuple[float, ...]:
         row = wrench.at(time, now)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wrenches from outside as texts, for commands and nodes: section or world, with numbers; several are joined by " + ".
+"""External wrenches as texts, for commands and nodes: section or world, with numbers; several are joined by " + ".
 
 section station=0 force=2,0,0
 world station=1 force=0,0,1;0,0,3 time=0,5
 section station=0.5
 
-The last one has no wrench of its own, and gives the topic external_wrench a section to act on.
+The last one is zero. It lets a panel end at its station.
 """
 
 from dataclasses import fields
@@ -21,7 +21,7 @@ FRAME, TIME = "frame", "time"
 
 
 def wrenches_from_text(text: str) -> tuple[ExternalWrench, ...]:
-    """The wrenches of a `text`; none of an empty one. `ValueError` names what does not fit."""
+    """The wrenches of a `text`; none for an empty one. `ValueError` names the fault."""
     with reading("external wrench"):
         return tuple(_part(part) for part in parts_of_text(text) if part)
 

@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """A robot from a URDF: a straight chain of links joined by revolute joints, with the base link at the nose or the tail.
 
-Links become the body's sections, joints its joints. In the zero configuration the joints must lie on a line; the
-body's E1 runs along it from the nose to the tail, E3 is the base link's z. If modules are stacked along that z, as
-they often are, E3 is the first joint's axis. A link's half-axes are half of the height
-and width of its collision shapes (or its visual ones); a mesh's follow from its moments of inertia. They change
-smoothly from the middle of one link to that of the next; both ends are blunt. The hull numbers are those of a body of
-links (`Body.of_links`), whose `joints` is not in a URDF. The body is homogeneous: its density is such that the mass
-is that of all links.
+Links become sections of the body, and joints become joints. In the zero configuration the joints must lie on a line. E1
+of the body runs along it from the nose to the tail, and E3 is the base link's z. If modules are stacked along that z,
+as they often are, E3 is the first joint's axis. A link's half-axes are half the height and width of its collision
+shapes, or of its visual ones; those of a mesh follow from its moments of inertia. They change smoothly from the middle
+of one link to the middle of the next. Both ends are blunt. The hull coefficients are those of a body of links
+(`Body.of_links`), whose argument `joints` is not in a URDF. The body is homogeneous, with the mass of all links.
 
-Motors have the `servo`'s gains, with the joint's own effort and velocity as limits, and the reduction of a
-transmission. Angles keep the URDF's sign. The robot's `notes` list everything that is not kept.
+Motors have the gains of `servo`, the effort and velocity of their joint as limits, and the reduction of a transmission.
+Angles keep the URDF's sign. The robot's `notes` list what is ignored.
 """
 
 import math
@@ -169,7 +168,7 @@ class UrdfReader:
         if component == 0 or 1.0 - abs(parts[component]) > 0.5 * ALIGNED**2:
             rule = "must point up (yaw) or to the side (pitch), across the line of joints"
             fail(element, "axis", f"{rule}, got {shown([round(each, 4) for each in axis.tolist()])}")
-        # E2 is -y, E3 is z; where the base link is the tail, what turns about the axis is the part ahead
+        # E2 is -y, E3 is z; if the base link is the tail, the part ahead turns about the axis
         right_handed = ((parts[component] > 0.0) == (component == 2)) != self._from_tail
         servo, limits = self._motor(element, name)
         dynamics = element.first("dynamics")
