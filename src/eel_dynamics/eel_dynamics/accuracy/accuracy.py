@@ -265,7 +265,7 @@ class Accuracy:
         """The settings for `value`.
 
         value: a preset's name or a target relative error, either followed by ", fixed steps" if wanted. Settings are
-        returned unchanged. `ValueError` says what is possible.
+        returned unchanged. `ValueError` lists the possible values.
         """
         if isinstance(value, Accuracy):
             return value

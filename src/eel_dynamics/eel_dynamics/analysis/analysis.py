@@ -40,8 +40,9 @@ class Analysis:
     def mean_speed(self) -> float:
         """U [m/s]: arc length of the path of the centre of mass, averaged over one period, divided by the time.
 
-        The averaged centre moves with |c(t + T) - c(t)| / T; its mean over the window (Kern and Koumoutsakos, J. Exp.
-        Biol. 209 (2006), average over a cycle likewise). A window of one period holds one such value.
+        The averaged centre moves with |c(t + T) - c(t)| / T; U is the mean of that over the window. Kern and
+        Koumoutsakos, J. Exp. Biol. 209 (2006), average over a cycle in the same way. A window of one period holds one
+        such value.
         """
         return self._path.mean_speed()
 

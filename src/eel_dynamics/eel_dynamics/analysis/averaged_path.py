@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The path of a swimmer averaged over a period of its gait, and the excursion of the tail across it.
 
-The averaged centre of mass moves with |c(t + T) - c(t)| / T (Kern and Koumoutsakos, J. Exp. Biol. 209 (2006), average
-over a cycle likewise).
+The averaged centre of mass moves with |c(t + T) - c(t)| / T. Kern and Koumoutsakos, J. Exp. Biol. 209 (2006), average
+over a cycle in the same way.
 """
 
 import numpy as np

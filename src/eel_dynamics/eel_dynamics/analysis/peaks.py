@@ -94,8 +94,8 @@ def greatest_torque_of(run) -> tuple[float, float, float]:
 
 
 def depends_on_its_start(run) -> bool:
-    """Whether the head's motion at an instant does not determine the rest of `run`: a flow and wrenches have their own
-    time, robots and fins have states of their own."""
+    """Whether the head's motion at an instant does not determine the rest of `run`: a flow or a wrench depends on time,
+    and robots and fins have further states."""
     return run.flow is not None or run.robot is not None or bool(run.fins) or bool(run.wrenches)
 
 

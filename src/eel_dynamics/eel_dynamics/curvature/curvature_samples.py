@@ -132,7 +132,7 @@ class SampleQueue:
         return len(self._samples)
 
     def check_space(self, points: int) -> None:
-        """`ValueError` if the queue has no space for a sample of so many `points`."""
+        """`ValueError` if the queue has no space for a sample with this number of `points`."""
         if len(self._samples) >= MOST_AHEAD or self._points + points > MOST_POINTS_AHEAD:
             raise ValueError(
                 f"curvature samples ahead of the simulation must be at most {MOST_AHEAD}, of {MOST_POINTS_AHEAD} "

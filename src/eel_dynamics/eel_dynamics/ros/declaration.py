@@ -146,7 +146,7 @@ class Declaration:
 
 
 def with_flow_as_text(overrides: dict[str, Any]) -> dict[str, Any]:
-    """The `overrides`, with the parameter `flow` in place of a scene file's flow.kind ... or flow.NAME.kind ..."""
+    """The `overrides`, with a scene file's flow.kind ... or flow.NAME.kind ... replaced by the parameter `flow`."""
     fields: dict[str, dict[str, Any]] = {}
     for name in [name for name in overrides if name.startswith(FLOW)]:
         part, _, field = name.removeprefix(FLOW).rpartition(".")

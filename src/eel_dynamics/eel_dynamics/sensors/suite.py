@@ -61,7 +61,7 @@ class SensorSuite:
                 self.sensors[name], self._index[name] = Sensor(each, around, station), places.index(station)
 
     def begin(self) -> None:
-        """Begin anew: the same readings follow."""
+        """Restart: the same readings follow."""
         for sensor in self.sensors.values():
             sensor.begin()
 

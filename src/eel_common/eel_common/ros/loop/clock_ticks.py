@@ -37,13 +37,13 @@ class ClockTicks:
         return self._count / self._rate if self._rate > 0.0 else math.inf
 
     def reach(self, stamp: int) -> None:
-        """Publish what is due with the sample at simulation time `stamp` [ns]."""
+        """Publish the messages up to the sample at simulation time `stamp` [ns]."""
         if self.next == math.inf:
             self._send(stamp)
         self._catch_up(stamp)
 
     def go_on(self, present: int, stamp: int, now: float) -> None:
-        """Publish what is due at simulation time `present` [ns], before the next sample; otherwise as `repeat`."""
+        """Publish the messages up to simulation time `present` [ns], between two samples; without any, as `repeat`."""
         if self.next == math.inf:
             self.repeat(stamp, now)
         self._catch_up(present)

@@ -62,7 +62,7 @@ class Pace:
         return delay
 
     def held_by(self, sample: int) -> str:
-        """The reason, as text, why `sample` waits for more than its due time. Here there is none: empty."""
+        """The reason, as text, why `sample` must wait besides its due time. Always empty here."""
         return ""
 
     def _steps(self, sample: int) -> float:

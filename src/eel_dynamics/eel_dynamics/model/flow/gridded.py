@@ -26,14 +26,14 @@ class GriddedFlow(EqualByFields, Flow):
     """A flow on a grid, interpolated by Catmull-Rom cubics, with a continuous first derivative.
 
     Args:
-        velocity: (T, X, Y, Z, 3) [m/s] at the points, of the axes that are given; the others are left out.
+        velocity: (T, X, Y, Z, 3) [m/s] at the points, of the given axes alone.
         time, x, y, z: points [s, m] of each axis, rising. Along an axis that is not given, or has one point, all is the
             same.
         period: [s], shortest period of u at a fixed place; it bounds the time steps. None: 8 intervals.
         wave: [m], shortest wavelength of u; it bounds the distance of the nodes. None: 8 cells.
 
     Nothing is extrapolated: a swimmer that leaves the grid stops, and the times must cover the run. `of` reads
-    arrays of xarray and netCDF files. `ValueError` names what does not fit.
+    arrays of xarray and netCDF files. `ValueError` names the fault.
     """
 
     velocity: Any

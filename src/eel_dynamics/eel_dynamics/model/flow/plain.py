@@ -15,7 +15,7 @@ from eel_dynamics.model.flow.gridded import AXES, GriddedFlow
 from eel_dynamics.model.flow.sources import Gust, Shear, Uniform, Vortex, VortexStreet, Wave
 
 KINDS: dict[str, Any] = {kind.__name__: kind for kind in (Uniform, Gust, Shear, Vortex, VortexStreet, Wave)}
-OF_FUNCTION = "name", "step", "time_step", "period", "wave"  # what a file holds of a `FlowField`
+OF_FUNCTION = "name", "step", "time_step", "period", "wave"  # fields of a `FlowField` in a file
 
 
 def plain_of_flow(flow: Flow | None) -> list[dict[str, Any]] | None:

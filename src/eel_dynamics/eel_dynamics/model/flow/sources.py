@@ -24,7 +24,7 @@ class Uniform(Flow):
     """A flow uniform in space: constant `velocity` (3,) [m/s], or rows (n, 3) at `time` (n,) [s].
 
     Between rows the velocity is a cubic spline, with zero acceleration at both ends; it is constant before and
-    after them. `ValueError` names what does not fit. The exact shift of frame of `Scene.current` costs less.
+    after them. `ValueError` names a bad argument. The exact shift of frame of `Scene.current` costs less.
     """
 
     vectors = ("velocity",)

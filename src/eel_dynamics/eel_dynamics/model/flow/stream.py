@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A current that comes sample by sample, as from a sensor or a controller.
 
-Each sample is reached one interval after it has come, along a cubic that begins with the present velocity and rate: u
-and its rate never jump, and what is known is enough. A sample whose stamp lies further ahead is reached at its stamp.
+Each sample is reached one interval after it arrives, along a cubic that begins with the present velocity and rate. So u
+and its rate never jump, and no later sample is needed. A sample with a later stamp is reached at its stamp.
 When samples stop, the rate dies out within another interval, and the last velocity is held.
 """
 

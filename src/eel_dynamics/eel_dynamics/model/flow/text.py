@@ -23,7 +23,7 @@ GRIDS = ".nc"  # how the names of files end
 
 
 def flow_from_text(text: str) -> Flow | None:
-    """The flow of a `text`; None of an empty one. `ValueError` names what does not fit."""
+    """The flow of a `text`; None for an empty one. `ValueError` names the fault."""
     with reading("flow"):
         return reduce(add, map(_part, parts_of_text(text))) if text.strip() else None
 

@@ -6,7 +6,7 @@ Angles, speeds and torques are those of the joint, after the gear, in the joint'
     tau = clip(kp (reference - angle) + kd (reference rate - rate), low, high),
     high = torque_limit clip(1 - rate/speed_limit, 0, 1),   low = -torque_limit clip(1 + rate/speed_limit, 0, 1).
 
-The rotor adds gear^2 rotor_inertia to the joint's inertia. With a series spring it has an angle of its own:
+The rotor adds gear^2 rotor_inertia to the joint's inertia. With a series spring the rotor has its own angle th:
 
     gear^2 rotor_inertia thdd = tau - tau_joint - friction thd,
     tau_joint = series_stiffness (th - angle) + series_damping (thd - rate);

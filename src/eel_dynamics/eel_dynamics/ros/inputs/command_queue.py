@@ -182,7 +182,7 @@ class JointCommands(CommandQueue):
         self._beyond.clear()
 
     def read(self, message: Any) -> tuple[float, Values]:
-        """Values beyond a joint's limits are clipped, and a joint without a value is left out, with a warning."""
+        """As in `CommandQueue`. Values beyond limits are clipped and joints without a value dropped, with a warning."""
         if not self.names:
             raise ValueError("there are no servos: the shape is imposed, by curvature_law or curvature_samples")
         stamp, values = joint_command_from_message(message, self._interfaces, self.simulation.time)

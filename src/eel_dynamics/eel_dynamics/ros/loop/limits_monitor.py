@@ -52,7 +52,7 @@ class LimitsMonitor:
             self._check(snapshot)
 
     def check_torque(self, snapshot: Snapshot, limit: float) -> None:
-        """Report once a second of wall time the greatest internal torque above the `limit` [N m]; 0: there is none."""
+        """Report once a second of wall time the greatest internal torque above the `limit` [N m]; 0: no limit."""
         if limit > 0.0:
             if snapshot.torque is None:
                 self._warn("torque", "torque_limit does nothing without scene.internal_wrench")

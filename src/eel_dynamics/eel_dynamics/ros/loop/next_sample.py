@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Advances the simulation to its next sample. A request may interrupt the computation, which then goes on later."""
+"""Advances the simulation to its next sample. A request may interrupt the computation; the next call continues it."""
 
 import time
 

@@ -104,7 +104,7 @@ class RunLoop:
                 self._turn()
             except SimulationStopped as error:
                 self._fail(f"simulation {error}")
-            except Exception as error:  # unforeseen: the last good state is kept, and the node goes on
+            except Exception as error:  # unforeseen: the last good state is kept, and the node continues
                 self._fail(f"the run stopped at t = {self.time:g} s: {reason_of(error)}")
                 self.requests.wait(TICK)
         self.output.end()
@@ -114,7 +114,7 @@ class RunLoop:
         self.gate.end_steps(self.time, "the run has ended")
 
     def _turn(self) -> None:
-        """Take what has come, then wait, or go on to the next sample."""
+        """Take samples and requests that have arrived, then wait, or continue with the next sample."""
         for samples in self._inbox.take(self.time):
             samples["time"] = on_sample(samples["time"], self._parameters.values.rate)
             self._execute(self.laws.add_samples, samples, self.pace.period)
@@ -137,7 +137,7 @@ class RunLoop:
             self._fail(f"simulation {error}")
         except ValueError as error:
             failure = str(error)
-        except Exception as error:  # unforeseen: the caller gets the text, and the run goes on
+        except Exception as error:  # unforeseen: the caller gets the text, and the run continues
             failure = reason_of(error)
             self._report.event("request", f"a request is refused: {failure}", ERROR)
         return self.time, failure
