@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from functools import partial
 from types import SimpleNamespace
 
@@ -21,7 +22,7 @@ from eel_viz.recording.dispatcher import READERS
 from eel_viz.recording.reading import read
 from rclpy.serialization import deserialize_message
 
-from eel_dynamics import Body, Scene, simulate
+from eel_dynamics import Body, Run, Scene, simulate
 from eel_gaits import falling, straight
 from eel_msgs.msg import CurvatureLaw
 from eel_viz import entities
@@ -157,6 +158,27 @@ def test_two_runs_are_laid_over_each_other(run, tmp_path):
     assert "falling draft" in text
 
 
+def test_a_coarse_run_is_recorded_with_50_samples_a_second(tmp_path):
+    coarse = simulate(straight(), duration=0.5, sample_period=0.1)
+    fine = simulate(straight(), duration=0.5, sample_period=0.02, load=True)
+    coarse.to_rerun(tmp_path / "run.rrd")
+    position = read(tmp_path / "run.rrd", entities.POSITION)
+    np.testing.assert_array_equal(position.time, np.round(fine.time, 9))
+    np.testing.assert_allclose(position["scalars"], fine.position, atol=1e-12)
+    force = read(tmp_path / "run.rrd", entities.LOAD_NUMBERS)["force_2"]
+    np.testing.assert_allclose(force, fine.fluid_force[:, :, 1], atol=1e-9)
+    assert properties(tmp_path / "run.rrd", "error_estimate")["position"] == coarse.error_estimate.position
+    for how in ({"rate": 0.0}, {"rate": 10.0, "load": False}):
+        coarse.to_rerun(tmp_path / "own.rrd", **how)
+        assert len(read(tmp_path / "own.rrd", entities.POSITION).time) == 6
+    coarse.save(tmp_path / "run.nc")
+    late = replace(Run.load(tmp_path / "run.nc"), position=1.5 * coarse.position)  # another swim: as it is
+    late.to_rerun(tmp_path / "late.rrd", load=False)
+    assert len(read(tmp_path / "late.rrd", entities.POSITION).time) == 6
+    with pytest.raises(ValueError, match="rate must be"):
+        coarse.to_rerun(tmp_path / "no.rrd", rate=-1.0)
+
+
 def test_what_a_run_has_not_computed_is_not_shown(tmp_path):
     bare = simulate(straight(), duration=0.1, scene=Scene(internal_wrench=False, ledger=False))
     topics = {topic for topic, _ in messages_of_run(bare)}
@@ -192,10 +214,10 @@ def test_simulate_writes_it_too(tmp_path, capsys):
 
     out = str(tmp_path / "run.rrd")
     assert main(["straight", "--duration", "0.2", "--load", "--out", out]) == 0
-    assert read(out, entities.LOAD_NUMBERS)["force_2"].shape == (5, 51)
+    assert read(out, entities.LOAD_NUMBERS)["force_2"].shape == (13, 51)
     assert main(["straight", "--duration", "0.1", "--out", out]) == 0
     assert "exists and will be overwritten" in capsys.readouterr().err
-    assert len(read(out, entities.SPEED).time) == 3
+    assert len(read(out, entities.SPEED).time) == 7
     assert main(["straight", "--out", str(tmp_path / "run.txt")]) == 2
     assert "--out must end in .nc, .npz, .csv or .rrd, got" in capsys.readouterr().err
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Plots against X, the heat map, colours and summary: what is drawn, read back from a recording."""
 
+from itertools import combinations
 from types import SimpleNamespace
 
 import numpy as np
@@ -241,12 +242,35 @@ def test_curves_have_a_contrast_of_3_on_the_ground_of_either_theme(ground):
     assert len(found) > 20 and min(found.values()) >= 3.0, found
 
 
-def test_the_power_of_actuators_and_dampers_differ_for_eyes_without_red_or_green():
-    """In lightness, or in blue against yellow, which such eyes tell apart."""
-    shown = dict(series.SERIES[entities.POWER] + series.SERIES[entities.POWER_BESIDES])
-    actuators, dampers = (np.array(colours.curve(shown[name])) / 255.0 for name in ("actuators", "dampers"))
-    blue_against_yellow = [colour[2] - colour[:2].mean() for colour in (actuators, dampers)]
-    assert abs(np.subtract(*blue_against_yellow)) > 0.3
+EYES = {  # linear sRGB as seen by eyes without red, without green (Machado, Oliveira and Fernandes 2009, severity 1)
+    "all": np.eye(3),
+    "protanopia": np.array(
+        ((0.152286, 1.052583, -0.204868), (0.114503, 0.786281, 0.099216), (-0.003882, -0.048116, 1.051998))
+    ),
+    "deuteranopia": np.array(
+        ((0.367322, 0.860646, -0.227968), (0.280085, 0.672501, 0.047413), (-0.011820, 0.042940, 0.968881))
+    ),
+}
+XYZ = np.array(((0.4124, 0.3576, 0.1805), (0.2126, 0.7152, 0.0722), (0.0193, 0.1192, 0.9505)))  # of linear sRGB
+
+
+def cielab(colour, eyes="all") -> np.ndarray:
+    """CIELAB 1976 of a colour (..., 3) as seen by these `eyes`."""
+    linear = np.clip(_linear(np.asarray(colour) / 255.0) @ EYES[eyes].T, 0.0, 1.0)
+    x, y, z = np.moveaxis(np.cbrt(linear @ XYZ.T / (0.9505, 1.0, 1.089)), -1, 0)
+    return np.stack([116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)], axis=-1)
+
+
+@pytest.mark.parametrize("eyes", EYES)
+def test_the_curves_of_power_differ_for_eyes_without_red_or_green(eyes):
+    """A distance of 10 in CIELAB is seen at a glance. The four that are always there are further apart, and so are
+    actuators and dampers."""
+    always, besides = (series.SERIES[path] for path in (entities.POWER, entities.POWER_BESIDES))
+    seen = {name: cielab(colours.curve(colour), eyes) for name, colour in always + besides}
+    apart = {pair: np.linalg.norm(seen[pair[0]] - seen[pair[1]]) for pair in combinations(seen, 2)}
+    assert len(apart) == 36 and min(apart.values()) > 10.0, apart
+    assert min(apart[pair] for pair in combinations(dict(always), 2)) > 18.0
+    assert apart["actuators", "dampers"] > 20.0
 
 
 def test_contrast_is_that_of_the_web_s_guidelines():
@@ -327,8 +351,10 @@ def test_diverging_colours_are_ordered_and_differ_in_hue_from_the_middle():
     assert np.all(np.diff(warmth[60:240]) >= -6)
     assert warmth[75] < -60
     assert warmth[225] > 60
-    light = np.array([contrast(tuple(shade), (0, 0, 0)) for shade in colours.DIVERGING])  # grows with the lightness
-    assert np.all(np.diff(light[127::-8]) > 0.0) and np.all(np.diff(light[128::8]) > 0.0)  # channels are whole numbers
+    lightness = cielab(colours.DIVERGING)[:, 0]  # rises evenly to both sides
+    assert np.all(np.diff(lightness[127::-1]) > 0.0) and np.all(np.diff(lightness[128:]) > 0.0)
+    assert np.abs(lightness - lightness[::-1]).max() < 1.0
+    assert np.ptp(lightness) > 39.0
 
 
 def test_the_summary_counts_path_speed_and_greatest_torque():

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A run: what `simulate` returns."""
 
+import math
 import os
 import warnings
 from collections.abc import Iterator
@@ -11,6 +12,7 @@ from typing import Any
 import numpy as np
 from eel_common.cached import cached_property
 from eel_common.cell import cell_of
+from eel_common.quantity import number
 
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.joint_demand import Actuators, actuators_of
@@ -163,6 +165,7 @@ class Run(SensedRun):
         compare: "Run | None" = None,
         *,
         load: bool = True,
+        rate: float = 50.0,
         numbers: dict[str, Any] | None = None,
         goal: Any = None,
         **settings: Any,
@@ -170,14 +173,16 @@ class Run(SensedRun):
         """Record the run to Rerun, as the visualiser shows a swimmer, with its figures as properties.
 
         target: a file (.rrd) or a `rerun.RecordingStream`. compare: another run, drawn over this one. load: show the
-        water's force and the wake; a run without them is simulated again for them. numbers: numbers and texts of your
-        own, by name, as the properties `numbers`. goal: way points to draw, (n, 3) [m]. settings: of the visualiser,
-        such as blueprint="torques", skin_rate=50. `ImportError` without the package eel_viz and rerun-sdk.
+        water's force and the wake; rate: samples per second [Hz], so that the film is smooth. A run without that load,
+        or with fewer samples, is simulated again for them; 0 keeps the run's own samples. numbers: numbers and texts of
+        your own, by name, as the properties `numbers`. goal: way points to draw, (n, 3) [m]. settings: of the
+        visualiser, such as blueprint="torques", skin_rate=50. `ImportError` without the package eel_viz and rerun-sdk.
         """
         record, runs = function_of_eel_viz("rerun"), [self] if compare is None else [self, compare]
-        runs = [run.with_load() if load else run for run in runs]
+        rate = number("rate", rate, "Hz", minimum=0.0)
+        runs = [run._with_samples(rate, load) for run in runs]
         names = [f"{run.law.name} {run.accuracy.name}" for run in runs]
-        properties = properties_of_run(runs[0]) | ({"numbers": numbers} if numbers else {})
+        properties = properties_of_run(self) | ({"numbers": numbers} if numbers else {})
         messages: list[Iterator[Any]] = [messages_of_run(run) for run in runs]
         if goal is not None:
             messages[0] = chain([goal_message(goal)], messages[0])
@@ -198,6 +203,16 @@ class Run(SensedRun):
             return self
         alike = again.position.shape == self.position.shape and np.allclose(again.position, self.position, atol=1e-9)
         return replace(self, **{name: getattr(again, name) for name in LOAD}) if alike else self
+
+    def _with_samples(self, rate: float, load: bool) -> "Run":
+        """The run with `rate` samples per second [Hz] at least, and its `load`, simulated again if need be and
+        possible."""
+        finer = math.ceil(rate * float(np.max(np.diff(self.time), initial=0.0)) - 1e-9)
+        again = self._again(finer=finer, load=load and self.scene.internal_wrench) if finer > 1 else None
+        if again is None or len(again.time) != finer * (len(self.time) - 1) + 1:
+            return self.with_load() if load else self
+        alike = np.allclose(again.position[::finer], self.position, atol=1e-9)
+        return again if alike else self.with_load() if load else self
 
     def finely_sampled(self) -> "Run":
         """The same run, simulated anew with `FINER` samples in each sample period, for peaks (`analysis.peaks`).

@@ -36,4 +36,4 @@ class SweepRecordings:
         numbers = {name: label_of(value) for name, value in zip(self._grid, values, strict=True)}
         if "accuracy" in numbers:
             numbers["accuracy"] = str(numbers["accuracy"])  # a name or a number
-        run.to_rerun(self.folder / f"{index:06d}.rrd", load=False, numbers=numbers, skin_rate=RATE)
+        run.to_rerun(self.folder / f"{index:06d}.rrd", load=False, rate=0.0, numbers=numbers, skin_rate=RATE)

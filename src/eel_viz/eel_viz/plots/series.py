@@ -25,15 +25,15 @@ SERIES = {  # entity: (name, colour) of each value
     entities.SPEED: (("speed [m/s]", colours.PLAIN),),
     entities.DEPTH: (("depth [m]", colours.PLAIN),),
     entities.POWER: (
-        ("actuators", colours.ACTUATORS),
+        ("actuators", colours.deep(colours.ACTUATORS)),
         ("wake", colours.WAKE),
         ("nose", colours.ENDS),
         ("drag", colours.FORCE),
     ),
     entities.POWER_BESIDES: (
-        ("flow", colours.FLOW),
+        ("flow", colours.deep(colours.FLOW)),
         ("fins", colours.FIN),
-        ("dampers", colours.SPRINGS),
+        ("dampers", colours.deep(colours.SPRINGS)),
         ("appendages", colours.APPENDAGE),
         ("outside", colours.EXTERNAL),
     ),

@@ -3,6 +3,7 @@
 
 import reprlib
 
+import numpy as np
 import rerun as rr
 
 from eel_viz import entities
@@ -24,13 +25,20 @@ class RunText(Summary):
         super().__init__()
         self._recording, self._stream, self._settings = recording, stream, settings
         self._statuses_said: dict[str, tuple[int, str]] = {}  # level and message, by name
-        self._log_look(None)
+        self._looked: tuple[Body | None, bool] = (None, False)  # the body, and whether the water moves
+        self._log_look()
 
     def body(self, stamp: int, body: Body) -> None:
         super().body(stamp, body)
+        self._looked = body, self._looked[1]
         if body.fins or body.joints:
-            self._log_look(body)
+            self._log_look()
         send_properties(self._recording, "body", {"length": float(body.length), "mass": float(body.mass)})
+
+    def flow_vectors(self, stamp: int, position: np.ndarray, velocity: np.ndarray) -> None:
+        if not self._looked[1]:
+            self._looked = self._looked[0], True
+            self._log_look()
 
     def head_pose(self, stamp: int, pose: Pose) -> None:
         if self.add_position(stamp, pose.position):
@@ -60,10 +68,9 @@ class RunText(Summary):
         if self.values:
             send_properties(self._recording, "diagnostics", self.numbers())
 
-    def _log_look(self, body: Body | None) -> None:
-        self._stream.log_static(
-            entities.LOOK, rr.TextDocument(look_text(self._settings, body), media_type="text/markdown")
-        )
+    def _log_look(self) -> None:
+        text = look_text(self._settings, *self._looked)
+        self._stream.log_static(entities.LOOK, rr.TextDocument(text, media_type="text/markdown"))
 
     def _log_event(self, stamp: int, text: str, level: str) -> None:
         self._stream.log(stamp, entities.LOG, rr.TextLog(text, level=level))
@@ -76,11 +83,13 @@ class RunText(Summary):
         self._stream.log_text(self.stamp, entities.RUN, self.text())
 
 
-def look_text(settings: Settings, body: Body | None = None) -> str:
-    """Markdown: what to look at, one sentence each, with the scales of the arrows and the parts that `body` has."""
+def look_text(settings: Settings, body: Body | None = None, flow: bool = False) -> str:
+    """Markdown: what to look at, one sentence each, with the scales of the arrows and the parts that `body` has.
+
+    flow: whether arrows show moving water."""
     scale = f"up to {settings.colour_limit:g} N m" if settings.colour_limit else "of the last 3 s"
     lines = [
-        "Eyes show its head, the white arrow where it moves.",
+        "Eyes show its head, the white arrow where it moves, the grey line the path of its head.",
         f"Red and blue on its flanks: the torque **C3** that bends it sideways, on the scale {scale} below the picture "
         "(C1 twists, C2 bends it up and down).",
         f"Arrows: the **force of the water**, {settings.load_scale:g} m for 1 N/m; magenta at nose and tail, "
@@ -90,5 +99,6 @@ def look_text(settings: Settings, body: Body | None = None) -> str:
         "Lime: **fins**.": body and body.fins,
         "Rings: **joints**, the whiter, the more the motor gives (tab *robot*).": body and body.joints,
     }
-    lines.append(" ".join(text for text, there in parts.items() if there))
+    water = "Pale blue arrows: how the **water** moves without the swimmer; the legend tells the longest."
+    lines.append(" ".join(text for text, there in (parts | {water: flow}).items() if there))
     return "  \n".join(line for line in lines if line)

@@ -2,8 +2,9 @@
 """The meaning of each colour, the same in every view, and distinct for colour-blind readers.
 
 The colours of the axes are Okabe and Ito's orange, bluish green and sky blue. The diverging map goes from a light blue
-through the dark of the eel's back to a light red, ever lighter to both sides. So both signs differ in hue and lightness
-from zero, and a body without torque keeps its own colour. Space, drawings and maps have a dark ground in every theme.
+through the dark of the eel's back to a light red; its lightness L* rises evenly to both sides. So both signs differ in
+hue and lightness from zero, and a body without torque keeps its own colour. Space, drawings and maps have a dark ground
+in every theme.
 Curves over time have the theme's own ground, so their lightness lies between (`curve`).
 """
 
@@ -39,20 +40,20 @@ WATER_BACKGROUND = (9, 20, 33)
 PLOT_BACKGROUND = (13, 16, 17)
 WATER_DEEP, WATER_SHALLOW, WATER_FLOOR = (8, 20, 32), (24, 64, 90), (46, 108, 128)
 BACK, BELLY = (80, 98, 82), (226, 222, 200)  # colours of the skin
-BRIGHTEST_CURVE = 0.28  # luminance, 0 to 1: a contrast of 3 with white
+BRIGHTEST_CURVE, DEEP_CURVE = 0.28, 0.125  # luminance, 0 to 1: a contrast of 3 with white, and with the dark ground
 IRIS, PUPIL = (214, 178, 92), (8, 9, 10)
 
-_ANCHORS = np.array(
+_ANCHORS = np.array(  # of lightness L* = 80, 70, 60, 50, 40, 50, 60, 70, 80
     [
-        (150, 205, 255),
-        (96, 166, 250),
-        (62, 128, 216),
-        (62, 106, 158),
+        (149, 204, 254),
+        (110, 174, 255),
+        (71, 145, 244),
+        (72, 121, 180),
         BACK,
-        (142, 86, 62),
-        (206, 90, 58),
-        (246, 126, 80),
-        (255, 182, 136),
+        (168, 103, 75),
+        (236, 104, 68),
+        (255, 139, 100),
+        (255, 182, 137),
     ],
     dtype=float,
 )
@@ -71,12 +72,17 @@ def dim(colour: Colour, factor: float = 0.45) -> Colour:
     return red, green, blue
 
 
-def curve(colour: Colour) -> Colour:
-    """The same hue, dark enough for a white ground: of a luminance of `BRIGHTEST_CURVE` at most."""
+def curve(colour: Colour, brightest: float = BRIGHTEST_CURVE) -> Colour:
+    """The same hue, dark enough for a white ground: of the luminance `brightest` at most."""
     light = (np.array(colour) / 255.0) ** 2.2
-    share = min(1.0, BRIGHTEST_CURVE / float(light @ (0.2126, 0.7152, 0.0722)))
+    share = min(1.0, brightest / float(light @ (0.2126, 0.7152, 0.0722)))
     red, green, blue = (int(channel) for channel in 255.0 * (share * light) ** (1 / 2.2))
     return red, green, blue
+
+
+def deep(colour: Colour) -> Colour:
+    """The same hue for a curve beside others whose hues eyes without red or green cannot tell from it."""
+    return curve(colour, DEEP_CURVE)
 
 
 def faded(colour: Colour, left: np.ndarray) -> np.ndarray:
