@@ -37,7 +37,7 @@ def publishers_of(monkeypatch, node, factor, log=None):
         set_time=lambda nanoseconds: None,
         fill=lambda name, snapshot: (name, snapshot.torque, snapshot.fluid_force),
     )
-    monkeypatch.setattr("eel_dynamics.ros.publishers.SampleMessages", lambda simulation, values, without: sample)
+    monkeypatch.setattr("eel_dynamics.ros.publishers.SampleMessages", lambda simulation, values: sample)
     monkeypatch.setattr("eel_dynamics.ros.publishers.Publishers.publish_body", lambda self, simulation: None)
     values = DynamicsParameters(real_time_factor=factor, publish_robot_description=False)
     parameters = SimpleNamespace(values=values, sensors=())
