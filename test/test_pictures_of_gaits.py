@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every arrangement, drawn of real gaits by the real viewer: the swimmer is in the picture, and no view is empty.
 
-`make test` draws each arrangement of one gait. `make soak ARGS=test/test_pictures_of_gaits.py` draws every arrangement
-of every gait, and leaves the pictures in out/pictures_of_gaits.
+The soak draws each arrangement of one gait, and each of every gait, and leaves the pictures in out/pictures_of_gaits.
 """
 
 import io
@@ -86,6 +85,7 @@ def check_swimmer(path, name, picture):
     assert share > COVERED, (name, share)
 
 
+@pytest.mark.soak
 def test_every_arrangement_shows_the_swimmer(pictures, tmp_path):
     """And what finds it there does not find it in a picture that is turned upside down."""
     for name, png, views in pictures("turning", "helix"):

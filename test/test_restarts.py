@@ -92,10 +92,13 @@ def test_nodes_die_and_come_back(start_to_kill, fresh_domain, tmp_path):
         swim.until_time(target, "curvature")
         return target
 
-    def from_the_start():
-        count = len(received)
-        swim.until(lambda: any(seconds(message) < 0.3 for message in received[count:]), "samples from the start")
-        del received[: next(k for k in range(count, len(received)) if seconds(received[k]) < 0.3)]
+    def from_the_start(begin):
+        """Keep what comes from the first sample on, which may come before `begin` has returned."""
+        received.clear()
+        begun = begin()
+        swim.until(lambda: any(seconds(message) < 0.3 for message in received), "samples from the start")
+        del received[: next(k for k, message in enumerate(received) if seconds(message) < 0.3)]
+        return begun
 
     def recorded(name):
         deadline = time.monotonic() + LIMIT
@@ -125,14 +128,12 @@ def test_nodes_die_and_come_back(start_to_kill, fresh_domain, tmp_path):
     for message in received[::20]:
         assert np.allclose(message.yaw, falling().curvature(seconds(message), np.array(message.x))[0][:, 2], atol=1e-9)
 
-    assert swim.reset().success
-    from_the_start()
+    assert from_the_start(swim.reset).success
     recorded("second-2.rrd")
     on(1.0)
     dynamics.process.send_signal(signal.SIGKILL)
     dynamics.wait(LIMIT)
-    again = start("dynamics", "--ros-args", *SLOWLY[:-1], "wait_for_subscribers:=2")
-    from_the_start()
+    again = from_the_start(lambda: start("dynamics", "--ros-args", *SLOWLY[:-1], "wait_for_subscribers:=2"))
     on(0.5)
     late = visualise(start, tmp_path / "late.rrd")
     recorded("late.rrd")

@@ -56,6 +56,7 @@ def test_a_faster_gait_costs_more_and_the_bounds_that_decide_are_told(front):
     assert len(front.tried) > 20 and np.isfinite(front.tried).all()
 
 
+@pytest.mark.soak
 def test_cma_finds_what_gradients_find(front):
     other = optimise(BOUNDS, [0.5], method="cma", **QUICK | {"seed": 3})
     assert other.speed == pytest.approx([0.5], rel=0.01)
