@@ -27,7 +27,9 @@ def test_volume_of_the_kern_body(measured):
     measured("volume of the Kern-Koumoutsakos body of 1 m", 1e3 * body.volume / 8.0, 5e-5, wanted=5.9326, unit="l")
 
 
-@pytest.mark.parametrize("ours, theirs", [(Body.boyer2010(), boyer_body()), (Body.kern2006(), kern_body())], ids=str)
+@pytest.mark.parametrize(
+    "ours, theirs", [(Body.boyer2010(), boyer_body()), (Body.kern2006(), kern_body())], ids=["boyer2010", "kern2006"]
+)
 def test_half_axes_from_the_printed_formulae(measured, ours, theirs):
     apart = ours.half_width(X) - theirs.half_width(X), ours.half_height(X) - theirs.half_height(X)
     measured("half-axes, against formulae typed from the papers a second time", np.abs(apart), 1e-15, unit="m")

@@ -47,6 +47,12 @@ def pytest_configure(config: Any) -> None:
         config.addinivalue_line("markers", marker)
 
 
+def pytest_itemcollected(item: Any) -> None:
+    """`pytest.UsageError` for an id with an address: it differs between processes, and `-n` deals tests out by id."""
+    if " at 0x" in item.nodeid:
+        raise pytest.UsageError(f"{item.nodeid} has the address of an object: give ids")
+
+
 @pytest.fixture(scope="session", autouse=True)
 def ros_domain(tmp_path_factory: Any) -> Iterator[int]:
     """The number of a ROS domain that nobody else on this machine uses; in the environment for the whole session."""
