@@ -20,7 +20,7 @@ for package in "${packages[@]}"; do
     mkdir -p "$alone/src"
     held=()
     while read -r name path _; do
-        cp -r "$path" "$alone/src/$name"
+        cp -rp "$path" "$alone/src/$name"   # as old as they are, or all is compiled again
         [ "$name" = tf2_msgs ] || held+=("$name")
     done < <(colcon list "${suite[@]}" --packages-up-to "$package")
     find "$alone/src" \( -name '*.egg-info' -o -name __pycache__ \) -prune -exec rm -rf {} +

@@ -10,7 +10,7 @@ import made_up
 import numpy as np
 import pytest
 import yaml
-from eel_common.ros.testing.node_process import PROMPT
+from eel_common.ros.testing.node_process import PROMPT, found_executable
 from eel_common.topics import GLOBAL, OWN
 from eel_viz.bags.definitions import definition, message_class, type_hash
 from eel_viz.ros.echo import as_yaml, picked
@@ -195,8 +195,8 @@ def test_a_recorder_that_is_killed_leaves_a_bag_with_all_that_it_had_saved(start
     "one line that says how many messages it has, status 1; the bag opens",
 )
 def test_a_full_disk_is_said_in_one_line_and_what_was_written_opens(start, network, tmp_path):
-    limited = f"ulimit -f 600; exec eel record -o {tmp_path / 'bag'}"  # KiB
-    recorder = start("bash", "-c", limited)
+    record = ['ulimit -f 600; exec "$@"', "-", found_executable("record"), "-o", str(tmp_path / "bag")]  # KiB
+    recorder = start("bash", "-c", *record)
     recorder.wait_for_output("recording to")
     publisher = network.create_publisher(TOPICS["backbone"], "backbone", 1000)
     found(publisher)
