@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The pictures of the visualiser in docs/images, and films of swimmers: `python evidence/pictures.py`.
+"""The pictures of the visualiser in docs/images, and films of swimmers: `python evidence/pictures.py [NAME ...]`.
 
 One picture for each arrangement, and a film: the falling gait at the standard accuracy, with the run at draft accuracy
 laid over it where two are compared; few colours keep them small. Films of a course with the pilot, of two swimmers
-beside each other, and of a robot whose torque limit is lowered until it cannot follow. Rerun's viewer draws them
-without a display; status 3 where it cannot.
+beside each other, in moving water, and of a robot whose torque limit is lowered until it cannot follow. Rerun's viewer
+draws them without a display; status 3 where it cannot.
 """
 
 import io
 import sys
 import tempfile
-from collections.abc import Iterator
-from functools import partial
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+from eel_common.wording import not_one_of
 from eel_dynamics.analysis.trim import Lump
 from eel_dynamics.model.fins.text import fins_from_text
 from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
@@ -30,7 +30,7 @@ from eel_viz.settings import BLUEPRINTS
 from eel_viz.viewer import CannotRender
 from PIL import Image
 
-from eel_dynamics import Body, Robot, Run, Scene, Simulation, ballast_for, simulate
+from eel_dynamics import Body, Robot, Run, Scene, Simulation, VortexStreet, Wave, ballast_for, simulate
 from eel_gaits import Law, falling, still, straight
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "images"
@@ -42,44 +42,96 @@ BALLAST_AHEAD = 0.07  # m, by which the ballast of an untrimmed hull lies ahead 
 LIMITS = ((1.0, 3.0), (0.3, 6.0), (0.2, 9.0), (0.1, 12.0))  # N m of a weaker and weaker robot, and until when [s]
 LIMITED, TABS = (1080, 640), 60  # pixels of its film: window, and the bar at its top with the tabs
 WIDTH = 760  # pixels of that film
+COARSE: dict[str, Any] = {"sample_period": 0.04, "accuracy": 1e-3, "estimate": False}
+FLOWS = {  # of docs/howto/flow.md: name of the film, and the water
+    "flow_street": VortexStreet(circulation=0.25, core=0.4, spacing=1.6, width=0.45, start=(1.0, 0.0, 0.0)),
+    "flow_wave": Wave(amplitude=0.1, wavelength=3.0, surface=0.6),
+}
 
 
-def main() -> int:
-    """Draw them all; status 3 where the viewer cannot draw."""
-    fine, draft = (
-        simulate(falling(), accuracy=accuracy, sample_period=0.02, load=True) for accuracy in ("standard", "draft")
-    )
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        fine.to_rerun(folder / "falling.rrd", compare=draft)
-        course(folder / "course.rrd")
-        to_rerun(folder / "servos.rrd", [weakened()], ["eight servos"], blueprint="robot")
-        write = partial(write_film, folder=folder)
-        try:
-            with drawn(folder / "falling.rrd", size=SIZE) as drawing:
-                for arrangement in BLUEPRINTS:
-                    if arrangement not in ("robot", "sensors"):  # it has none
-                        drawing.arrange(arrangement)
-                        keep(drawing.png(MOMENT), arrangement)
-            with drawn(folder / "falling.rrd", size=(800, 450), bare=True) as drawing:
-                write("falling.webp", drawing, fps=10.0, quality=36, start=4.0, end=9.9)
-            with drawn(folder / "course.rrd", size=(640, 360), bare=True) as drawing:
-                write("pilot.webp", drawing, fps=7.0, quality=36, start=4.0, end=COURSE_END, speed=3.0)
-            how: dict[str, Any] = {"sample_period": 0.04, "accuracy": 1e-3, "estimate": False}
-            fins = [simulate(falling(), 10.0, fins=fins, **how) for fins in (None, fins_from_text(PAIR))]
-            rests = [simulate(still(), 8.0, body=hull, scene=Scene(weight=True), **how) for hull in hulls()]
-            for name, runs in (("falling_fins.webp", fins), ("trim.webp", rests)):
-                recordings = [folder / f"{side}.rrd" for side in ("left", "right")]
-                for run, recording in zip(runs, recordings, strict=True):
-                    run.to_rerun(recording)
-                with drawn_beside(*recordings, size=(480, 300), bare=True) as beside:
-                    write(name, beside, fps=6.0, quality=20)
-            with drawn(folder / "servos.rrd", size=LIMITED) as drawing:
-                write("servos.webp", drawing, fps=6.0, quality=24, start=2.0, end=LIMITS[-1][1] - STEP, top=TABS)
-        except CannotRender as reason:
-            print(f"pictures: {reason}", file=sys.stderr)
-            return 3
+def main(names: list[str]) -> int:
+    """Draw those named, or all; status 2 for an unknown name, 3 where the viewer cannot draw."""
+    for name in names:
+        if name not in MADE:
+            print(f"pictures: {not_one_of('name', name, MADE)}", file=sys.stderr)
+            return 2
+    try:
+        for name in names or MADE:
+            with tempfile.TemporaryDirectory() as folder:
+                MADE[name](Path(folder))
+    except CannotRender as reason:
+        print(f"pictures: {reason}", file=sys.stderr)
+        return 3
     return 0
+
+
+def arrangements(folder: Path) -> None:
+    """A picture of each arrangement, but of those that a body without motors and sensors has not."""
+    fine, draft = falls("standard"), falls("draft")
+    fine.to_rerun(folder / "falling.rrd", compare=draft)
+    with drawn(folder / "falling.rrd", size=SIZE) as drawing:
+        for arrangement in BLUEPRINTS:
+            if arrangement not in ("robot", "sensors"):
+                drawing.arrange(arrangement)
+                keep(drawing.png(MOMENT), arrangement)
+
+
+def falling_alone(folder: Path) -> None:
+    """The film of the README."""
+    falls("standard").to_rerun(folder / "falling.rrd")
+    with drawn(folder / "falling.rrd", size=(800, 450), bare=True) as drawing:
+        write_film("falling.webp", drawing, folder, fps=10.0, quality=36, start=4.0, end=9.9)
+
+
+def piloted(folder: Path) -> None:
+    """A course with the pilot."""
+    course(folder / "course.rrd")
+    with drawn(folder / "course.rrd", size=(640, 360), bare=True) as drawing:
+        write_film("pilot.webp", drawing, folder, fps=7.0, quality=36, start=4.0, end=COURSE_END, speed=3.0)
+
+
+def with_fins(folder: Path) -> None:
+    """The falling gait without fins, and with fins that hold the roll."""
+    runs = [simulate(falling(), 10.0, fins=fins, **COARSE) for fins in (None, fins_from_text(PAIR))]
+    write_beside("falling_fins.webp", runs, folder)
+
+
+def trimmed(folder: Path) -> None:
+    """A hull at rest out of trim, and in trim."""
+    runs = [simulate(still(), 8.0, body=hull, scene=Scene(weight=True), **COARSE) for hull in hulls()]
+    write_beside("trim.webp", runs, folder)
+
+
+def motors(folder: Path) -> None:
+    """A robot that weakens, with its motors."""
+    to_rerun(folder / "servos.rrd", [weakened()], ["eight servos"], blueprint="robot")
+    with drawn(folder / "servos.rrd", size=LIMITED) as drawing:
+        end = LIMITS[-1][1] - STEP
+        write_film("servos.webp", drawing, folder, fps=6.0, quality=24, start=2.0, end=end, top=TABS)
+
+
+def moving_water(folder: Path) -> None:
+    """A swimmer in a street of vortices, and one below a wave."""
+    for name, flow in FLOWS.items():
+        simulate(straight(), 8.0, flow=flow, **COARSE).to_rerun(folder / f"{name}.rrd")
+        with drawn(folder / f"{name}.rrd", size=(640, 410), bare=True) as drawing:
+            write_film(f"{name}.webp", drawing, folder, fps=7.0, quality=30, start=2.0, end=7.9)
+
+
+MADE: dict[str, Callable[[Path], None]] = {  # name: what draws it, given a folder for its own files
+    "arrangements": arrangements,
+    "falling": falling_alone,
+    "pilot": piloted,
+    "fins": with_fins,
+    "trim": trimmed,
+    "servos": motors,
+    "flow": moving_water,
+}
+
+
+def falls(accuracy: str) -> Run:
+    """The falling gait."""
+    return simulate(falling(), accuracy=accuracy, sample_period=0.02, load=True)
 
 
 def course(recording: Path) -> None:
@@ -112,6 +164,15 @@ def hulls() -> tuple[Body, Body]:
     level = ballast_for(light, offset=0.02)
     lump = Lump(light, None, level.mass, level.station - BALLAST_AHEAD, level.length)
     return light.changed(mass_per_length=lump, centre_of_mass_offset=level.trim.offset), level.body
+
+
+def write_beside(name: str, runs: list[Run], folder: Path) -> None:
+    """Write the film `name` of two `runs` beside each other."""
+    recordings = [folder / f"{side}.rrd" for side in ("left", "right")]
+    for run, recording in zip(runs, recordings, strict=True):
+        run.to_rerun(recording)
+    with drawn_beside(*recordings, size=(480, 300), bare=True) as beside:
+        write_film(name, beside, folder, fps=6.0, quality=20)
 
 
 def write_film(
@@ -156,4 +217,4 @@ def tell(path: Path) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))

@@ -4,11 +4,13 @@
 from types import SimpleNamespace
 
 import numpy as np
+import plain_picture
 import pytest
 from demo import DemoError, diagnostics, failures
 from eel_dynamics.runs.exchange.messages_of_run import messages_of_run
 from eel_dynamics.runs.exchange.recorded_run import fields_of_messages
 from eel_gaits.ros.messages import law_to_message
+from matplotlib.figure import Figure
 
 from eel_dynamics import Run, simulate
 from eel_gaits import falling
@@ -52,6 +54,21 @@ def test_a_wrench_that_does_not_close_is_a_failure(run, closure):
         "closure of the force",
         "closure of the torque",
     ]
+
+
+def test_the_picture_without_a_viewer_has_two_views_with_body_and_path(run, tmp_path):
+    run.to_rerun(tmp_path / "run.rrd")
+    figure = Figure(figsize=plain_picture.SIZE)
+    plain_picture.draw_body(figure, tmp_path / "run.rrd")
+    for axes, (name, along, up) in zip(figure.axes, (("from the side", 0, 2), ("from above", 0, 1)), strict=True):
+        assert axes.get_title(loc="left").startswith(name)
+        np.testing.assert_allclose(axes.lines[0].get_xydata(), run.position[:, [along, up]])
+        (bodies,) = axes.collections
+        corners = np.concatenate([path.vertices for path in bodies.get_paths()])
+        assert np.ptp(corners[:, 0]) > 0.9 and axes.get_aspect() == 1.0
+    assert [text.get_text() for text in figure.axes[0].texts] == [f"head, {each} s" for each in (1.2, 1.7, 2.4, 2.9)]
+    plain_picture.draw_plain(tmp_path / "run.rrd", tmp_path / "run.png")
+    assert (tmp_path / "run.png").stat().st_size > 50_000
 
 
 def test_missing_diagnostics_are_an_error():

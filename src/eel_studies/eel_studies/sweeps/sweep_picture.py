@@ -13,7 +13,10 @@ FIRST = "mean_speed", "cost_of_transport", "strouhal", "greatest_torque"  # draw
 MOST = 6  # panels
 PANEL = 3.4, 2.9  # inches
 COLUMNS = {1: 1, 2: 2, 4: 2}  # of so many panels; of others 3
-EXTREMES = {"least": (np.nanargmin, "v"), "most": (np.nanargmax, "^")}  # name: place and mark
+EXTREMES: dict[str, tuple[Any, str]] = {
+    "least": (np.nanargmin, "v"),
+    "most": (np.nanargmax, "^"),
+}  # name: place and mark
 
 
 def drawn_axes(grid: dict[str, list[Any]]) -> list[str]:
@@ -41,8 +44,11 @@ def draw_sweep(figure: Figure, data: Any, names: list[str], measures: list[str])
     for axes, measure in zip(panels, measures, strict=False):
         found = data[measure].squeeze().sortby([name for name in names if _numeric(data[name].values)])
         values, places = found.transpose(*names[::-1]), [_places(found[name].values) for name in names]
-        title = f"{measure.replace('_', ' ')}{_unit(measure)}"
-        (_draw_curve if len(names) == 1 else _draw_map)(axes, *places, values.values, title)
+        axes.set_title(f"{measure.replace('_', ' ')}{_unit(measure)}", fontsize="medium")
+        if len(names) == 1:
+            _draw_curve(axes, places[0], values.values)
+        else:
+            _draw_map(axes, places[0], places[1], values.values)
         for set_axis, name in zip((axes.set_xlabel, axes.set_ylabel), names, strict=False):
             set_axis(labelled(name))
         for dimension, name in zip("xy", names, strict=False):
@@ -72,16 +78,14 @@ def _shape(count: int) -> tuple[int, int]:
     return -(-count // columns), columns
 
 
-def _draw_curve(axes: Axes, x: np.ndarray, values: np.ndarray, title: str) -> None:
+def _draw_curve(axes: Axes, x: np.ndarray, values: np.ndarray) -> None:
     axes.plot(x, values, color=BLUE, marker="o", markersize=3.0, linewidth=1.2)
-    axes.set_title(title, fontsize="medium")
     axes.margins(y=0.18)
 
 
-def _draw_map(axes: Axes, x: np.ndarray, y: np.ndarray, values: np.ndarray, title: str) -> None:
+def _draw_map(axes: Axes, x: np.ndarray, y: np.ndarray, values: np.ndarray) -> None:
     axes.grid(False)
     mesh = axes.pcolormesh(_edges(x), _edges(y), values, cmap="cividis", edgecolors="none")
-    axes.set_title(title, fontsize="medium")
     axes.figure.colorbar(mesh, ax=axes)
 
 
@@ -122,7 +126,7 @@ def _places(values: np.ndarray) -> np.ndarray:
 def _edges(places: np.ndarray) -> np.ndarray:
     """Borders (n + 1,) of cells around `places` (n,): halfway between neighbours, by ratio where the range is wide."""
     if is_wide(places):
-        return np.exp(_edges(np.log(places) - np.log(places[0])) + np.log(places[0]))
+        return np.asarray(places[0] * np.exp(_edges(np.log(places / places[0]))))
     middles = 0.5 * (places[1:] + places[:-1])
     return np.concatenate(([2.0 * places[0] - middles[0]], middles, [2.0 * places[-1] - middles[-1]]))
 
