@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.batches.simulate_batch import in_threads
+from eel_dynamics.model.initial_state import AT_REST
 from eel_dynamics.runs.companion import relative_errors
-from eel_dynamics.runs.swim import AT_REST, Swim
 from eel_studies.outputs import Table
 from eel_studies.reference import reference_of
 
-from eel_dynamics import Body, Scene, SimulationStopped
+from eel_dynamics import Accuracy, Body, Scene, SimulationStopped, Swim
 from eel_gaits import Law, Ramp, Term
 
 TARGETS = 1e-2, 1e-3, 1e-4, 1e-5, 1e-6
@@ -51,7 +51,7 @@ class Trial:
     @property
     def target(self) -> float:
         """The relative error that was asked for."""
-        return float(self.swim.accuracy)
+        return float(self.swim.accuracy.target or 0.0)
 
     @property
     def missed(self) -> bool:
@@ -87,25 +87,26 @@ def drawn(rng: np.random.Generator) -> Swim:
     duration, target = between(*DURATIONS), float(rng.choice(TARGETS))
     scene = Scene(**water, internal_wrench=wrench, ledger=False)
     start = AT_REST._replace(twist=rng.normal(size=6) * SPEED * (rng.random() < 0.3))
-    return Swim(Law(*terms, name="drawn"), body, scene, target, start, duration=duration, stations=11)
+    return Swim(Law(*terms, name="drawn"), body, scene, Accuracy.of(target), start, duration=duration, stations=11)
 
 
 def trial_of(swim: Swim) -> Trial | None:
     """The trial of one swim; None for a swim that stops before its end, with its reason."""
+    target = swim.accuracy.target or 0.0
     try:
         run = swim.run()
         estimate = run.error_estimate
         assert estimate is not None
-        reference, uncertainty = reference_of(swim, AGREED * min(swim.accuracy, max(estimate.worst, 10.0 * LEAST)))
+        reference, uncertainty = reference_of(swim, AGREED * min(target, max(estimate.worst, 10.0 * LEAST)))
     except SimulationStopped:
         return None
-    known = uncertainty < AGREED * swim.accuracy
+    known = uncertainty < AGREED * target
     return Trial(
         swim=swim,
         error=relative_errors(run, reference) if known else None,
         uncertainty=uncertainty,
         estimate=estimate,
-        reported=bool(estimate.over_target(swim.accuracy, float(run.time[-1]))),
+        reported=bool(estimate.over_target(target, float(run.time[-1]))),
         cost=1.0 + estimate.cost / (run.nodes * run.evaluations),
     )
 

@@ -13,15 +13,19 @@ import numpy as np
 
 from eel_common.wording import shown
 
+ROUND_OFF = 1e-15  # of the norm of a normalised quaternion
 ROUNDED = 1e-3  # of the norm: a quaternion rounded to few digits is accepted, and normalised
 
 
 def unit_quaternion(name: str, values: Sequence[float]) -> tuple[float, ...]:
-    """`values` (x, y, z, w) normalised. `ValueError` names `name` where the norm differs from 1 by over `ROUNDED`."""
+    """`values` (x, y, z, w) normalised. `ValueError` names `name` where the norm differs from 1 by over `ROUNDED`.
+
+    A quaternion that is normalised to the last digit stays as it is.
+    """
     norm = math.hypot(*values)
     if not abs(norm - 1.0) <= ROUNDED:
         raise ValueError(f"{name} must be a unit quaternion, got {shown(list(values))} of norm {norm:.6g}")
-    return tuple(value / norm for value in values)
+    return tuple(values) if abs(norm - 1.0) <= ROUND_OFF else tuple(value / norm for value in values)
 
 
 def heading(orientation: Sequence[float] | np.ndarray) -> Any:

@@ -139,8 +139,8 @@ def _swim() -> None:
     simulation = Simulation(law=straight(), wrenches=pulls, stations=5)
     simulation.apply_wrench(0.0, (0.1, 0.0, 0.0), frame="world")
     simulation.advance(0.05)
-    setup = Simulation(scene=Scene(planar=True, ledger=False), stations=5).setup
-    swimmers, rows = SampledSwimmers(2, x, None, setup, 2), np.zeros((2, 6, 5))
+    swimmer = Simulation(scene=Scene(planar=True, ledger=False), stations=5).swimmer
+    swimmers, rows = SampledSwimmers(2, x, None, swimmer, 2), np.zeros((2, 6, 5))
     rows[:, 3] = x
     for index in range(2):
         swimmers.start(index, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), np.zeros(6), 0.0 * rows[index])

@@ -24,7 +24,7 @@ def drag_powers(friction: str, kinks: str) -> np.ndarray:
     twists = np.array([each.twist for each in seen])
     poses = np.array([[*each.position, *each.orientation] for each in seen])
     powers, instant = np.empty((len(times), 6)), eel_core.Instant(other.discretisation.swimmer)
-    water = other.setup.current, other.setup.core_flow
+    water = other.swimmer.current, other.swimmer.core_flow
     instant.drag_powers(other.law_on_grid, times, twists, powers, *water, poses, np.empty((len(times), 2, 0)))
     return powers
 

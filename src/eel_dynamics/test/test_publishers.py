@@ -41,7 +41,7 @@ def publishers_of(monkeypatch, node, factor, log=None):
     monkeypatch.setattr("eel_dynamics.ros.publishers.Publishers.publish_body", lambda self, simulation: None)
     values = DynamicsParameters(real_time_factor=factor, publish_robot_description=False)
     parameters = SimpleNamespace(values=values, sensors=())
-    swimmer = SimpleNamespace(scene=Scene(), flow=None, robot=None, setup=SimpleNamespace(sensors=(), robot=None))
+    swimmer = SimpleNamespace(scene=Scene(), flow=None, robot=None, swimmer=SimpleNamespace(sensors=(), robot=None))
     return Publishers(node, swimmer, parameters, Report(log or Log()))
 
 

@@ -44,7 +44,7 @@ def test_what_is_read_is_what_is_swum(tmp_path):
         flow=swim.flow,
     )  # fmt: skip
     assert swim.run() == run and len(swim.flow.parts) == 2
-    assert swim.simulation().setup.flow == swim.flow
+    assert swim.simulation().swimmer.flow == swim.flow
 
 
 def test_what_is_written_comes_back_equal(tmp_path):

@@ -35,7 +35,7 @@ class EpisodeRecording:
         self._folder.mkdir(parents=True, exist_ok=True)
         path = self._new_file()
         try:
-            Run.of_snapshots(snapshots, swimmers.setup, Law(name=self._name)).to_rerun(path)  # a policy moved it
+            Run.of_snapshots(snapshots, swimmers.swimmer, Law(name=self._name)).to_rerun(path)  # a policy moved it
         except BaseException:
             path.unlink(missing_ok=True)
             raise

@@ -17,7 +17,7 @@ from eel_dynamics.sensors.sensor import SensorSettings
 from eel_dynamics.sensors.suite import SensorSuite
 from eel_dynamics.sensors.timing import Delay
 from eel_dynamics.simulation.observations import Snapshot
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
+from eel_dynamics.simulation.swimmer import Swimmer
 
 from eel_gym.task import FARTHEST, FASTEST, SPIN, Observed
 
@@ -53,27 +53,27 @@ def _parts(settings: SensorSettings, robot: Robot | None) -> list[tuple[str, str
 
 
 class Sensing:
-    """The sensors with these `settings` of `swimmers`, which have the `setup`.
+    """The sensors with these `settings` of `swimmers`, which have the `swimmer`.
 
     Attributes:
         values: (n, N) float64, the numbers that `observed_by` names.
     """
 
-    def __init__(self, settings: Sequence[SensorSettings], setup: SimulationSetup, swimmers: int):
-        self._settings, self._setup = tuple(settings), setup
-        self._suites = [SensorSuite(self._settings, setup) for _ in range(swimmers)]
+    def __init__(self, settings: Sequence[SensorSettings], swimmer: Swimmer, swimmers: int):
+        self._settings, self._swimmer = tuple(settings), swimmer
+        self._suites = [SensorSuite(self._settings, swimmer) for _ in range(swimmers)]
         self._late = [Delay() for _ in range(swimmers)]  # rows of `values`, and their numbers
-        self.values = np.zeros((len(observed_by(settings, setup.robot)), swimmers))
+        self.values = np.zeros((len(observed_by(settings, swimmer.robot)), swimmers))
         self._rows: dict[str, slice] = {}
         for name, sensor in self._suites[0].sensors.items():
             begin = max((rows.stop for rows in self._rows.values()), default=0)
-            self._rows[name] = slice(begin, begin + len(_parts(sensor.settings, setup.robot)))
+            self._rows[name] = slice(begin, begin + len(_parts(sensor.settings, swimmer.robot)))
 
     def begin(self, index: int, random: np.random.Generator, flow: Flow | None) -> None:
         """Begin an episode of a swimmer in a `flow`, with noise drawn from its `random` numbers."""
         if self._settings:
             drawn = [replace(each, seed=int(random.integers(2**31))) for each in self._settings]
-            self._suites[index] = SensorSuite(drawn, replace(self._setup, flow=flow))
+            self._suites[index] = SensorSuite(drawn, self._swimmer.with_checked(flow=flow))
             self.values[:, index] = 0.0
             self._late[index] = Delay()
 

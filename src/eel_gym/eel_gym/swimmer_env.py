@@ -22,7 +22,7 @@ from eel_dynamics.sensors.sensor import SensorSettings
 from eel_dynamics.sensors.suite import check_settings, places_of
 from eel_dynamics.simulation.commanded_robots import CommandedRobots
 from eel_dynamics.simulation.sampled_swimmers import LEFT_OUT, Array, SampledSwimmers
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
+from eel_dynamics.simulation.swimmer import Swimmer
 from numpy.typing import NDArray
 
 from eel_gym.episode_recording import EpisodeRecording
@@ -93,16 +93,22 @@ class SwimmerEnv(Task):
         threads = checked_count("threads", threads, MOST_THREADS)
         count, stations = math.prod(shape), 51 if render_mode else 2
         robot = getattr(self.action, "robot", None)
-        own = {"body": self.body, "scene": self.scene, "robot": robot}
         for each in sensors:
             check_settings(each, self.body, robot, 1.0 / self.numbers.control_period)
-        setup = SimulationSetup.of(**own, accuracy=accuracy, stations=stations, sensors=places_of(sensors))
-        self._sensing = Sensing(sensors, setup, count)
+        swimmer = Swimmer(
+            body=self.body,
+            scene=self.scene,
+            robot=robot,
+            accuracy=Accuracy.of(accuracy),
+            stations=stations,
+            sensors=places_of(sensors),
+        )
+        self._sensing = Sensing(sensors, swimmer, count)
         self.swimmers: SampledSwimmers | CommandedRobots
         if isinstance(self.action, JointAction):
-            self.swimmers = CommandedRobots(count, self.action.names, self.action.kind, setup, threads)
+            self.swimmers = CommandedRobots(count, self.action.names, self.action.kind, swimmer, threads)
         else:
-            self.swimmers = SampledSwimmers(count, self.action.x, self.action.waves, setup, threads)
+            self.swimmers = SampledSwimmers(count, self.action.x, self.action.waves, swimmer, threads)
         self._recordings = [EpisodeRecording(recordings, self.name) for _ in range(count * (render_mode == "rerun"))]
         self._mean_heading = MeanHeading(max(1, round(self.action.period / self.numbers.control_period)), self.shape)
         self.ticks: np.ndarray = np.zeros(count, dtype=int)  #: (N,) control steps of the present episodes

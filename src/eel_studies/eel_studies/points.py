@@ -19,30 +19,25 @@
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import fields, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from eel_common.files.input_file import reading
 from eel_common.quantity import checked_instance, number
 from eel_common.wording import did_you_mean, shown
-from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import AT_END, OF_LEDGER, OF_WRENCH, measures_of
-from eel_dynamics.batches.broadcast import numbered
-from eel_dynamics.batches.simulate_batch import swim_of, swum
-from eel_dynamics.model.body.body import MASSES, NUMBERS, Body, checked_body
+from eel_dynamics.batches.simulate_batch import result_of
+from eel_dynamics.model.body.body import MASSES, NUMBERS, Body
 from eel_dynamics.model.fins.fins import Fin, RollHold, checked_fins
 from eel_dynamics.model.fins.text import GAINS, fins_from_text
 from eel_dynamics.model.flow.plain import KINDS
 from eel_dynamics.model.flow.text import flow_from_text
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.robot.robot import Robot, checked_robot, robot_of
-from eel_dynamics.model.scene import checked_scene
 from eel_dynamics.runs.sampling import checked_times
-from eel_dynamics.runs.swim_request import SwimRequest
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_gaits.gaits.registry import find
 
-from eel_dynamics import Accuracy, Batch, Flow, Run, Scene, Swim
+from eel_dynamics import Accuracy, Flow, Run, Scene, Swim
 from eel_gaits import Law
 
 Gait = str | Callable[..., Law] | Swim  # its name, a function of numbers, or a whole swim, as of a scene's file
@@ -57,75 +52,53 @@ POSITIONS = ("position_x", "position_y", "position_z")
 VELOCITIES = ("omega_x", "omega_y", "omega_z", "v_x", "v_y", "v_z")
 
 
-class SwimSettings(NamedTuple):
-    """The measures of a study's points, and further arguments of `simulate`."""
+def measured(run: Run, measure: Measure | tuple[str, ...], periods: int | None = None) -> dict[str, Any]:
+    """The measures of `run`, over its last `periods` whole periods (None: the later half).
 
-    measure: Measure | tuple[str, ...]  # run -> {name: number}, or names of MEASURES
-    estimate: bool = True
-    most_evaluations: float = MOST_EVALUATIONS
-
-    def measured(self, run: Run, periods: int | None = None) -> dict[str, Any]:
-        """The measures of `run`, over its last `periods` whole periods (None: the later half)."""
-        return self.measure(run) if callable(self.measure) else measures_of(run, self.measure, periods)
-
-    def without_the_rest(self, point: Swim, every_sample: bool = True) -> Swim:
-        """The `point` without ledger, internal wrench, and intermediate samples, unless a named measure reads them.
-
-        every_sample: whether intermediate samples are kept anyway.
-        """
-        if callable(self.measure):
-            return point
-        ledger, wrench = (not of.isdisjoint(self.measure) for of in (OF_LEDGER, OF_WRENCH))
-        scene = point.scene
-        scene = replace(scene, ledger=scene.ledger and ledger, internal_wrench=scene.internal_wrench and wrench)
-        point = point._replace(scene=scene)
-        if every_sample or not AT_END.issuperset(self.measure):
-            return point
-        end = float(checked_times(point.duration, point.sample_period)[-1])
-        return point._replace(duration=end, sample_period=end) if end else point
+    measure: run -> {name: number}, or names of `MEASURES`.
+    """
+    return measure(run) if callable(measure) else measures_of(run, measure, periods)
 
 
-def batch_of_points(
-    points: list[Swim],
-    how: SwimSettings,
-    threads: int | None = None,
-    progress: Callable[[int, int], None] | None = None,
-) -> Batch:
-    """Simulate the `points` for the duration of the first. stations, threads, progress: as in `simulate_batch`."""
-    first, own = points[0], dict[str, Any](most_evaluations=how.most_evaluations)
-    own |= {"stations": [0.0]} if first.stations is None else {}
-    swimmers = [numbered(index, point.law, point.swimmer | own) for index, point in enumerate(points)]
-    times, profiles = (first.duration, first.sample_period), first.stations is not None
-    return swum(swimmers, *times, profiles, estimate=how.estimate, threads=threads, progress=progress)
+def without_the_rest(point: Swim, measure: Measure | tuple[str, ...], every_sample: bool = True) -> Swim:
+    """The `point` without ledger, internal wrench, and intermediate samples, unless a named measure reads them.
+
+    every_sample: whether intermediate samples are kept anyway.
+    """
+    if callable(measure):
+        return point
+    ledger, wrench = (not of.isdisjoint(measure) for of in (OF_LEDGER, OF_WRENCH))
+    scene = point.scene
+    scene = replace(scene, ledger=scene.ledger and ledger, internal_wrench=scene.internal_wrench and wrench)
+    point = point.with_checked(scene=scene)
+    if every_sample or not AT_END.issuperset(measure):
+        return point
+    end = float(checked_times(point.duration, point.sample_period)[-1])
+    return point.with_checked(duration=end, sample_period=end) if end else point
 
 
-def run_of_point(point: Swim, how: SwimSettings) -> Run:
+def run_of_point(point: Swim) -> Run:
     """Simulate one `point`. `SimulationStopped` if it stops early."""
-    setup = SimulationSetup.of(**point.swimmer, most_evaluations=how.most_evaluations)
-    swim = swim_of(SwimRequest.of(Run, point.law, setup, point.duration, point.sample_period, estimate=how.estimate))
+    swim = result_of(point.recording())
     if swim.stopped is not None:
         raise swim.stopped
     return swim.run
 
 
-def base_point(
-    body: Body | None,
-    scene: Scene | None,
-    accuracy: Accuracy,
-    friction: str = "printed",
-    robot: Robot | str | None = None,
-    gait: Gait = "straight",
-) -> Swim:
-    """The settings that the points of a study share: those of a `gait` that is a whole swim, and their replacements.
+def base_of(gait: Gait, friction: str = "printed", **given: Any) -> Swim:
+    """The swim that the points of a study share: `gait`, if it is a whole swim, with the fields `given` but for None.
 
-    Without a `body`, the robot's is taken. friction: of the default scene. `ValueError` names a bad argument.
+    A robot may be a name or a file. Without a body, its own is taken. friction: of the default scene. `ValueError`
+    names a bad field.
     """
-    base = gait if isinstance(gait, Swim) else Swim(None, checked_body(None), Scene(friction=friction), accuracy)
-    found = checked_robot(robot_of(robot) if isinstance(robot, str) else robot)
-    if found is not None:
-        base = base._replace(robot=found, body=found.body or base.body)
-    body, scene = base.body if body is None else body, base.scene if scene is None else scene
-    return base._replace(body=checked_body(body), scene=checked_scene(scene), accuracy=accuracy)
+    base = gait if isinstance(gait, Swim) else Swim(scene=Scene(friction=friction))
+    given = {name: value for name, value in given.items() if value is not None}
+    if "robot" in given:
+        robot = given["robot"]
+        given["robot"] = robot = checked_robot(robot_of(robot) if isinstance(robot, str) else robot)
+        if robot is not None and robot.body is not None:
+            given = {"body": robot.body} | given
+    return base.changed(**given)
 
 
 def point_at(values: Numbers, gait: Gait, numbers: Numbers, base: Swim) -> Swim:
@@ -189,7 +162,7 @@ def _point(values: Numbers, gait: Gait, base: Swim) -> Swim:
     try:
         if isinstance(gait, Swim):
             gait = gait.with_gait(**own) if own else gait
-            law, base = gait.law, base._replace(gait=gait.gait)
+            law, base = gait.law, base.with_checked(gait=gait.gait)
         else:
             law = (find(gait) if isinstance(gait, str) else gait)(**own)
     except (ValueError, TypeError) as error:
@@ -199,7 +172,7 @@ def _point(values: Numbers, gait: Gait, base: Swim) -> Swim:
     start = _start(base.start, groups["initial"])
     flow, fins = _flow_with(flow, groups["flow"]), fins_with(checked_fins(fins, body, scene), groups["fins"])
     changes = {"law": law, "body": body, "scene": scene, "accuracy": accuracy, "start": start}
-    return base._replace(**changes, flow=flow, fins=fins, robot=robot)
+    return base.changed(**changes, flow=flow, fins=fins, robot=robot)
 
 
 def _of_robot(robot: Robot | None, numbers: Numbers) -> str:

@@ -80,7 +80,7 @@ def reference_of(
     for pair in REFERENCES[least:] or REFERENCES:
         begin = time.thread_time()
         try:
-            first, second = (swim._replace(accuracy=each).run(estimate=False, **how) for each in pair)
+            first, second = (swim.changed(accuracy=each).run(estimate=False, **how) for each in pair)
         except SimulationStopped as error:
             stop = error
             continue

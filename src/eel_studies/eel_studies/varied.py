@@ -43,9 +43,9 @@ def varied(swim: Swim, values: dict[str, Any]) -> Swim:
     swim = point_at({name: value for name, value in values.items() if name not in OWN}, swim, {}, swim)
     for name, value in values.items():
         if name in OWN:
-            swim = swim._replace(**OWN[name](swim, value))
+            swim = swim.changed(**OWN[name](swim, value))
     if period and isinstance(swim.duration, float) and (now := _longest_period(swim)) != period:
-        swim = swim._replace(duration=swim.duration * now / period)
+        swim = swim.changed(duration=swim.duration * now / period)
     return swim
 
 

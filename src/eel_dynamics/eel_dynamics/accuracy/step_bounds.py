@@ -45,19 +45,19 @@ def check_cost(what: str, scale: float, most_evaluations: float) -> None:
 
 
 def step_bounds_of(
-    setup: Any, here: Any, between_samples: bool, law_scale: float, speed: float = 0.0
+    swimmer: Any, here: Any, between_samples: bool, law_scale: float, speed: float = 0.0
 ) -> eel_core.StepBounds:
-    """The bounds of the steps of a swimmer with this `SimulationSetup` on the grid of `here`, a `Discretisation`.
+    """The bounds of the steps of a swimmer with this `Swimmer` on the grid of `here`, a `Discretisation`.
 
     between_samples: whether the curvature is a quintic between two samples. law_scale: [s], the shortest time scale of
     the law and the initial velocity. speed: [m/s], of the body under the law.
     """
-    accuracy, length, mass = setup.settings, setup.body.length, here.mass
-    scale = min(law_scale, here.weight_time, setup.time_scale_of_surroundings)
-    longest = min(accuracy.longest_step * min(scale, 10.0), setup.longest_step)
-    fixed = accuracy.step or (accuracy.fixed and min(min(scale, 1.0) / accuracy.fixed, setup.longest_step))
-    part_of_span = PART_OF_RAMP if setup.scene.ledger else PART_OF_SPAN
-    sudden = not between_samples or setup.sudden_changes
+    accuracy, length, mass = swimmer.settings, swimmer.body.length, here.mass
+    scale = min(law_scale, here.weight_time, swimmer.time_scale_of_surroundings)
+    longest = min(accuracy.longest_step * min(scale, 10.0), swimmer.longest_step)
+    fixed = accuracy.step or (accuracy.fixed and min(min(scale, 1.0) / accuracy.fixed, swimmer.longest_step))
+    part_of_span = PART_OF_RAMP if swimmer.scene.ledger else PART_OF_SPAN
+    sudden = not between_samples or swimmer.sudden_changes
     slowest = max(SLOWEST * length / min(scale, 10.0), PART_OF_SPEED * speed)
     return eel_core.StepBounds(
         tolerance=math.inf if accuracy.method == "classical" else accuracy.tolerance,  # infinite: fixed steps
@@ -66,7 +66,7 @@ def step_bounds_of(
         length=length,
         momentum_floor=mass * slowest,
         part_of_span=min(1.0, part_of_span * accuracy.longest_step / LONGEST_STEP) if sudden else 1.0,
-        most_steps=setup.most_evaluations / EVALUATIONS[accuracy.method],
+        most_steps=swimmer.most_evaluations / EVALUATIONS[accuracy.method],
         spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / len(here.grid.x))),
         torque_floor=floors(mass, length, min(law_scale, 1.0)).torque,
     )

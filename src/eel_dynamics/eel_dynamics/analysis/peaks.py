@@ -119,8 +119,8 @@ def _swum_anew(run, time: float, station: int) -> tuple[np.ndarray, np.ndarray, 
     x = np.linspace(near[0], near[-1], (len(near) - 1) * FINE + 1)
     if depends_on_its_start(run):
         first = 0
-    setup, start = run.setup_at(first, x, run.accuracy.as_it_is()), float(run.time[first])
-    out, _, _, stopped = March(setup, run.law, -start).record(times - start, True, False)
+    swimmer, start = run.swimmer_at(first, x, run.accuracy.as_it_is()), float(run.time[first])
+    out, _, _, stopped = March(swimmer, -start).record(times - start, True, False)
     if stopped is not None:
         raise stopped
     return times, x, out.torque

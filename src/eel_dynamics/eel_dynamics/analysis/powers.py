@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Powers along the body of a run: of the actuators, from its internal torque, and of each kind of drag."""
 
-from dataclasses import replace
-
 import numpy as np
 from eel_common.attitude import world_from_body
 
@@ -40,17 +38,17 @@ def drag_powers(run) -> np.ndarray:
     run's settings; their sum is the ledger's `drag_power`.
     """
     run = run.in_axes(REP103)
-    setup = replace(run.setup_at(0, run.x[:1], run.accuracy.as_it_is()), fins=())  # fins have their own drag
-    here = discretise(setup, setup.grid_for(setup.shape_needs(run.law)))
+    swimmer = run.swimmer_at(0, run.x[:1], run.accuracy.as_it_is()).with_checked(fins=())  # fins have their own drag
+    here = discretise(swimmer, swimmer.grid_for(swimmer.shape_needs(run.law)))
     instant, powers = eel_core.Instant(here.swimmer), np.zeros((len(run.time), 6))
     time, relative = np.ascontiguousarray(run.time), run.twist.copy()
-    if setup.current.any():
-        relative[:, 3:] -= setup.current @ world_from_body(run.orientation)
-    water = setup.current, setup.core_flow
+    if swimmer.current.any():
+        relative[:, 3:] -= swimmer.current @ world_from_body(run.orientation)
+    water = swimmer.current, swimmer.core_flow
     poses = np.concatenate([run.position, run.orientation], axis=1)
     robot, motion = None, np.zeros((len(time), 2, 0))
-    if setup.modes is not None:
-        robot, motion = ModesOnGrid(setup.modes, here.grid, here.tabulation), motion_of_run(run, setup.modes)
+    if swimmer.modes is not None:
+        robot, motion = ModesOnGrid(swimmer.modes, here.grid, here.tabulation), motion_of_run(run, swimmer.modes)
     follower, now, begin = LawFollower(here.tabulation, law=run.law), 0.0, 0
     while begin < len(time):  # once for a law in closed form, and for each row of a `SampledLaw`
         follower.pass_events(now, now := float(time[begin]))

@@ -4,10 +4,8 @@
 from typing import Any
 
 import numpy as np
-from eel_common.quantity import checked_instance, checked_row, numbers, positive
+from eel_common.quantity import checked_instance, checked_row, numbers
 from eel_common.wording import shown
-from eel_gaits.laws.law import Law
-from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.body.body import Body
@@ -16,12 +14,11 @@ from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.motions import LAWS
 from eel_dynamics.runs.storage.run_contents import OF_EACH
-from eel_dynamics.simulation.simulation_setup import SimulationSetup, check_planar_law, checked_stations
+from eel_dynamics.runs.swim import Swim
 
-Swimmer = tuple[Law | SampledLaw, SimulationSetup]
 KINDS: dict[str, Any] = {
     "laws": LAWS,
-    "bodies": Body,
+    "bodies": (Body, type(None)),
     "scenes": Scene,
     "flows": (Flow, type(None)),
     "robots": (Robot, type(None)),
@@ -30,11 +27,10 @@ STATES = {"positions": 3, "orientations": 4, "twists": 6}  # sizes of rows
 ONE = {several: one for one, several in OF_EACH.items()} | {name: name[:-1] for name in STATES}
 
 
-def swimmers_of(
-    stations: Any, most_evaluations: Any, accuracy: Any, parts: dict[str, Any], **given: Any
-) -> list[Swimmer]:
-    """The B swimmers from these arguments of `simulate_batch`. parts: fins and wrenches; given: the others of `KINDS`
-    and `STATES`.
+def swims_of(shared: dict[str, Any], accuracy: Any, parts: dict[str, Any], **given: Any) -> list[Swim]:
+    """The B swims from these arguments of `simulate_batch`, with the `shared` fields of a `Swim`.
+
+    parts: fins and wrenches; given: the others of `KINDS` and `STATES`.
 
     A value is for all swimmers, or a sequence of B values (for `STATES` the rows of an array (B, .)). A sequence of
     length 1 counts as one for all. `ValueError` names a bad argument and the swimmer's number.
@@ -46,24 +42,14 @@ def swimmers_of(
         | {name: _lists(each) for name, each in parts.items()}
         | {name: _rows(name, given[name], size) for name, size in STATES.items()}
     )
-    most = positive("most_evaluations", most_evaluations, "per simulated second")
-    x = {length: checked_stations(stations, length) for length in dict.fromkeys(body.length for body in rows["bodies"])}
-    swimmers = []
+    swims = []
     for index, row in enumerate(zip(*rows.values(), strict=True)):
-        own = {ONE.get(name, name): value for name, value in zip(rows, row, strict=True)}
-        more = {"stations": x[own["body"].length], "most_evaluations": most}
-        swimmers.append(numbered(index, own.pop("law"), own | more))
-    return swimmers
-
-
-def numbered(index: int, law: Law | SampledLaw, arguments: dict[str, Any]) -> Swimmer:
-    """Swimmer `index`, with its law and these `arguments` of `Simulation`. A `ValueError` contains its number."""
-    try:
-        setup = SimulationSetup.of(**arguments)
-        check_planar_law(law, setup.scene)
-    except ValueError as error:
-        raise ValueError(f"swimmer {index}: {error}") from None
-    return law, setup
+        own = {ONE.get(name, name): each for name, each in zip(rows, row, strict=True)}
+        try:
+            swims.append(Swim.of(**shared, **own))
+        except ValueError as error:
+            raise ValueError(f"swimmer {index}: {error}") from None
+    return swims
 
 
 def _broadcast(given: dict[str, list]) -> dict[str, list]:

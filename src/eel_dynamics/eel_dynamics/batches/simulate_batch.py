@@ -22,17 +22,15 @@ from numpy.typing import ArrayLike
 from eel_dynamics.accuracy.accuracy import STANDARD
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.batches.batch import Batch, batch_of, coordinates_of
-from eel_dynamics.batches.broadcast import Swimmer, swimmers_of
-from eel_dynamics.model.body.body import Body
-from eel_dynamics.model.flow.flow import check_covers
+from eel_dynamics.batches.broadcast import swims_of
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.motions import check_duration
+from eel_dynamics.runs.recording import Recording, SwimResult, times_of
 from eel_dynamics.runs.run import Run
-from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
-from eel_dynamics.runs.settled_duration import duration_of
+from eel_dynamics.runs.sampling import check_memory, default_sample_period
+from eel_dynamics.runs.settled_duration import until_settled
 from eel_dynamics.runs.storage.run_contents import OF_EACH, arrays_of_run
 from eel_dynamics.runs.storage.variables import COUNTS, names_with, shape_of
-from eel_dynamics.runs.swim_request import SwimRequest, SwimResult
+from eel_dynamics.runs.swim import Swim
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 MOST_THREADS = 1000
@@ -85,13 +83,20 @@ def simulate_batch(
         fins, wrenches: as in `simulate` for all; or a list of B entries, each a list or None. With wrenches that are
             functions swimmers run one at a time.
     """
-    swimmers = swimmers_of(
-        [0.0] if stations is None else stations,
-        most_evaluations,
+    shared = {
+        "stations": stations,
+        "duration": duration,
+        "sample_period": sample_period,
+        "load": load,
+        "estimate": estimate,
+        "most_evaluations": most_evaluations,
+    }
+    swims = swims_of(
+        shared,
         accuracy,
         {"fins": fins, "wrenches": wrenches},
         laws=laws,
-        bodies=Body.boyer2010() if bodies is None else bodies,
+        bodies=bodies,
         scenes=Scene() if scenes is None else scenes,
         flows=flows,
         robots=robots,
@@ -99,55 +104,45 @@ def simulate_batch(
         orientations=orientations,
         twists=twists,
     )
-    return swum(swimmers, duration, sample_period, stations is not None, load, estimate, threads, progress)
+    return swum(swims, threads, progress)
 
 
-def swum(
-    swimmers: list[Swimmer],
-    duration: float | str,
-    sample_period: float | None = None,
-    profiles: bool = True,
-    load: bool = False,
-    estimate: bool = True,
-    threads: int | None = None,
-    progress: Callable[[int, int], None] | None = None,
-) -> Batch:
-    """The batch of these `swimmers`. profiles: whether it has profiles along the body; others as in
-    `simulate_batch`."""
-    seconds = duration_of(duration, swimmers)
+def swum(swims: list[Swim], threads: int | None = None, progress: Callable[[int, int], None] | None = None) -> Batch:
+    """The batch of these `swims`, with the samples of the first, until the slowest has settled if that is wanted.
+
+    threads, progress: as in `simulate_batch`.
+    """
+    first = swims[0]
+    seconds = max(swim.seconds for swim in swims) if until_settled(first.duration) else first.seconds
+    sample_period = first.sample_period
     if sample_period is None:
-        sample_period = default_sample_period({law for law, _ in swimmers}, seconds)
-    times = checked_times(seconds, sample_period)
-    for law, setup in swimmers:
-        check_duration(law, seconds)
-        check_covers(setup.flow, float(times[-1]))
-    setups, load = [setup for _, setup in swimmers], bool(load) and profiles
-    wrench = [setup.scene.internal_wrench and profiles for setup in setups]
-    count, points = len(swimmers), len(setups[0].x)
-    check_memory(count, len(times), points, any(wrench), load)
-    robots = [coordinates_of(setup.robot) for setup in setups]
-    sizes = {"time": len(times), "station": points, "fin": max(len(setup.fins) for setup in setups)}
+        sample_period = default_sample_period({swim.law for swim in swims}, seconds)
+    times, *_ = [times_of(swim, seconds, sample_period) for swim in swims]
+    profiles = first.stations is not None
+    load = bool(first.load) and profiles
+    count, points = len(swims), len(first.x)
+    check_memory(count, len(times), points, any(swim.has_wrench for swim in swims), load)
+    robots = [coordinates_of(swim.robot) for swim in swims]
+    sizes = {"time": len(times), "station": points, "fin": max(len(swim.fins) for swim in swims)}
     sizes |= {name: max(each[name] for each in robots) for name in robots[0]}
     names = names_with(
-        wrench=any(wrench),
+        wrench=any(swim.has_wrench for swim in swims),
         load=load,
-        ledger=any(setup.scene.ledger for setup in setups),
+        ledger=any(swim.scene.ledger for swim in swims),
         fins=sizes["fin"],
-        robot=any(setup.robot for setup in setups),
+        robot=any(swim.robot for swim in swims),
     )
     arrays = {name: np.zeros((count, *shape_of(name, sizes))) for name in names}
     start, counts = np.zeros(count), {name: np.zeros(count, dtype=int) for name in ("samples", *COUNTS)}
     own: dict[str, list[Any]] = {
-        several: [getattr(setup, one) for setup in setups]
-        for one, several in OF_EACH.items()
-        if hasattr(setups[0], one)
+        several: [getattr(swim, one) for swim in swims] for one, several in OF_EACH.items() if hasattr(first, one)
     }
-    own |= {"laws": [law for law, _ in swimmers], "error": count * [None], "error_estimates": count * [None]}
+    own |= {"error": count * [None], "error_estimates": count * [None]}
 
-    def swim(index: int) -> None:
-        request = SwimRequest(Run, *swimmers[index], times, wrench[index], load)
+    def record(index: int) -> None:
+        recording = Recording(Run, swims[index], times, load)
         try:
-            found = swim_of(request.to_refine() if estimate else request)
+            found = result_of(recording.to_refine() if first.estimate else recording)
         except SimulationStopped as error:
             own["error"][index] = error
             return
@@ -161,14 +156,14 @@ def swum(
         for name in COUNTS:
             counts[name][index] = getattr(run, name)
 
-    in_threads(swim, range(count), threads, progress)
-    return batch_of(own, counts, times, np.array([setup.x for setup in setups]), arrays, start, profiles)
+    in_threads(record, range(count), threads, progress)
+    return batch_of(own, counts, times, np.array([swim.x for swim in swims]), arrays, start, profiles)
 
 
-def swim_of(request: SwimRequest[Run]) -> SwimResult[Run]:
-    """The swim of a `request`, which may have stopped early. `SimulationStopped` if it cannot start."""
+def result_of(recording: Recording[Run]) -> SwimResult[Run]:
+    """The swim of a `recording`, which may have stopped early. `SimulationStopped` if it cannot start."""
     try:
-        return request.outcome()
+        return recording.outcome()
     except ValueError as error:
         raise SimulationStopped(0.0, str(error), np.nan, "take a gentler law, or start slower") from None
 

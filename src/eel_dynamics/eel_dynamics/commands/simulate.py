@@ -166,17 +166,17 @@ def main(options: argparse.Namespace) -> int:
 
 def _swim_of(options: argparse.Namespace, beat: Beat | None, robot: LoggedRobot | None) -> Swim:
     """The swim of the options: of a gait, a file of a motion, the `beat` of a film, or the log of a `robot`."""
-    swim, duration = swim_from("falling", options), options.duration
+    swim, duration = swim_from(None, options), options.duration
     if robot is not None:
-        swim = swim._replace(body=robot.body)
+        swim = swim.changed(body=robot.body)
     if beat is not None and (options.body or swim.robot is None or swim.robot.body is None):
-        swim = swim._replace(body=body_for(options.body, beat.film))
+        swim = swim.changed(body=body_for(options.body, beat.film))
     law = _law(options, swim.body, beat, robot)
     if duration is None and beat is not None:
         duration = UNTIL_SETTLED
     elif duration is None:
         duration = law.duration if isinstance(law, SampledLaw) else DURATION
-    return swim._replace(law=law, duration=duration, gait=None)
+    return swim.changed(law=law, duration=duration, gait=None)
 
 
 def _scene_of_file(options: argparse.Namespace) -> Swim:

@@ -33,6 +33,9 @@ class InitialState(NamedTuple):
         return self._replace(twist=twist)
 
 
+AT_REST = InitialState(np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), np.zeros(6))
+
+
 def head_motion_of(head: InitialState) -> HeadMotion:
     """The motion of a simulation's `head`, as on the topic `odom`: so a controller for it can also drive the node."""
     return HeadMotion(head.position, head.orientation, head.twist[:3], head.twist[3:])

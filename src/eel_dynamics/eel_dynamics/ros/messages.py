@@ -87,7 +87,7 @@ class SampleMessages:
             topics["flow_vectors"] = vectors, world
         self._tf_stations = len(x) if parameters.publish_tf_stations else 0
         frames = {frame: station for frame, station in wrench_frames(parameters).items() if frame != head}
-        self._wrench_places = [simulation.setup.sensors.index(station) for station in frames.values()]
+        self._wrench_places = [simulation.swimmer.sensors.index(station) for station in frames.values()]
         children = [head, *(f"{section}_{k}" for k in range(self._tf_stations)), *frames]
         transforms = [TransformStamped(child_frame_id=child) for child in children]
         for transform in transforms:
@@ -227,7 +227,7 @@ class SampleMessages:
         simulation, flow = self._simulation, self._simulation.flow
         assert flow is not None
         points = lattice_around(snapshot.backbone.mean(axis=0), simulation.body.length, flow)
-        velocity = velocities_at(flow, points, simulation.time) + simulation.setup.current
+        velocity = velocities_at(flow, points, simulation.time) + simulation.swimmer.current
         numbers["position"][:], numbers["velocity"][:] = points.ravel(), velocity.ravel()
 
     def _fill_joints(self, numbers: Numbers, snapshot: Snapshot) -> None:

@@ -69,7 +69,7 @@ class SensorMessages:
             transform.transform.translation.x = 0.0 - sensor.station
             (self.static if sensor.station <= rigid else moving).append(transform)
             if sensor.station > rigid:
-                self._places.append(simulation.setup.sensors.index(sensor.station))
+                self._places.append(simulation.swimmer.sensors.index(sensor.station))
         if moving:
             self._messages[FRAMES] = SerialisedMessage(TFMessage(transforms=moving))
         self.kinds: dict[str, Any] = {topic: message.kind for topic, message in self._messages.items()}
@@ -150,7 +150,7 @@ _FILL: dict[type, Callable[..., tuple[str, ...]]] = {
 
 def rigid_until(simulation: Simulation) -> float:
     """X [m] up to which the body is rigid with the head: 0, or up to the first part of a robot that bends."""
-    modes = simulation.setup.modes
+    modes = simulation.swimmer.modes
     if modes is None or not len(modes):
         return 0.0
     first = float(np.min(modes.start))

@@ -13,20 +13,19 @@ from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
-from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 from eel_dynamics.model.axes import CONVENTIONS, REP103, SIGNS, turn_vector, turned
 from eel_dynamics.model.body.body import Body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.fins.fins import Fin
 from eel_dynamics.model.flow.flow import Flow
-from eel_dynamics.model.initial_state import checked_state
+from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.wrenches.external_wrench import ExternalWrench
 from eel_dynamics.runs.storage.variables import ENERGY, LEDGER, OWN, fields_of_arrays
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import Snapshot
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
+from eel_dynamics.simulation.swimmer import Swimmer
 
 ANY = float(np.finfo(float).max)  # evaluations: no limit
 
@@ -87,15 +86,15 @@ class RunData(ObservedArrays):
     axes: str = REP103  #: axes of world and head: "rep103" (x forward, y left, z up), or "paper"
 
     @classmethod
-    def of(cls, setup: Any, time: np.ndarray, arrays: dict[str, np.ndarray], **others: Any) -> Self:
+    def of(cls, swimmer: Any, time: np.ndarray, arrays: dict[str, np.ndarray], **others: Any) -> Self:
         """The run with these `arrays` (`storage.variables.arrays_of`) at `time` (T,) [s].
 
-        setup: has the body, the scene and the stations x, and perhaps a flow, a robot, fins, wrenches. others: further
-        fields.
+        swimmer: a `Swimmer`, or another object with the body, the scene and the stations x, and perhaps a flow, a
+        robot, fins, wrenches. others: further fields.
         """
-        own = {"body": setup.body, "scene": setup.scene, "flow": None, "robot": None, "fins": (), "wrenches": ()}
-        own |= {name: getattr(setup, name, none) for name, none in own.items()}
-        return cls(**own, **fields_of_arrays(arrays | {"time": time, "x": setup.x}, own["robot"]), **others)
+        own = {"body": swimmer.body, "scene": swimmer.scene, "flow": None, "robot": None, "fins": (), "wrenches": ()}
+        own |= {name: getattr(swimmer, name, none) for name, none in own.items()}
+        return cls(**own, **fields_of_arrays(arrays | {"time": time, "x": swimmer.x}, own["robot"]), **others)
 
     @classmethod
     def of_snapshots(cls, snapshots: Sequence[Snapshot], swimmer: Any, law: Law, **others: Any) -> Self:
@@ -179,23 +178,23 @@ class RunData(ObservedArrays):
         """Length [m] of the head's path through the samples."""
         return float(np.sum(np.linalg.norm(np.diff(self.position, axis=0), axis=1)))
 
-    @property
-    def swimmer(self) -> dict[str, Any]:
-        """The arguments of `Simulation` and `simulate` from the run: body, scene, flow, robot, fins and wrenches."""
-        return {name: getattr(self, name) for name in ("body", "scene", "flow", "robot", "fins", "wrenches")}
-
-    def setup_at(
-        self, sample: int, x: np.ndarray, accuracy: Accuracy, most_evaluations: float = ANY
-    ) -> SimulationSetup:
-        """The set-up of the swimmer, in REP-103 axes, with the head's motion at a `sample`.
-
-        x (M,) [m]: its stations. The other arguments are as in `Simulation`.
-        """
+    def swimmer_at(self, sample: int, x: np.ndarray, accuracy: Accuracy, most_evaluations: float = ANY) -> Swimmer:
+        """The swimmer, in REP-103 axes, with the head's motion at a `sample`, and stations at x (M,) [m]."""
         run = self.in_axes(REP103)
         orientation = run.orientation[sample] / np.linalg.norm(run.orientation[sample])
-        start = checked_state(bool(run.scene.planar), run.position[sample], orientation, run.twist[sample])
-        how = start, DEFAULT_TRANSITION, most_evaluations
-        return SimulationSetup(run.body, run.scene, accuracy, x, *how, run.flow, run.robot, run.fins, run.wrenches)
+        return Swimmer(
+            law=run.law,
+            body=run.body,
+            scene=run.scene,
+            accuracy=accuracy,
+            start=InitialState(run.position[sample], orientation, run.twist[sample]),
+            flow=run.flow,
+            robot=run.robot,
+            fins=run.fins,
+            stations=x,
+            wrenches=run.wrenches,
+            most_evaluations=most_evaluations,
+        )
 
     @property
     def body_mass(self) -> float:

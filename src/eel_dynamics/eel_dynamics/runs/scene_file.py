@@ -33,16 +33,16 @@ from eel_common.quantity import checked_instance, checked_path, checked_row, pos
 from eel_common.wording import did_you_mean, shown
 from eel_gaits.gaits.settings import SEQUENCES, Settings
 
-from eel_dynamics.accuracy.accuracy import STANDARD, Accuracy
-from eel_dynamics.model.body.body import Body
+from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.body.text import body_of
 from eel_dynamics.model.fins.text import fins_from_text, text_of_fins
 from eel_dynamics.model.flow.text import flow_from_text, text_of_flow
+from eel_dynamics.model.initial_state import AT_REST
 from eel_dynamics.model.robot.robot import robot_of
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.wrenches.text import text_of_wrenches, wrenches_from_text
 from eel_dynamics.runs.settled_duration import until_settled
-from eel_dynamics.runs.swim import AT_REST, Swim
+from eel_dynamics.runs.swim import Swim
 
 SUFFIXES = SEQUENCES  # of such files; a file with steps is a sequence
 FOR_ALL, PARAMETERS = "/**", "ros__parameters"
@@ -81,12 +81,12 @@ def swim_of(words: Any, base: Swim | None = None) -> Swim:
             hint = did_you_mean(word, (*WORDS, *known))
             raise ValueError(f"unknown word {shown(word)}{hint}, must be gait, its numbers, or {', '.join(WORDS)}")
     settings = Settings().changed(gait)
-    swim = base or Swim(settings.law(), Body.boyer2010(), Scene(), Accuracy.of(STANDARD), gait=settings)
+    swim = base or Swim(settings.law(), gait=settings)
     if base is not None and gait:
         swim = swim.with_gait(**gait)
     for word, about in WORDS.items():
-        swim = swim._replace(**about.given(swim, words[word])) if word in words else swim
-    return swim
+        swim = swim.with_checked(**about.given(swim, words[word])) if word in words else swim
+    return swim.changed()  # checked as a whole
 
 
 def words_of(swim: Swim) -> dict[str, Any]:

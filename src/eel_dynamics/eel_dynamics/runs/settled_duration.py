@@ -2,7 +2,6 @@
 """The time until a swimmer's gait has settled: the meaning of the duration "settled"."""
 
 import math
-from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -16,7 +15,7 @@ from eel_dynamics.analysis.averaging_window import PLACES, common_period
 from eel_dynamics.analysis.settling import FEWEST, SETTLED, settling_of
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Observations
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
+from eel_dynamics.simulation.swimmer import Swimmer
 
 UNTIL_SETTLED = "settled"  # as a duration
 MOST_PERIODS = 100  # longest swim if it does not settle
@@ -29,16 +28,8 @@ def until_settled(duration: object) -> bool:
     return isinstance(duration, str) and duration == UNTIL_SETTLED
 
 
-def duration_of(duration: Any, swimmers: Any) -> Any:
-    """The `duration`; for "settled" the time [s] until the slowest of the `swimmers` has settled.
-
-    swimmers: (law, set-up) of each.
-    """
-    return max(settling_time(*each) for each in swimmers) if until_settled(duration) else duration
-
-
-def settling_time(law: Any, setup: SimulationSetup) -> float:
-    """Time [s], in whole periods, after which the gait of a swimmer by `law` has settled.
+def settling_time(swimmer: Swimmer) -> float:
+    """Time [s], in whole periods, after which the gait of a `swimmer` has settled.
 
     The later half of that time is after the law's last ramp. Over its periods the mean speed and the mean power of the
     actuators change by at most `SETTLED`, and at most as much is still to come (`analysis.settling.settling_of`). Both
@@ -46,9 +37,10 @@ def settling_time(law: Any, setup: SimulationSetup) -> float:
     rest has settled. `MOST_PERIODS` if the gait does not settle within them, or if the swim stops. `ValueError` for a
     law without a period.
     """
-    period, last_ramp = period_of(law, setup.body.length), _last_ramp(law)
-    coarse = replace(setup, accuracy=_coarse(setup.accuracy), x=setup.x[:1])
-    drift = setup.current * period  # m
+    law: Any = swimmer.law
+    period, last_ramp = period_of(law, swimmer.body.length), _last_ramp(law)
+    coarse = swimmer.with_checked(accuracy=_coarse(swimmer.accuracy), stations=swimmer.x[:1])
+    drift = swimmer.current * period  # m
 
     def settled(seen: Observations, done: np.ndarray) -> bool:
         """Whether the gait has settled after the `done` (n, 8) [J] works of n - 1 periods."""
@@ -60,14 +52,14 @@ def settling_time(law: Any, setup: SimulationSetup) -> float:
         centre, work = seen.center_of_mass[lately], done[lately, 0]
         steps = centre[1:] - centre[:-1] - drift
         ways = [math.hypot(*step) for step in steps.tolist()]  # m, of the centre of mass in each period
-        if max(ways) > STILL * setup.body.length and settling_of(ways).change > MARGIN * SETTLED:
+        if max(ways) > STILL * swimmer.body.length and settling_of(ways).change > MARGIN * SETTLED:
             return False
         works = (work[1:] - work[:-1]).tolist()  # J, of the actuators
         little = max(map(abs, works)) <= NO_WORK * sum(seen.energies[count, :2].tolist())
-        return not setup.scene.ledger or little or settling_of(works).change <= MARGIN * SETTLED
+        return not swimmer.scene.ledger or little or settling_of(works).change <= MARGIN * SETTLED
 
     times = period * np.arange(MOST_PERIODS + 1)
-    _, _, done, stopped = March(coarse, law).record(times, False, False, enough=settled)
+    _, _, done, stopped = March(coarse).record(times, False, False, enough=settled)
     return float(times[-1 if stopped else done - 1])
 
 

@@ -1,13 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Simulates one run of a law: `simulate`."""
 
-import math
-import time
-import warnings
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from eel_common.command.progress import Forecast
 from numpy.typing import ArrayLike
 
 from eel_dynamics.accuracy.accuracy import STANDARD, Accuracy
@@ -19,11 +15,7 @@ from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.wrenches.external_wrench import ExternalWrench
 from eel_dynamics.runs.motions import Motion
 from eel_dynamics.runs.run import Run
-from eel_dynamics.runs.swim_request import SwimRequest
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
-
-REPORT_PERIOD = 1.0  # s of wall time between two reports, and before the first
-LONG = 60.0  # s of wall time: a longer run causes a warning
+from eel_dynamics.runs.swim import Swim
 
 
 def simulate(
@@ -76,56 +68,23 @@ def simulate(
         fins: a list of `Fin`, and of pairs of them (`Fin.pair`); None: none.
         wrenches: a list of `ExternalWrench`, which act from outside: tows, tethers, thrusters; None: none.
     """
-    setup = SimulationSetup.of(
+    swim = Swim.of(
+        law=law,
+        duration=duration,
         body=body,
         scene=scene,
         accuracy=accuracy,
+        sample_period=sample_period,
         stations=stations,
         position=position,
         orientation=orientation,
         twist=twist,
+        load=load,
+        estimate=estimate,
+        most_evaluations=most_evaluations,
         flow=flow,
         robot=robot,
         fins=fins,
         wrenches=wrenches,
-        most_evaluations=most_evaluations,
     )
-    request = SwimRequest.of(Run, law, setup, duration, sample_period, load, estimate)
-    if (slow := request.slow_motors) is not None:
-        warnings.warn(slow.text, stacklevel=2)
-    seconds = float(request.times[-1])
-    run = request.swim_to_end(ProgressMonitor(seconds, progress).update)
-    if run.error_estimate is not None and (missed := run.error_estimate.over_target(run.accuracy.target, seconds)):
-        warnings.warn(missed, stacklevel=2)
-    return run
-
-
-class ProgressMonitor:
-    """Reports once a second how far a run of `duration` [s] has come, and the remaining wall time (`Forecast`).
-
-    progress: as in `simulate`; without it, a run longer than `LONG` causes one warning.
-    """
-
-    def __init__(self, duration: float, progress: Callable[[float, float], None] | None):
-        self._duration, self._progress = duration, progress
-        self._began: float | None = None  # s, of the wall clock
-        self._forecast, self._last_report, self._warned = Forecast(), -math.inf, False
-
-    def update(self, reached: float) -> None:
-        """Report that the run has reached simulation time `reached` [s]."""
-        now = time.monotonic()
-        if self._began is None:
-            self._began = self._last_report = now
-        self._forecast.add(now, reached)
-        if now - self._last_report < REPORT_PERIOD:
-            return
-        self._last_report, took, left = now, now - self._began, self._forecast.left(self._duration)
-        if self._progress is not None:
-            self._progress(reached, math.nan if left is None else left)
-        elif left is not None and took + left > LONG and not self._warned:
-            self._warned, minutes = True, (took + left) / 60.0
-            warnings.warn(
-                f"this swim of {self._duration:g} s is going to take about {minutes:.2g} minutes: it has come to "
-                f"{reached:.3g} s in {took:.0f} s; a coarser accuracy, a slower law or a shorter duration takes less",
-                stacklevel=7,  # the caller of `simulate`, behind `swim_to_end`, `outcome`, `swim` and `record`
-            )
+    return swim.run(progress, stacklevel=3)

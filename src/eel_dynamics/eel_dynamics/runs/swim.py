@@ -1,64 +1,84 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A swim as one value: swimmer, law, scene, water, and duration."""
+"""A swim as one value: a swimmer, for how long it swims, and what of it is kept."""
 
-from typing import Any, NamedTuple, Self
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Self
 
-import numpy as np
+from eel_common.cached import cached_property
 from eel_common.wording import shown
 from eel_gaits.gaits.settings import Settings
+from eel_gaits.laws.law import Law
+from eel_gaits.sources.sampled_law import SampledLaw
 
-from eel_dynamics.model.body.body import Body
-from eel_dynamics.model.fins.fins import Fin
-from eel_dynamics.model.flow.flow import Flow
-from eel_dynamics.model.initial_state import InitialState
-from eel_dynamics.model.robot.robot import Robot
-from eel_dynamics.model.scene import Scene
-from eel_dynamics.model.wrenches.external_wrench import ExternalWrench
+from eel_dynamics.runs.motions import LAWS, law_from
+from eel_dynamics.runs.progress_monitor import ProgressMonitor
+from eel_dynamics.runs.recording import Recording, times_of
 from eel_dynamics.runs.run import Run
-from eel_dynamics.runs.simulate import simulate
+from eel_dynamics.runs.sampling import check_memory
+from eel_dynamics.runs.settled_duration import period_of, settling_time, until_settled
 from eel_dynamics.simulation.simulation import Simulation
-
-AT_REST = InitialState(np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), np.zeros(6))
-# Arguments of `Simulation`.
-OF_SWIMMER = "body", "scene", "accuracy", "stations", "flow", "robot", "fins", "wrenches"
+from eel_dynamics.simulation.swimmer import Swimmer
 
 
-class Swim(NamedTuple):
-    """The arguments of `simulate` as one value. Every field but the first four has a default."""
+@dataclass(frozen=True, eq=False)
+class Swim(Swimmer):
+    """The arguments of `simulate` as one value. Every field has a default.
 
-    law: Any  # Law or SampledLaw; None in settings shared by several swims
-    body: Body
-    scene: Scene
-    accuracy: Any  # as in `simulate`
-    start: InitialState = AT_REST
-    flow: Flow | None = None
-    robot: Robot | None = None
-    fins: tuple[Fin, ...] = ()
-    duration: float | str = 10.0  # s, or "settled"
-    sample_period: float | None = None  # s
-    stations: Any = 51  # number, or their X [m]
-    gait: Settings | None = None  # the settings of the gait that gave the law, if one did
-    body_file: str = ""  # the body's file, if any
-    robot_file: str = ""  # the robot's file, if any
-    wrenches: tuple[ExternalWrench, ...] = ()
+    law: may be given as any motion of `simulate`; None in settings that several swims share.
+    """
 
-    def run(self, **how: Any) -> Run:
-        """The run. how: further or changed arguments of `simulate`. `SimulationStopped` if it cannot go on."""
-        own = {"duration": self.duration, "sample_period": self.sample_period} | self.swimmer
-        return simulate(self.law, **own | how)
+    duration: float | str = 10.0  #: s, or "settled"
+    sample_period: float | None = None  #: s
+    load: bool = False  #: whether the water's load along the body is kept
+    estimate: bool = True  #: whether the error is estimated
+    gait: Settings | None = None  #: the settings of the gait that gave the law, if one did
+    body_file: str = ""  #: the body's file, if any
+    robot_file: str = ""  #: the robot's file, if any
 
-    def simulation(self, **how: Any) -> Simulation:
-        """The swimmer at its start. how: further or changed arguments of `Simulation`."""
-        return Simulation(**self.swimmer | {"law": self.law} | how)
+    def _checked_law(self) -> Law | SampledLaw | None:
+        law: Any = self.law
+        if law is not None and not isinstance(law, LAWS):
+            if until_settled(self.duration):
+                period_of(law, self.body.length)  # which refuses it
+            self._set(law=law_from(law, float(self.duration), self.body.length))
+        return super()._checked_law()
+
+    @cached_property
+    def seconds(self) -> float:
+        """The duration [s], also of one until the gait has settled."""
+        if until_settled(self.duration):
+            return settling_time(self)
+        return self.duration  # type: ignore[return-value]  # `checked_times` refuses another text
+
+    def recording(self) -> Recording[Run]:
+        """What is to be recorded of it. `ValueError` for samples that its law, its flow or the memory does not have."""
+        times = times_of(self, self.seconds, self.sample_period)
+        check_memory(1, len(times), len(self.x), self.has_wrench, bool(self.load), 2 if self.estimate else 1)
+        recording = Recording(Run, self, times, bool(self.load))
+        return recording.to_refine() if self.estimate else recording
+
+    def run(
+        self, progress: Callable[[float, float], None] | None = None, *, stacklevel: int = 2, **changes: Any
+    ) -> Run:
+        """The run. progress, errors: as in `simulate`. stacklevel: of warnings. changes: of fields, as in `changed`."""
+        recording = (self.changed(**changes) if changes else self).recording()
+        if (slow := recording.slow_motors) is not None:
+            warnings.warn(slow.text, stacklevel=stacklevel)
+        seconds = float(recording.times[-1])
+        run = recording.swim_to_end(ProgressMonitor(seconds, progress, stacklevel + 5).update)
+        if run.error_estimate is not None and (missed := run.error_estimate.over_target(run.accuracy.target, seconds)):
+            warnings.warn(missed, stacklevel=stacklevel)
+        return run
+
+    def simulation(self, **changes: Any) -> Simulation:
+        """The swimmer at its start. changes: of fields, as in `changed`."""
+        return Simulation(self, **changes)
 
     def with_gait(self, **numbers: Any) -> Self:
         """The same with changed `numbers` of the gait. `ValueError` if no gait gave the law."""
         if self.gait is None:
             raise ValueError(f"law {shown(getattr(self.law, 'name', None))} has no numbers: no gait gave it")
         gait = self.gait.changed(numbers)
-        return self._replace(law=gait.law(), gait=gait)
-
-    @property
-    def swimmer(self) -> dict[str, Any]:
-        """The arguments of `Simulation`, without a law."""
-        return {name: getattr(self, name) for name in OF_SWIMMER} | self.start._asdict()
+        return self.changed(law=gait.law(), gait=gait)

@@ -21,7 +21,7 @@ from eel_dynamics.sensors.timing import check_rate
 from eel_dynamics.sensors.velocity import Velocity
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
+from eel_dynamics.simulation.swimmer import Swimmer
 
 KINDS: dict[str, type[SensorSettings]] = {"imu": Imu, "pressure": Pressure, "velocity": Velocity, "encoders": Encoders}
 
@@ -36,22 +36,20 @@ class SensorSuite:
         sensors: `Sensor` by name (`SensorSettings.names`), of the settings with a rate.
     """
 
-    def __init__(
-        self, settings: Iterable[SensorSettings], simulation: Simulation | SimulationSetup, signs: ArrayLike = 1.0
-    ):
+    def __init__(self, settings: Iterable[SensorSettings], simulation: Simulation | Swimmer, signs: ArrayLike = 1.0):
         self.sensors: dict[str, Sensor] = {}
-        setup = simulation if isinstance(simulation, SimulationSetup) else simulation.setup
-        self._robot, self._signs, places = setup.robot, np.asarray(signs), setup.sensors
+        swimmer = simulation if isinstance(simulation, Swimmer) else simulation.swimmer
+        self._robot, self._signs, places = swimmer.robot, np.asarray(signs), swimmer.sensors
         self._index: dict[str, int] = {}  # of sensors at stations: place in a snapshot
         kinds = set[str]()
         for each in settings:
-            check_settings(each, setup.body, self._robot, math.inf)
+            check_settings(each, swimmer.body, self._robot, math.inf)
             if not each.rate:
                 continue
             if each.what in kinds:
                 raise ValueError(f"sensors must be one of each kind, with all its stations, got {each.what} twice")
             kinds.add(each.what)
-            around = Surroundings.of(setup.scene, setup.flow)
+            around = Surroundings.of(swimmer.scene, swimmer.flow)
             if not isinstance(each, StationedSettings):
                 self.sensors[each.what] = Sensor(each, around, joints=len(self._robot.joints) if self._robot else 0)
                 continue

@@ -4,7 +4,6 @@
 import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,11 +11,12 @@ from eel_gaits.laws.law import Law
 from numpy.typing import NDArray
 
 from eel_dynamics.model.flow.flow import Flow
+from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.sampled_swimmers import LEFT_OUT, Array
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
+from eel_dynamics.simulation.swimmer import Swimmer
 
 MODES = {"position": "position", "velocity": "velocity", "torque": "effort"}  # arguments of `March.command`
 
@@ -28,21 +28,21 @@ class CommandedRobots:
 
     Args:
         count: N. names: of the commanded joints. kind: "position", "velocity" or "torque".
-        setup: shared by all, with a robot. threads: their number.
+        swimmer: shared by all, with a robot. threads: their number.
 
     Attributes:
         heads: (13, N) position [m], orientation x y z w, angular velocity [rad/s] and velocity [m/s] of each.
         joints: (2, J, N) angle [rad] and rate [rad/s] of all joints of each.
     """
 
-    def __init__(self, count: int, names: Sequence[str], kind: str, setup: SimulationSetup, threads: int = 1):
-        assert setup.robot is not None
-        self._names, self._mode, self.accuracy = tuple(names), MODES[kind], setup.settings
-        self.setup = replace(setup, accuracy=self.accuracy)
-        self._swims = [March(self.setup, NO_LAW)] * count
+    def __init__(self, count: int, names: Sequence[str], kind: str, swimmer: Swimmer, threads: int = 1):
+        assert swimmer.robot is not None
+        self._names, self._mode, self.accuracy = tuple(names), MODES[kind], swimmer.settings
+        self.swimmer = swimmer.with_checked(accuracy=self.accuracy, law=NO_LAW)
+        self._swims = [March(self.swimmer)] * count
         self.grid = self._swims[0].discretisation.grid
         self.heads: Array = np.zeros((13, count))
-        self.joints: Array = np.zeros((2, len(setup.robot.joints), count))
+        self.joints: Array = np.zeros((2, len(swimmer.robot.joints), count))
         self._threads, self._process = threads, 0
         self._pool: ThreadPoolExecutor | None = None  # belongs to one process: a fork has none of its threads
 
@@ -54,7 +54,8 @@ class CommandedRobots:
 
         position, orientation, twist, flow: as in `Simulation`.
         """
-        self._swims[index] = March(self.setup.starting(position, orientation, twist, flow), NO_LAW)
+        start = InitialState(position, orientation, twist)
+        self._swims[index] = March(self.swimmer.starting(start, flow))
         self._command(index, commands)
         self._look(index)
 

@@ -24,7 +24,7 @@ from eel_dynamics.model.section_data import (
     weight_time,
     with_sensors,
 )
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
+from eel_dynamics.simulation.swimmer import Swimmer
 
 
 class Discretisation(NamedTuple):
@@ -38,16 +38,16 @@ class Discretisation(NamedTuple):
     tabulation: Tabulation
 
 
-def discretise(setup: SimulationSetup, settings: GridSettings) -> Discretisation:
+def discretise(swimmer: Swimmer, settings: GridSettings) -> Discretisation:
     """Tabulate the body in its scene on a grid of these `settings`, and at the stations.
 
     `ValueError` for a body without inertia in some direction.
     """
-    body, scene = setup.body, setup.scene
+    body, scene = swimmer.body, swimmer.scene
     wrench = scene.internal_wrench or scene.ledger
     panels = panels_of(body, settings.resolution, settings.knots, wrench, settings.edges)
-    further = b"" if setup.modes is None else setup.modes.points.tobytes()
-    return _on_panels(body, scene, panels, settings.kinks, setup.x.tobytes(), further, setup.fins, setup.sensors)
+    further = b"" if swimmer.modes is None else swimmer.modes.points.tobytes()
+    return _on_panels(body, scene, panels, settings.kinks, swimmer.x.tobytes(), further, swimmer.fins, swimmer.sensors)
 
 
 @lru_cache(maxsize=256)

@@ -9,7 +9,6 @@ more accurate observation.
 
 from collections import deque
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -28,8 +27,8 @@ from eel_dynamics.accuracy.error_estimate import (
 from eel_dynamics.simulation.bending.joint_motion import bends, stops_met, torque_at_stops
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Snapshot
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
+from eel_dynamics.simulation.swimmer import Swimmer
 
 COMPARED_EVERY = 0.1  # s of simulated time between two comparisons
 ROUND_OFF = 1e-9  # relative
@@ -63,7 +62,7 @@ class ErrorMeter:
     def __init__(self, march: March, wanted: bool):
         self.wanted = wanted
         self._companion: March | None = None
-        self._length = march.setup.body.length  # m
+        self._length = march.swimmer.body.length  # m
         self.lost_at: float | None = None
         self.measured_since = self._compared_at = march.time
         self._last_position: np.ndarray | None = None
@@ -85,15 +84,15 @@ class ErrorMeter:
         self._last_position, self._growth_rate, self._torque = None, growth_rate, None
         self._path, self._torque_distance, self._apart = 0.0, 0.0, np.zeros(4)
         self._speeds, self._bends = np.zeros(2), None
-        joints = 0 if march.setup.robot is None else len(march.setup.robot.joints)
+        joints = 0 if march.swimmer.robot is None else len(march.swimmer.robot.joints)
         self._stops_met, self._joints_apart = np.zeros(joints, bool), np.zeros(joints)
         self._distances.clear()
         if not self.wanted:
             return
         try:
             self._companion = on_another_grid(
-                lambda settings: march.copy_with(replace(march.setup, accuracy=settings)),
-                march.setup.settings.coarser(),
+                lambda settings: march.copy_with(march.swimmer.with_checked(accuracy=settings)),
+                march.swimmer.settings.coarser(),
                 len(march.discretisation.grid.x),
             )
         except FAILURES:
@@ -128,7 +127,7 @@ class ErrorMeter:
 
     def advanced(self, march: March, interrupted: Callable[[], bool] | None):
         """Compare the two if that is due; with limited joints at each call, as the torque of a stop is short."""
-        robot = march.setup.robot
+        robot = march.swimmer.robot
         self.due |= robot is not None and any(joint.limits is not None for joint in robot.joints)
         if self.due or march.time - self._compared_at >= COMPARED_EVERY * (1.0 - ROUND_OFF):
             self.compare(march, interrupted)
@@ -144,13 +143,13 @@ class ErrorMeter:
         except SimulationStopped:
             self._companion = None
             return
-        self._include(this, other, march.setup)
+        self._include(this, other, march.swimmer)
         if not self._apart[0] <= SMALL * self._scale:
             self.lost_at = march.time if self.lost_at is None else self.lost_at
             self.begin_again(march, self.estimate(march).growth_rate)
 
-    def _include(self, this: Snapshot, other: Snapshot, setup: SimulationSetup):
-        """Add a comparison of two snapshots of one time, of a swimmer with this `setup`."""
+    def _include(self, this: Snapshot, other: Snapshot, swimmer: Swimmer):
+        """Add a comparison of two snapshots of one time, of a swimmer with this `swimmer`."""
         apart = _distances(this, other)
         if self._last_position is not None:
             self._path += float(np.linalg.norm(this.position - self._last_position))
@@ -161,13 +160,13 @@ class ErrorMeter:
             size, differs = np.linalg.norm((this.torque, this.torque - other.torque), axis=2).max(axis=1)
             self._torque, self._torque_distance = max(self._torque or 0.0, size), max(self._torque_distance, differs)
         self._speeds = np.maximum(self._speeds, twist_size(this.twist))
-        own, others = bends(setup, this.joints), bends(setup, other.joints)
+        own, others = bends(swimmer, this.joints), bends(swimmer, other.joints)
         if own.size:
             sizes = *np.abs(own - others).max(axis=1), np.abs(own[1]).max()
             self._bends = np.maximum(0.0 if self._bends is None else self._bends, sizes)
             joints = len(self._joints_apart)
             self._joints_apart = np.maximum(self._joints_apart, np.abs(own - others)[0, :joints])
-            self._stops_met |= stops_met(setup.robot, own[:1, :joints])
+            self._stops_met |= stops_met(swimmer.robot, own[:1, :joints])
 
     @property
     def _scale(self) -> float:
@@ -187,7 +186,7 @@ class ErrorMeter:
         if self._torque is not None:
             apart = self._torque_distance
             if len(self._stops_met):
-                apart = max(apart, torque_at_stops(march.setup.robot, self._stops_met, self._joints_apart))
+                apart = max(apart, torque_at_stops(march.swimmer.robot, self._stops_met, self._joints_apart))
             found["torque"] = apart / max(self._torque, least.torque)
         if self._bends is not None:
             found["joint_angle"] = self._bends[0]

@@ -9,7 +9,6 @@ import math
 import threading
 from collections.abc import Callable
 from copy import copy, deepcopy
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -31,7 +30,6 @@ from eel_dynamics.simulation.bending.modes_on_grid import ModesOnGrid
 from eel_dynamics.simulation.discretisation import discretise
 from eel_dynamics.simulation.energy import WORKS
 from eel_dynamics.simulation.observations import Observations, Snapshot
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import (
     SimulationStopped,
     by_part,
@@ -42,13 +40,14 @@ from eel_dynamics.simulation.stopping import (
     stopped_by,
     stopped_in_flow,
 )
+from eel_dynamics.simulation.swimmer import Swimmer
 
 UNCUT = 2**62  # nodes that a march evaluates before it comes back: all
 MARCHED, SINGULAR, UNFINISHED = (eel_core.STATUSES.index(name) for name in ("marched", "singular", "unfinished"))
 
 
 class March:
-    """A march of a `setup` from its initial state under `law`, whose own t = 0 lies at `origin` [s].
+    """A march of a `swimmer` from its start under its law, whose own t = 0 lies at `origin` [s].
 
     It begins on a grid of these `settings`, or a finer one that the law needs. Without a law the body is straight.
     `ValueError` where the law cannot be begun, `SimulationStopped` where the initial state has no finite energy.
@@ -66,31 +65,26 @@ class March:
     """
 
     @np.errstate(over="ignore", invalid="ignore")  # what is not finite is reported
-    def __init__(
-        self,
-        setup: SimulationSetup,
-        law: Law | SampledLaw | None = None,
-        origin: float = 0.0,
-        settings: GridSettings | None = None,
-    ):
-        self.setup, self.time, self._time_scale = setup, 0.0, setup.time_scale
-        self._needs = setup.shape_needs(law)
+    def __init__(self, swimmer: Swimmer, origin: float = 0.0, settings: GridSettings | None = None):
+        law = swimmer.law
+        self.swimmer, self.time, self._time_scale = swimmer, 0.0, swimmer.time_scale
+        self._needs = swimmer.shape_needs(law)
         self._commands: dict[str, float] = {}  # rad, of fins
         self._held: dict[float, ExternalWrench] = {}  # by station [m]: applied, until others are
         self._next_jump = math.inf  # s, of a wrench from outside
         self._reference = np.zeros((0, 0))  # what the servos of a robot follow, by the law's factors
-        wanted = setup.grid_for(self._needs)
+        wanted = swimmer.grid_for(self._needs)
         self.core = eel_core.March(*self._on_grid(wanted if settings is None else settings.at_least(wanted)))
         self._places = self.core.row
         self.joints: JointMotion | None = None
-        self.follower = LawFollower(self.discretisation.tabulation, setup.default_transition, law, origin)
+        self.follower = LawFollower(self.discretisation.tabulation, swimmer.default_transition, law, origin)
         self._hand_over_law()
-        position, orientation, _ = setup.initial_state
+        position, orientation, _ = swimmer.start
         shape = () if self.robot is None else self.robot.at_start(self.law_on_grid, self._reference)
-        self.energy_at_start: float = self.core.start(position, orientation, setup.initial_twist, *shape)
+        self.energy_at_start: float = self.core.start(position, orientation, swimmer.initial_twist, *shape)
         if not np.isfinite(self.energy_at_start):
             stopped = SimulationStopped(0.0, "kinetic energy", self.energy_at_start, "start slower")
-            stopped = stopped_in_flow(setup.flow, self.core, 0.0) or stopped
+            stopped = stopped_in_flow(swimmer.flow, self.core, 0.0) or stopped
             raise stopped if law is None else ValueError(f"law {shown(law.name)} cannot be begun: {stopped.quantity}")
 
     def __deepcopy__(self, memo: dict[int, Any]) -> "March":
@@ -114,11 +108,11 @@ class March:
         self._hand_over_law()
         self.core.set_state_from_bytes(state["core"])
 
-    def copy_with(self, setup: SimulationSetup) -> "March":
-        """A copy in the present state, on a grid for the accuracy of `setup`, which differs in that or in its robot."""
-        copied, finer = deepcopy(self), setup.settings.resolution / self.setup.settings.resolution
-        copied.setup, resolution = setup, max(1.0, finer * self.settings.resolution)
-        copied._change_grid(self.settings._replace(resolution=resolution, kinks=setup.settings.kinks))
+    def copy_with(self, swimmer: Swimmer) -> "March":
+        """A copy in the present state of a `swimmer` with another accuracy, on a grid for it, or with another robot."""
+        copied, finer = deepcopy(self), swimmer.settings.resolution / self.swimmer.settings.resolution
+        copied.swimmer, resolution = swimmer, max(1.0, finer * self.settings.resolution)
+        copied._change_grid(self.settings._replace(resolution=resolution, kinks=swimmer.settings.kinks))
         return copied
 
     # -- law and grid
@@ -136,13 +130,13 @@ class March:
 
     def change_flow(self, flow: Flow | None):
         """Let the water move by `flow` from now on, at present with the same velocity as before."""
-        self.setup = replace(self.setup, flow=flow)
+        self.swimmer = self.swimmer.with_checked(flow=flow)
         self._fit(self._needs)
         self._hand_over_law()
 
     def change_robot(self, robot: Robot | None):
         """Go on with a robot that differs in its numbers alone."""
-        self.setup = replace(self.setup, robot=robot)
+        self.swimmer = self.swimmer.with_checked(robot=robot)
         self._change_grid(self.settings)
 
     def command_fins(self, commands: dict[str, float]):
@@ -152,10 +146,10 @@ class March:
 
     def apply_wrench(self, wrench: ExternalWrench):
         """Hold a constant `wrench` from now on, in place of the one that was held at its station."""
-        if all(each.station != wrench.station for each in self.setup.wrenches):  # a panel is to end there
-            self.setup = replace(self.setup, wrenches=(*self.setup.wrenches, ExternalWrench(wrench.station)))
+        if all(each.station != wrench.station for each in self.swimmer.wrenches):  # a panel is to end there
+            self.swimmer = self.swimmer.with_checked(wrenches=(*self.swimmer.wrenches, ExternalWrench(wrench.station)))
         self._held = self._held | {wrench.station: wrench}
-        edges = self.setup.grid_for(self._needs).edges
+        edges = self.swimmer.grid_for(self._needs).edges
         if edges == self.settings.edges:
             self._hand_over_law()
         else:
@@ -165,8 +159,8 @@ class March:
         self, joint: str, position: float | None = None, velocity: float | None = None, effort: float | None = None
     ) -> None:
         """As `Simulation.command`."""
-        assert self.setup.modes is not None
-        servo, sign, low, high = self.setup.modes.driven[joint]
+        assert self.swimmer.modes is not None
+        servo, sign, low, high = self.swimmer.modes.driven[joint]
         kind = "law" if effort is None else "effort"
         if position is not None or velocity is not None:
             kind = "velocity" if position is None else "position"
@@ -175,7 +169,7 @@ class March:
 
     def _fit(self, needs: ShapeNeeds, coarser: bool = False):
         """Make the grid fine enough for the `needs`; `coarser` where it is much finer."""
-        wanted = self.setup.grid_for(needs)
+        wanted = self.swimmer.grid_for(needs)
         settings = self.settings.fitted(wanted) if coarser else self.settings.at_least(wanted)
         if settings is not self.settings:
             self._change_grid(settings)
@@ -191,32 +185,32 @@ class March:
 
     def _on_grid(self, settings: GridSettings) -> tuple[Any, ...]:
         """What the core's march is of, on a grid of these `settings`, which are in force from now on."""
-        self.settings, self.discretisation = settings, discretise(self.setup, settings)
+        self.settings, self.discretisation = settings, discretise(self.swimmer, settings)
         grid, _, swimmer, *_, tabulation = self.discretisation
-        table, by = self.setup.modes, self.setup.settings
+        table, by = self.swimmer.modes, self.swimmer.settings
         self.robot = None if table is None else ModesOnGrid(table, grid, tabulation)
         modes = None if self.robot is None else self.robot.modes
-        return swimmer, by.method, by.order, bool(self.setup.scene.planar), modes
+        return swimmer, by.method, by.order, bool(self.swimmer.scene.planar), modes
 
     def _hand_over_law(self, smoothly: bool = False):
         """Continue under the follower's law. The next step begins anew, unless the motion goes on `smoothly`."""
-        setup, follower = self.setup, self.follower
+        swimmer, follower = self.swimmer, self.follower
         law = self.law_on_grid = follower.law_on_grid
-        scale, speed = min(follower.time_scale, self._time_scale), follower.speed(setup.body.length)
-        self._bounds = step_bounds_of(setup, self.discretisation, follower.between_samples, scale, speed)
-        breakpoints = sorted({*follower.breakpoints, *setup.breakpoints})
+        scale, speed = min(follower.time_scale, self._time_scale), follower.speed(swimmer.body.length)
+        self._bounds = step_bounds_of(swimmer, self.discretisation, follower.between_samples, scale, speed)
+        breakpoints = sorted({*follower.breakpoints, *swimmer.breakpoints})
         if self.robot is not None:
             law, self._reference = self.robot.law(follower, self.discretisation.tabulation)
-        steps, water = (breakpoints, self._bounds, bool(setup.scene.ledger)), (setup.current, setup.core_flow)
-        angles = given_angles(setup.fins, self._commands)
+        steps, water = (breakpoints, self._bounds, bool(swimmer.scene.ledger)), (swimmer.current, swimmer.core_flow)
+        angles = given_angles(swimmer.fins, self._commands)
         self.core.follow(law, *steps, *water, smoothly, angles, self._reference, self._wrenches())
 
     def _wrenches(self) -> list[Any]:
         """The wrenches from outside for the core, up to the next that jumps."""
-        setup, wrenches = self.setup, (*self.setup.wrenches, *self._held.values())
+        swimmer, wrenches = self.swimmer, (*self.swimmer.wrenches, *self._held.values())
         self._next_jump = next_jump(wrenches, self.time)
-        where = setup.body, self.discretisation.grid, setup.x
-        return core_wrenches(wrenches, *where, self.time, bool(setup.scene.planar)) if wrenches else []
+        where = swimmer.body, self.discretisation.grid, swimmer.x
+        return core_wrenches(wrenches, *where, self.time, bool(swimmer.scene.planar)) if wrenches else []
 
     # -- march
 
@@ -237,7 +231,7 @@ class March:
         if self.follower.law_on_grid is not self.law_on_grid:
             self._hand_over_law(smoothly=True)
             if not self.follower.sampled and self.follower.law is not None:
-                self._fit(self.setup.shape_needs(self.follower.law), coarser=not self.follower.blending)
+                self._fit(self.swimmer.shape_needs(self.follower.law), coarser=not self.follower.blending)
         return True
 
     def _pass_event(self) -> float:
@@ -257,7 +251,9 @@ class March:
 
     def record(self, times: np.ndarray, wrench: bool, load: bool, look=None, enough=None) -> tuple:
         """As `Simulation.record`. enough(out, works): asked after each sample with the works so far, whether to end."""
-        out = Observations(len(times), len(self.setup.x), wrench, load, len(self.setup.fins), len(self.setup.sensors))
+        out = Observations(
+            len(times), len(self.swimmer.x), wrench, load, len(self.swimmer.fins), len(self.swimmer.sensors)
+        )
         works, done, status = np.zeros((len(times), len(WORKS))), 0, MARCHED
         rows = self._empty_rows(len(times))
         self.joints = joints = self._joints(rows)
@@ -277,7 +273,7 @@ class March:
                 break
         if cut is not None:
             self.core.set_slice(cut)
-        checked = bool(self.setup.scene.ledger) and self.setup.settings.method == "classical"
+        checked = bool(self.swimmer.scene.ledger) and self.swimmer.settings.method == "classical"
         still = self._bounds.momentum_floor
         floor = still * still / self.discretisation.mass if checked else np.inf
         ledger = None if joints is None else joints.ledger
@@ -286,14 +282,14 @@ class March:
         if done:
             self.time = float(times[done - 1])
         if failure:
-            bad = SimulationStopped(self.time, *failure[1:], remedy(self.setup.settings))
-            return out, works, done, outside_flow(self.setup.flow, times[done], out.backbone[done]) or bad
+            bad = SimulationStopped(self.time, *failure[1:], remedy(self.swimmer.settings))
+            return out, works, done, outside_flow(self.swimmer.flow, times[done], out.backbone[done]) or bad
         return out, works, done, None if status == MARCHED else self._stopped(status)
 
     def _stopped(self, status: int) -> SimulationStopped:
         """The error for the `status` of a march."""
-        by_status = stopped_by(status, self.time, self._bounds, self.setup.settings)
-        stopped = stopped_in_flow(self.setup.flow, self.core, self.time) or by_status
+        by_status = stopped_by(status, self.time, self._bounds, self.swimmer.settings)
+        stopped = stopped_in_flow(self.swimmer.flow, self.core, self.time) or by_status
         return stopped if self.robot is None else by_part(stopped, self.core, self.robot.table, status == SINGULAR)
 
     # -- the present
@@ -306,17 +302,17 @@ class March:
 
     def observe(self, wrench: bool = True, load: bool = True) -> Snapshot:
         """As `Simulation.observe`."""
-        scene = self.setup.scene
+        scene = self.swimmer.scene
         wrench, load = bool(wrench and scene.internal_wrench), bool(load)
         rows = self._empty_rows(1)
         ledger = (np.array(self.core.works), self.energy_at_start) if scene.ledger else None
         joints = self._joints(rows)
-        fins, sensors = len(self.setup.fins), len(self.setup.sensors)
-        snapshot = Snapshot(self.time, self.setup.x, wrench, load, fins, ledger, joints, sensors)
+        fins, sensors = len(self.swimmer.fins), len(self.swimmer.sensors)
+        snapshot = Snapshot(self.time, self.swimmer.x, wrench, load, fins, ledger, joints, sensors)
         if not self.core.observe(snapshot.whole, rows, wrench, load):
             raise self._stopped(SINGULAR)
-        if self.setup.flow is not None and self.core.outside is not None:
-            raise left_grid(self.setup.flow, self.core.outside)
+        if self.swimmer.flow is not None and self.core.outside is not None:
+            raise left_grid(self.swimmer.flow, self.core.outside)
         return snapshot
 
     @property
@@ -331,20 +327,20 @@ class March:
     def head(self) -> InitialState:
         """As `Simulation.head`."""
         state = np.array(self.core.state)
-        return InitialState(state[:3], state[3:7], self.twist).against_water(self.setup.current)
+        return InitialState(state[:3], state[3:7], self.twist).against_water(self.swimmer.current)
 
     def set_state(self, state: InitialState):
         """Put the head into `state` at the present time; the next step begins anew.
 
         `ValueError` without a finite energy; the march then stays as it is.
         """
-        before, twist, relative = np.array(self.core.state), self.twist, state.in_water(self.setup.current)
+        before, twist, relative = np.array(self.core.state), self.twist, state.in_water(self.swimmer.current)
         with np.errstate(over="ignore", invalid="ignore"):
             energy = self.core.set_state(state.position, state.orientation, relative)
             present = self.core.set_state(before[:3], before[3:7], twist)
         if not np.isfinite(energy):
             raise ValueError(f"twist must give a finite kinetic energy, got {energy} J")
-        self._time_scale = min(self.setup.time_scale, time_scale(relative, self.setup.body.length))
+        self._time_scale = min(self.swimmer.time_scale, time_scale(relative, self.swimmer.body.length))
         self._hand_over_law()
         self.core.set_state(state.position, state.orientation, relative)
         self.energy_at_start += energy - present

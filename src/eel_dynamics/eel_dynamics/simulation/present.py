@@ -19,13 +19,13 @@ from eel_dynamics.simulation.discretisation import Discretisation
 from eel_dynamics.simulation.error_meter import ErrorMeter
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Snapshot
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
+from eel_dynamics.simulation.swimmer import Swimmer
 
 
 class Present:
     """The read-only part of a `Simulation`."""
 
-    _setup: SimulationSetup
+    _swimmer: Swimmer
     _march: March
     _meter: ErrorMeter
 
@@ -40,24 +40,24 @@ class Present:
         return np.array(self._march.core.state)
 
     @property
-    def setup(self) -> SimulationSetup:
+    def swimmer(self) -> Swimmer:
         """What neither a march nor a reset changes."""
-        return self._setup
+        return self._swimmer
 
     @property
     def accuracy(self) -> Accuracy:
         """The settings in force."""
-        return self._setup.settings
+        return self._swimmer.settings
 
     @property
     def fins(self) -> tuple[Fin, ...]:
         """The fins, each of a pair by itself."""
-        return self._setup.fins
+        return self._swimmer.fins
 
     @property
     def wrenches(self) -> tuple[ExternalWrench, ...]:
         """The wrenches from outside that were given at the start, without those that are applied."""
-        return self._setup.wrenches
+        return self._swimmer.wrenches
 
     @property
     def grid(self) -> Grid:
@@ -97,12 +97,12 @@ class Present:
     def water_at(self, place: ArrayLike) -> np.ndarray:
         """Velocity (3,) [m/s], world, that the water has at a `place` (3,) [m] at present, without the swimmer."""
         u = None if self.flow is None else self.flow.sample(place, self.time).velocity
-        return self._setup.current if u is None else self._setup.current + u
+        return self._swimmer.current if u is None else self._swimmer.current + u
 
     @property
     def flow(self) -> Flow | None:
         """How the water moves at present, beside the scene's current."""
-        return self._march.setup.flow
+        return self._march.swimmer.flow
 
     def observe(self, wrench: bool = True, load: bool = True) -> Snapshot:
         """The snapshot of the present instant.

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Many swimmers of one body in one scene, each driven by a controller's samples, marched in one call."""
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,11 +14,12 @@ from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_poin
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 from eel_dynamics.model.flow.flow import Flow, parts_of
 from eel_dynamics.model.flow.functions import FlowField
+from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.simulation.discretisation import discretise
 from eel_dynamics.simulation.march import MARCHED, SINGULAR, UNFINISHED
 from eel_dynamics.simulation.observations import Snapshot
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped, stopped_by
+from eel_dynamics.simulation.swimmer import Swimmer
 
 LEFT_OUT = -1
 MOST_WAVES = 2.0  # of a flow on the body: the nodes resolve at least this number
@@ -38,7 +38,7 @@ class SampledSwimmers:
         count: N.
         points: (n,) [m], X of the samples.
         waves: on the body, which the grid must resolve; None: the most that the points can carry.
-        setup: shared by all; `Accuracy.for_control_steps` adapts its accuracy.
+        swimmer: shared by all; `Accuracy.for_control_steps` adapts its accuracy.
         threads: their number.
 
     Attributes:
@@ -48,26 +48,26 @@ class SampledSwimmers:
             exactly.
     """
 
-    def __init__(self, count: int, points: Array, waves: float | None, setup: SimulationSetup, threads: int = 1):
-        self.accuracy = setup.settings.for_control_steps()
-        setup = self.setup = replace(setup, accuracy=self.accuracy)
+    def __init__(self, count: int, points: Array, waves: float | None, swimmer: Swimmer, threads: int = 1):
+        self.accuracy = swimmer.settings.for_control_steps()
+        swimmer = self.swimmer = swimmer.with_checked(accuracy=self.accuracy)
         self._points, self._waves, self._threads = points, waves, threads
-        self._starts = [setup] * count  # the set-up of each from its start
+        self._starts = [swimmer] * count  # the set-up of each from its start
         self._make_marches()
         self.heads: Array = np.zeros((13, count))
         self._energy_at_start = np.zeros(count)
 
     def _make_marches(self) -> None:
-        setup, sample = self.setup, self.check(np.zeros((6, len(self._points))))
-        self._discretisation = discretise(setup, setup.grid_for(ShapeNeeds(sample.waves)))
+        swimmer, sample = self.swimmer, self.check(np.zeros((6, len(self._points))))
+        self._discretisation = discretise(swimmer, swimmer.grid_for(ShapeNeeds(sample.waves)))
         self.grid = self._discretisation.grid
         self._marches = eel_core.SampledMarches(
             self._discretisation.swimmer,
             method=self.accuracy.method,
             order=self.accuracy.order,
-            planar=bool(setup.scene.planar),
-            ledger=bool(setup.scene.ledger),
-            current=setup.current,
+            planar=bool(swimmer.scene.planar),
+            ledger=bool(swimmer.scene.ledger),
+            current=swimmer.current,
             weights=self._discretisation.tabulation.weights_of(self._points),
             transition=DEFAULT_TRANSITION,
             count=len(self._starts),
@@ -88,7 +88,7 @@ class SampledSwimmers:
     def check(self, rows: Array) -> CurvatureSample:
         """A sample with these `rows` (6, n); `ValueError` if `Simulation.add_samples` would refuse it."""
         check_points(len(self._points))
-        length, planar = self.setup.body.length, self.setup.scene.planar
+        length, planar = self.swimmer.body.length, self.swimmer.scene.planar
         return CurvatureSample.checked(
             0.0, self._points, tuple(rows), waves=self._waves, length=length, planar=planar, now=0.0, begun=False
         )
@@ -100,23 +100,23 @@ class SampledSwimmers:
         The grid stays that of the samples: `ValueError` for a flow that needs a finer one.
         """
         self.check(rows)
-        setup = self.setup.starting(position, orientation, twist, flow)
+        swimmer = self.swimmer.starting(InitialState(position, orientation, twist), flow)
         if flow is not None:
             self._check_flow(flow)
-        self._starts[index], bounds = setup, self._bounds_of(setup)
-        place, turn, _ = setup.initial_state
-        energy = self._marches.start(index, bounds, place, turn, setup.initial_twist, rows, setup.core_flow)
+        self._starts[index], bounds = swimmer, self._bounds_of(swimmer)
+        place, turn, _ = swimmer.start
+        energy = self._marches.start(index, bounds, place, turn, swimmer.initial_twist, rows, swimmer.core_flow)
         if not (np.isfinite(energy) and self._marches.put_head(index, self.heads)):
             raise SimulationStopped(0.0, "kinetic energy", energy, "start slower")
         self._energy_at_start[index] = energy
 
-    def _bounds_of(self, setup: SimulationSetup) -> eel_core.StepBounds:
-        return step_bounds_of(setup, self._discretisation, True, setup.time_scale)
+    def _bounds_of(self, swimmer: Swimmer) -> eel_core.StepBounds:
+        return step_bounds_of(swimmer, self._discretisation, True, swimmer.time_scale)
 
     def _check_flow(self, flow: Flow) -> None:
         if any(isinstance(part, FlowField) for part in parts_of(flow)):
             raise ValueError(f"flow must have no functions where many swim side by side, got {shown(flow)}")
-        waves = self.setup.body.length / flow.traits.shortest_wave
+        waves = self.swimmer.body.length / flow.traits.shortest_wave
         if waves > MOST_WAVES:
             raise ValueError(f"flow must have at most {MOST_WAVES:g} waves on the body, got {waves:.3g}: {shown(flow)}")
 
@@ -145,10 +145,10 @@ class SampledSwimmers:
 
     def observe(self, index: int, *, wrench: bool = True, load: bool = True) -> Snapshot:
         """The present snapshot of a swimmer, as from `Simulation.observe`."""
-        wrench, load = bool(wrench and self.setup.scene.internal_wrench), bool(load)
+        wrench, load = bool(wrench and self.swimmer.scene.internal_wrench), bool(load)
         time, works, _ = self._marches.present(index)
-        ledger = (np.array(works), float(self._energy_at_start[index])) if self.setup.scene.ledger else None
-        snapshot = Snapshot(time, self.setup.x, wrench, load, ledger=ledger, sensors=len(self.setup.sensors))
+        ledger = (np.array(works), float(self._energy_at_start[index])) if self.swimmer.scene.ledger else None
+        snapshot = Snapshot(time, self.swimmer.x, wrench, load, ledger=ledger, sensors=len(self.swimmer.sensors))
         if not self._marches.observe(index, snapshot.whole, wrench, load):
             raise self._stopped(index, SINGULAR)
         return snapshot

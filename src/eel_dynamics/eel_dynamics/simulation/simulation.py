@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The march in time of a swimmer in water: the algorithm of section 7.1 of Boyer, Porez and Leroyer (2010)."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,94 +12,48 @@ from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 from numpy.typing import ArrayLike
 
-from eel_dynamics.accuracy.accuracy import STANDARD, Accuracy
-from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
+from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
-from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
-from eel_dynamics.model.body.body import Body
 from eel_dynamics.model.fins.fins import checked_commands
-from eel_dynamics.model.flow.flow import Flow
 from eel_dynamics.model.flow.stream import FASTEST, LATEST, CurrentStream
 from eel_dynamics.model.initial_state import checked_state
 from eel_dynamics.model.robot.actuators import Servo
 from eel_dynamics.model.robot.robot import Robot
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.wrenches.external_wrench import ExternalWrench, check_wrench
 from eel_dynamics.simulation.error_meter import ErrorMeter
 from eel_dynamics.simulation.march import March
 from eel_dynamics.simulation.observations import Observations
 from eel_dynamics.simulation.present import Present
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
+from eel_dynamics.simulation.swimmer import Swimmer
 
 ROUNDING = 1e-12  # of a time, s at least: how far the first one to record may lie before the present
 
 
 class Simulation(Present):
-    """One swimmer, from its initial state on. Adopt a law (or add samples), advance, observe.
+    """The march of one swimmer, from its start on. Adopt a law (or add samples), advance, observe.
 
     `ValueError` names the argument that does not fit. A copy, by `copy` or a pickle, goes on by itself to the same bit.
 
+        Simulation(law=straight(), scene=Scene(planar=True), twist=(0, 0, 0, 0.3, 0, 0))
+
     Args:
-        body: the swimmer; by default that of the paper.
-        scene: the physics and the water.
-        accuracy: a preset, a target relative error, or `Accuracy`.
-        stations: how many, or their X (M,) [m].
-        position: (3,) [m], of the head at the start, in the world frame.
-        orientation: (4,) x y z w, world from head, at the start.
-        twist: (6,) (Omega, V) [rad/s, m/s], of the head at the start, in its axes. World and head have REP-103 axes.
-        default_transition: [s], duration of a blend where a law gives none.
-        law: the first law to adopt.
-        most_evaluations: of the head's dynamics per simulated second. A law that needs more is refused, or the run
-            stops.
+        swimmer: its body, water and start.
         measure_error: whether a companion with coarser settings follows, for `error_estimate` and `head_errors`.
-        flow: how the water moves by itself, beside the scene's current; None: not at all.
-        robot: what bends by itself. The law then is what its servos are asked to follow; None: the law is imposed.
-        fins: a list of `Fin`, and of pairs of them; None: none.
-        sensors: X (S,) [m] of the stations that move sensors (`Snapshot.sensor_twist` and others), rising or not; a
-            snapshot has them in rising order, each once.
-        wrenches: a list of `ExternalWrench`, which act from outside, after a reset too; None: none.
+        fields: of `Swimmer`, and position (3,) [m], orientation (4,) x y z w, twist (6,) (Omega, V) [rad/s, m/s] of the
+            head at the start; in place of a swimmer, or of its own.
     """
 
-    def __init__(
-        self,
-        body: Body | None = None,
-        scene: Scene | None = None,
-        accuracy: "str | float | Accuracy" = STANDARD,
-        stations: int | ArrayLike = 51,
-        position: ArrayLike = (0.0, 0.0, 0.0),
-        orientation: ArrayLike = (0.0, 0.0, 0.0, 1.0),
-        twist: ArrayLike = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        default_transition: float = DEFAULT_TRANSITION,
-        law: Law | SampledLaw | None = None,
-        most_evaluations: float = MOST_EVALUATIONS,
-        measure_error: bool = False,
-        flow: Flow | None = None,
-        robot: Robot | None = None,
-        fins: Iterable[Any] | None = None,
-        sensors: ArrayLike = (),
-        wrenches: Iterable[ExternalWrench] | None = None,
-    ) -> None:
-        self._setup = setup = SimulationSetup.of(
-            body=body,
-            scene=scene,
-            accuracy=accuracy,
-            stations=stations,
-            position=position,
-            orientation=orientation,
-            twist=twist,
-            flow=flow,
-            robot=robot,
-            fins=fins,
-            sensors=sensors,
-            wrenches=wrenches,
-            most_evaluations=most_evaluations,
-            default_transition=default_transition,
-        )
-        self.body, self.scene, self.x, self.robot = setup.body, setup.scene, setup.x, setup.robot
-        self._march = March(setup, law)
-        self.ready, self._started = law is not None, False
-        self.currents = CurrentStream(setup.default_transition)
+    def __init__(self, swimmer: Swimmer | None = None, *, measure_error: bool = False, **fields: Any) -> None:
+        if swimmer is None:
+            swimmer = Swimmer.of(**fields)
+        elif checked_instance("swimmer", swimmer, Swimmer) and fields:
+            swimmer = swimmer.changed(**fields)
+        self._swimmer = swimmer
+        self.body, self.scene, self.x, self.robot = swimmer.body, swimmer.scene, swimmer.x, swimmer.robot
+        self._march = March(swimmer)
+        self.ready, self._started = swimmer.law is not None, False
+        self.currents = CurrentStream(swimmer.default_transition)
         self._meter = ErrorMeter(self._march, measure_error)
 
     # -- law and samples
@@ -112,16 +65,16 @@ class Simulation(Present):
         own transition, or during the default one. After the last row of a `SampledLaw` the shape comes to rest.
         `ValueError` for a law that the scene does not allow.
         """
-        needs = self._setup.shape_needs(checked_instance("law", law, (Law, SampledLaw)))
+        needs = self._swimmer.shape_needs(checked_instance("law", law, (Law, SampledLaw)))
         if not is_finite(origin):
             raise ValueError(f"law origin must be finite, got {shown(origin)} s")
-        origin, own = float(origin), law.transition or self._setup.default_transition
+        origin, own = float(origin), law.transition or self._swimmer.default_transition
         blend = positive("transition", transition or own, "s")
         if self._started:
             self._on_both(lambda march: march.change_law(law, origin, blend, needs))
             self._meter.keep_apart(self._march)
         else:
-            self._march = March(self._march.setup, law, origin)
+            self._march = March(self._march.swimmer.with_checked(law=law), origin)
             self._meter = ErrorMeter(self._march, self._meter.wanted)
         self.ready = True
 
@@ -183,7 +136,7 @@ class Simulation(Present):
             raise ValueError(f"current velocity must have no part along z in a planar scene, got {row[2]:g} m/s")
         if (course := self.currents.add(self.time, float(time), row)) is None:
             return
-        flow = course if self._setup.flow is None else self._setup.flow + course
+        flow = course if self._swimmer.flow is None else self._swimmer.flow + course
         self._on_both(lambda march: march.change_flow(flow))
 
     def command_fins(self, commands: Mapping[str, float]) -> None:
@@ -191,7 +144,7 @@ class Simulation(Present):
 
         A reset forgets them. `ValueError` for a fin that is not commanded, or an angle that is no number.
         """
-        angles = checked_commands(self._setup.fins, commands)
+        angles = checked_commands(self._swimmer.fins, commands)
         self._on_both(lambda march: march.command_fins(angles))
 
     def apply_wrench(
@@ -253,7 +206,7 @@ class Simulation(Present):
 
     def check_driven(self, joint: str) -> None:
         """`ValueError` for the name of a `joint` that cannot be commanded."""
-        modes = self._setup.modes
+        modes = self._swimmer.modes
         if modes is not None and isinstance(joint, str) and joint in modes.driven:
             return
         if self.robot is None:
@@ -281,12 +234,12 @@ class Simulation(Present):
         """
         other = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
-        setup = self._setup if robot is None else self._setup.with_robot(robot)
+        swimmer = self._swimmer if robot is None else self._swimmer.with_robot(robot)
         if accuracy is not None:
-            setup = replace(setup, accuracy=Accuracy.of(accuracy))
-        other._setup, other.robot = setup, setup.robot
-        own = self._march.setup
-        other._march = self._march.copy_with(replace(setup, flow=own.flow, wrenches=own.wrenches))
+            swimmer = swimmer.with_checked(accuracy=Accuracy.of(accuracy))
+        other._swimmer, other.robot = swimmer, swimmer.robot
+        own = self._march.swimmer
+        other._march = self._march.copy_with(swimmer.with_checked(flow=own.flow, wrenches=own.wrenches))
         other._meter = ErrorMeter(other._march, False)
         other.currents = deepcopy(self.currents)
         return other
@@ -296,9 +249,9 @@ class Simulation(Present):
 
         Commands hold. `ValueError` for other parts, or at other places.
         """
-        setup = self._setup.with_robot(robot)
-        self._on_both(lambda march: march.change_robot(setup.robot))
-        self._setup, self.robot = setup, setup.robot
+        swimmer = self._swimmer.with_robot(robot)
+        self._on_both(lambda march: march.change_robot(swimmer.robot))
+        self._swimmer, self.robot = swimmer, swimmer.robot
         self._meter.due = True
 
     # -- march
@@ -334,8 +287,8 @@ class Simulation(Present):
 
         `ValueError` for a law that cannot begin from the initial state; the simulation then stays as it is.
         """
-        self._march = March(self._setup, self.law if keep_law else None)
-        self.currents = CurrentStream(self._setup.default_transition)
+        self._march = March(self._swimmer.with_checked(law=self.law if keep_law else None))
+        self.currents = CurrentStream(self._swimmer.default_transition)
         self.ready, self._started = self.law is not None, False
         self._meter = ErrorMeter(self._march, self._meter.wanted)
 

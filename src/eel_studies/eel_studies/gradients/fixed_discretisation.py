@@ -50,7 +50,7 @@ def on_one_grid(points: list[Swim], step: float) -> list[Swim]:
     waves = max(1.0, check_law(law, body.length), of_flow)
     step = common_step([breakpoints_of(point) for point in points], step)
     accuracy = replace(accuracy, waves=waves, step=step, fixed=None, target=None)
-    return [point._replace(accuracy=accuracy) for point in points]
+    return [point.changed(accuracy=accuracy) for point in points]
 
 
 def breakpoints_of(point: Swim) -> list[float]:

@@ -28,12 +28,12 @@ from eel_dynamics.accuracy.accuracy import STANDARD
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.measures import checked_measures
+from eel_dynamics.batches.simulate_batch import swum
 from eel_dynamics.model.equality import EqualByFields
 from eel_dynamics.model.robot.actuators import at_limit
 from eel_dynamics.model.section_data import CRITICAL_REYNOLDS
 from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.sampling import default_sample_period
-from eel_dynamics.simulation.simulation_setup import checked_stations
 
 from eel_dynamics import Accuracy, Batch, Body, Robot, Run, Scene, Swim
 from eel_studies.gradients.fixed_discretisation import fixed_steps, on_one_grid, step_of
@@ -44,11 +44,11 @@ from eel_studies.points import (
     Numbers,
     Progress,
     Stations,
-    SwimSettings,
-    base_point,
-    batch_of_points,
+    base_of,
     law_of_terms,
+    measured,
     point_at,
+    without_the_rest,
 )
 
 RELATIVE_STEP = 1e-5  # of a parameter's value, or of 1 unit if that is 0
@@ -120,38 +120,36 @@ def gradient(
     if not isinstance(parameters, dict) or not parameters:
         raise ValueError(f"parameters must be a dict of names and values, got {shown(parameters)}")
     at = {name: number(f"parameter {name}", value) for name, value in parameters.items()}
-    base = base_point(body, scene, fixed_steps(accuracy), robot=robot, gait=gait)
-    base = base._replace(duration=duration, stations=stations)
+    limit = positive("most_evaluations", most_evaluations, "per simulated second")
+    base = base_of(gait, body=body, scene=scene, robot=robot, accuracy=fixed_steps(accuracy))
+    base = base.changed(duration=duration, stations=stations, estimate=False, most_evaluations=limit)
     point = _point(at, gait, numbers, base)
     settings = point.accuracy.in_scene(point.scene)
-    if stations is not None:
-        checked_stations(stations, point.body.length)
     if sample_period is None:
         sample_period = default_sample_period([point.law], duration)
-    base, point = (each._replace(sample_period=sample_period) for each in (base, point))
-    how = SwimSettings(measure, False, positive("most_evaluations", most_evaluations, "per simulated second"))
+    base, point = (each.changed(sample_period=sample_period) for each in (base, point))
     tell, swims = progress_of(progress, "swims"), 1 + 2 * len(at)
 
     lines: tuple[str, ...] = ()
     relative, limit = RELATIVE_STEP, np.inf
     if point.robot is not None:
-        relative, limit, lines = _of_robot(point, Accuracy.of(accuracy), how)
+        relative, limit, lines = _of_robot(point, Accuracy.of(accuracy))
     apart = _steps_of(at, steps, relative)
 
     def taken(settings: Accuracy, apart: np.ndarray, before: int, limit: float) -> _Differences:
         moved = [at] + [at | {name: float(at[name] + h)} for name, h in zip([*at] * 2, [*apart, *-apart], strict=True)]
-        points = [_point(values, gait, numbers, base._replace(accuracy=settings)) for values in moved]
+        points = [_point(values, gait, numbers, base.changed(accuracy=settings)) for values in moved]
         middle, *beside = on_one_grid(points, min(limit, step_of(points[0])))
-        beside = [how.without_the_rest(each, may_jump(each.scene)) for each in beside]
+        beside = [without_the_rest(each, measure, may_jump(each.scene)) for each in beside]
         runs: list[Run] = []
 
         def count(done: int, _: int) -> None:
             tell(before + len(runs) + done, swims * (1 + bool(estimate)))
 
         for part in ([middle], beside):
-            batch = batch_of_points(part, how, threads, count)
+            batch = swum(part, threads, count)
             runs += [_run(batch, index) for index in range(len(part))]
-        return _Differences.of(runs, how, apart)
+        return _Differences.of(runs, measure, apart)
 
     fine = taken(settings, apart, 0, limit)
     error = np.full(fine.derivative.shape, np.nan)
@@ -173,10 +171,10 @@ class _Differences(NamedTuple):
     derivative: np.ndarray  # (N, P)
 
     @staticmethod
-    def of(runs: list[Run], how: SwimSettings, apart: np.ndarray) -> "_Differences":
+    def of(runs: list[Run], measure: Measure | tuple[str, ...], apart: np.ndarray) -> "_Differences":
         """The differences of `runs` whose parameters are shifted by `apart` (P,) to either side."""
         periods = _periods(runs[0])
-        found = [how.measured(run, periods) for run in runs]
+        found = [measured(run, measure, periods) for run in runs]
         names = tuple(found[0])
         table = np.array([[each[name] for name in names] for each in found], dtype=float)
         if not np.isfinite(table).all():
@@ -222,10 +220,10 @@ def _run(batch: Batch, index: int) -> Run:
     return batch[index]
 
 
-def _of_robot(point: Swim, accuracy: Accuracy, how: SwimSettings) -> tuple[float, float, tuple[str, ...]]:
+def _of_robot(point: Swim, accuracy: Accuracy) -> tuple[float, float, tuple[str, ...]]:
     """Relative differences for the robot of the `point`, the longest step [s], and a line on motors at their limits."""
     given = accuracy.target is None  # the settings give fixed steps
-    run = _run(batch_of_points([point if given else point._replace(accuracy=accuracy)], how, threads=1), 0)
+    run = _run(swum([point if given else point.changed(accuracy=accuracy)], threads=1), 0)
     longest = np.inf if given else 0.5 * float(run.time[-1]) / max(1, run.steps)
     assert run.robot is not None and run.motor_torque is not None and run.motor_power is not None
     limited = at_limit(run.robot.servos, run.motor_torque, run.motor_power)

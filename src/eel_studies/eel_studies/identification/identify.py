@@ -31,7 +31,7 @@ from eel_studies.identification.measurements import (
     Measurements,
 )
 from eel_studies.identification.prediction import Swims
-from eel_studies.points import AccuracyLike, Gait, Numbers, Progress, base_point, point_at
+from eel_studies.points import AccuracyLike, Gait, Numbers, Progress, base_of, point_at
 
 
 def identify(
@@ -70,7 +70,7 @@ def identify(
     level = positive("level", level)
     if level >= 1.0:
         raise ValueError(f"level must be below 1, got {level:g}")
-    base = base_point(body, scene, fixed_steps(accuracy), friction="blended", robot=robot, gait=gait)
+    base = base_of(gait, friction="blended", body=body, scene=scene, robot=robot, accuracy=fixed_steps(accuracy))
     if not (numbers is None or isinstance(numbers, Mapping)):
         raise ValueError(f"numbers must be a dict, got {shown(numbers)}")
     swims = Swims(gait, dict(numbers or {}), base, threads)

@@ -117,7 +117,7 @@ def _swim(options: argparse.Namespace) -> Swim:
     body = run.body if options.body is None else base.body
     scene = scene_of(options.scene, run.scene)
     duration = float(run.time[-1]) if options.duration is None else base.duration
-    return base._replace(law=run.law, gait=None, body=body, scene=scene, duration=duration)
+    return base.changed(law=run.law, gait=None, body=body, scene=scene, duration=duration)
 
 
 def _robot(options: argparse.Namespace) -> Robot:

@@ -26,7 +26,7 @@ from eel_studies.gradients.fixed_discretisation import fixed_steps
 from eel_studies.optimisation.front import Front
 from eel_studies.optimisation.gait_problem import GaitProblem
 from eel_studies.optimisation.searches import METHODS
-from eel_studies.points import AccuracyLike, Gait, Numbers, Progress, base_point
+from eel_studies.points import AccuracyLike, Gait, Numbers, Progress, base_of
 from eel_studies.steady_swim import swim_times
 
 SPREAD_OVER_BOUNDS = 16  # first gaits, per parameter
@@ -78,9 +78,9 @@ def optimise(
         if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
             raise ValueError(f"{name} must be a whole number >= {least}, got {shown(value)}")
     (cost,) = checked_measures("cost", checked_instance("cost", cost, str), estimate=False)
-    base = base_point(body, scene, fixed_steps(accuracy), friction="blended", robot=robot, gait=gait)
+    base = base_of(gait, friction="blended", body=body, scene=scene, robot=robot, accuracy=fixed_steps(accuracy))
     wrench = base.scene.internal_wrench or cost == "greatest_torque"
-    base = base._replace(scene=replace(base.scene, current=(0.0, 0.0, 0.0), internal_wrench=wrench))
+    base = base.changed(scene=replace(base.scene, current=(0.0, 0.0, 0.0), internal_wrench=wrench))
     problem = GaitProblem(tuple(bounds), low, high, gait, dict(numbers or {}), base, cost, int(periods), threads)
     for place in np.vstack((np.zeros(len(low)), np.ones(len(low)), 0.5 * np.ones(len(low)))):
         try:

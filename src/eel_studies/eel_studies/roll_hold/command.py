@@ -21,7 +21,6 @@ from eel_dynamics import Accuracy, Fin, Swim
 from eel_gaits import Law, falling, straight, turning
 from eel_studies.options import add_scene_options, check_least, chosen, ranges_of
 from eel_studies.outputs import Outputs, Table, add_output_options
-from eel_studies.points import base_point
 from eel_studies.roll_hold.study import PAIR, RollWindow, holding, linearised, roll_window, swum
 from eel_studies.stability.command import axes_from
 from eel_studies.stability.report import draw_map
@@ -69,7 +68,7 @@ def main(options: argparse.Namespace) -> None:
         outputs.write(page_parts(outputs, options.points))
         return
     swim = chosen(options.swim or "straight", options)
-    swim = swim if swim.fins else swim._replace(fins=fins_from_text(PAIR))
+    swim = swim if swim.fins else swim.changed(fins=fins_from_text(PAIR))
     axes = axes_from(options.over or OVER)
     window = roll_window(swim, {axis.name: (axis.low, axis.high) for axis in axes}, options.points)
     outputs, found = Outputs(NAME, options), linearised(swim)
@@ -105,7 +104,7 @@ def draw_windows(figure: Any, windows: list[RollWindow]) -> None:
 
 
 def _swim(law: Law, fins: tuple[Fin, ...]) -> Swim:
-    return base_point(None, None, Accuracy.of(1e-3))._replace(law=law, fins=fins)
+    return Swim(law, accuracy=Accuracy.of(1e-3), fins=fins)
 
 
 def _swims(amidships: tuple[Fin, ...]) -> Table:

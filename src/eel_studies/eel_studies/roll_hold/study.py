@@ -19,7 +19,7 @@ from eel_common.attitude import roll
 
 from eel_dynamics import Accuracy, Fin, RollHold, Swim
 from eel_gaits import Law
-from eel_studies.points import base_point, law_of_terms
+from eel_studies.points import law_of_terms
 from eel_studies.stability.maps import Axis, Map
 from eel_studies.steering.linearisation import PeriodicLinearisation, periodic_linearisation
 from eel_studies.varied import labelled
@@ -86,9 +86,7 @@ def holding(area: float, k_p: float) -> tuple[Fin, ...]:
 
 def swum(law: Law, duration: float, fins: tuple[Fin, ...], push: float = 0.0) -> tuple[float, float, float]:
     """Greatest roll [rad], range of the depth [m] and greatest drift sideways [m] of the paper's robot."""
-    base = base_point(None, None, Accuracy.of(1e-3))
-    run = base._replace(law=law, duration=duration, sample_period=0.05, fins=fins).run(
-        twist=(push, 0.0, 0.0, 0.0, 0.0, 0.0), estimate=False
-    )
+    swim = Swim(law, accuracy=Accuracy.of(1e-3), fins=fins, duration=duration, sample_period=0.05, estimate=False)
+    run = swim.run(twist=(push, 0.0, 0.0, 0.0, 0.0, 0.0))
     rolled = np.unwrap([roll(each) for each in run.orientation])
     return float(np.abs(rolled).max()), float(np.ptp(run.position[:, 2])), float(np.abs(run.center_of_mass[:, 1]).max())

@@ -137,23 +137,23 @@ def terms(swim: Swim, tolerance: float = 0.02) -> Terms:
     fine = Accuracy.of(min(FINER * tolerance, COARSEST_COMPARED))
     exact = Accuracy.of(float(f"{min(EXACT_ENOUGH * tolerance, COARSEST):.3g}"))
     scene = replace(swim.scene, internal_wrench=True, ledger=True)
-    (whole,) = attempts([swim._replace(scene=scene, accuracy=fine)])
+    (whole,) = attempts([swim.changed(scene=scene, accuracy=fine)])
     if isinstance(whole, Exception):
         raise whole
-    compared = swim._replace(scene=scene, duration=float(whole.time[-1]), sample_period=float(np.diff(whole.time)[0]))
+    compared = swim.changed(scene=scene, duration=float(whole.time[-1]), sample_period=float(np.diff(whole.time)[0]))
     parts = terms_of(compared)
     most = max(LEAST_EVALUATIONS, DEARER * whole.evaluations / float(whole.time[-1]))
-    swum = attempts([each._replace(accuracy=fine) for each in parts.values()], most_evaluations=most)
+    swum = attempts([each.changed(accuracy=fine) for each in parts.values()], most_evaluations=most)
     effects = {name: _effect(run, whole) for name, run in zip(parts, swum, strict=True)}
     small = [name for name in parts if effects[name].worst <= tolerance and _may_go(parts[name], swim)]
     dropped, restored = sorted(small, key=lambda name: effects[name].worst), []
     while True:
-        (run,) = attempts([without(compared, dropped)._replace(accuracy=exact)])
+        (run,) = attempts([without(compared, dropped).changed(accuracy=exact)])
         together = _effect(run, whole)
         if together.worst <= tolerance or not dropped:
             break
         restored.append(dropped.pop())
-    recommended = without(swim, dropped)._replace(accuracy=exact)
+    recommended = without(swim, dropped).changed(accuracy=exact)
     own = [TERMS[name](swim) for name in parts]
     first, *others, last = cpu_seconds([swim, *own, recommended], float(whole.time[-1]), ROUNDS)
     effects = {name: replace(effects[name], seconds=took) for name, took in zip(parts, others, strict=True)}

@@ -32,12 +32,12 @@ def spindle(length: float, slenderness: float) -> Swim:
     """A spindle of `length` [m] that swims with the paper's wave scaled to it."""
     wave = {"wavelength": length, "amplitude_0": 1.0 / length, "amplitude_1": 0.5 / length**2}
     swim = varied(swim_with({}), {**wave, "amplitude_2": 2.0 / length**3})
-    return swim._replace(body=Body.spindle(length, slenderness))
+    return swim.changed(body=Body.spindle(length, slenderness))
 
 
 def swim_with(words: dict[str, Any]) -> Swim:
     """Four periods of the paper's robot, or the swim that these `words` of a scene describe."""
-    return swim_of({"gait": "straight", "duration": 4.0, **words})._replace(accuracy=Accuracy.of(TARGET))
+    return swim_of({"gait": "straight", "duration": 4.0, **words}).changed(accuracy=Accuracy.of(TARGET))
 
 
 ROWS: dict[str, tuple[str, Axis, Axis, dict[str, Any]]] = {  # name: title, axes, words of the scene

@@ -42,7 +42,7 @@ def of_straight(ratio: float, slenderness: float) -> float:
 
 def of_bent(ratio: float, size: float) -> float:
     """Greatest condition number for the robot over a period, with a wave of `size` times the paper's amplitude."""
-    swimmer = Simulation(Body.boyer2010(), _water(ratio), "draft", [0.0], law=straight() * size)
+    swimmer = Simulation(scene=_water(ratio), accuracy="draft", stations=None, law=straight() * size)
     return max(condition_of(inertia_at(swimmer, time)) for time in 2.0 + np.arange(INSTANTS) / INSTANTS)
 
 
@@ -54,7 +54,10 @@ def inertia_at(swimmer: Simulation, time: float) -> np.ndarray:
 def inertias(body: Body, ratio: float, accuracy: str | float = "draft") -> tuple[np.ndarray, np.ndarray]:
     """Inertia matrices (6, 6) [kg] about the head, rotation first, of the straight body of `ratio` times the water's
     density, and of its added mass."""
-    here, scene = Simulation(body, _water(ratio), accuracy, [0.0]).discretisation, _water(ratio)
+    here, scene = (
+        Simulation(body=body, scene=_water(ratio), accuracy=accuracy, stations=None).discretisation,
+        _water(ratio),
+    )
     none = np.zeros_like(here.sections.mass)
     dry = here.sections._replace(added2=none, added3=none, inertia1=here.sections.inertia1 - here.sections.added_roll)
     own = straight_inertia(here.grid, dry, 0.0, body.length)

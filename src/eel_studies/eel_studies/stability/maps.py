@@ -145,7 +145,7 @@ def cell_of(swim_of: Callable[[], Swim]) -> np.ndarray:
         "steps": run.steps,
         "limits": any("ledger" not in text and "error" not in text for text in run.warnings),
     }
-    finer = _swum(swim._replace(accuracy=Accuracy.of(max(FINER * target, FINEST))), FINER * target)
+    finer = _swum(swim.changed(accuracy=Accuracy.of(max(FINER * target, FINEST))), FINER * target)
     if isinstance(finer, Exception):
         return _cell(UNCHECKED, str(finer), **about)
     own, others = run.error_estimate, finer.error_estimate
@@ -170,4 +170,4 @@ def _swum(swim: Swim, target: float) -> Run | Exception:
     duration = float(swim.duration)
     most = MOST_EVALUATIONS * max(1.0, -np.log10(target)) * min(max(1.0, duration), LONGEST) / duration
     how = {"sample_period": duration / SAMPLES, "stations": STATIONS, "most_evaluations": most}
-    return attempt(swim._replace(scene=replace(swim.scene, ledger=True)), **how)
+    return attempt(swim.changed(scene=replace(swim.scene, ledger=True)), **how)

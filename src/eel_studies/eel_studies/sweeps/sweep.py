@@ -19,9 +19,8 @@ from typing import Any
 
 import numpy as np
 from eel_common.command.progress import progress_of
-from eel_common.quantity import checked_instance, positive
+from eel_common.quantity import checked_instance
 from eel_common.wording import WorkStopped, one_line, shown
-from eel_dynamics.accuracy.accuracy import STANDARD, Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import checked_measures, described
 from eel_dynamics.analysis.settling import tell_unsettled
@@ -43,9 +42,9 @@ from eel_studies.points import (
     Numbers,
     Progress,
     Stations,
-    SwimSettings,
-    base_point,
+    base_of,
     label_of,
+    measured,
     point_at,
     run_of_point,
 )
@@ -124,32 +123,37 @@ def sweep(
     """
     xarray = needed("xarray", "a sweep")
     names, axes = _checked_grid(grid)
-    own = gait if isinstance(gait, Swim) else Swim(None, Body.boyer2010(), Scene(), STANDARD, duration=UNTIL_SETTLED)
-    duration = own.duration if duration is None else duration
-    sample_period = own.sample_period if sample_period is None else sample_period
-    stations = own.stations if stations is None else stations
+    if duration is None and not isinstance(gait, Swim):
+        duration = UNTIL_SETTLED
+    base = base_of(
+        gait,
+        body=body,
+        scene=scene,
+        robot=robot,
+        accuracy=accuracy,
+        duration=duration,
+        sample_period=sample_period,
+        stations=stations,
+        most_evaluations=most_evaluations,
+    ).changed(estimate=bool(estimate))
+    duration, sample_period = base.duration, base.sample_period
     if not until_settled(duration):
         checked_times(duration, default_sample_period([], duration) if sample_period is None else sample_period)
     if not callable(measure):
         measure = tuple(dict.fromkeys([*checked_measures("measure", measure, bool(estimate)), "settled"]))
-    limit = positive("most_evaluations", most_evaluations, "per simulated second")
     _check_count("workers", workers)
     _check_count("chunk", chunk)
-    settings = Accuracy.of(own.accuracy if accuracy is None else accuracy)
-    base = base_point(body, scene, settings, robot=robot, gait=gait)
-    base = base._replace(duration=duration, sample_period=sample_period, stations=stations)
     try:
         points = [
-            point_at(dict(zip(names, values, strict=True)), gait, numbers or {}, base)._replace(gait=None)
+            point_at(dict(zip(names, values, strict=True)), gait, numbers or {}, base).with_checked(gait=None)
             for values in itertools.product(*axes)
         ]
         for point in points if until_settled(duration) else ():
             period_of(point.law, point.body.length)
     except ValueError as error:
         raise ValueError(f"sweep {error}") from None
-    how = SwimSettings(measure, bool(estimate), limit)
     record = None if recordings is None else SweepRecordings(recordings, dict(zip(names, axes, strict=True)))
-    key = "" if out is None else key_of(points, how)
+    key = "" if out is None else key_of(points, measure)
     parts = Parts(out, key, len(points), overwrite)
     complete = parts.complete()
     if complete is not None:
@@ -163,7 +167,7 @@ def sweep(
         with workers_of(scheduler, workers or available_cores()) as found:
             size = chunk or min(LONGEST_CHUNK, max(1, math.ceil(len(left) / (8 * max(1, found.parallel)))))
             chunks = [left[start : start + size] for start in range(0, len(left), size)]
-            task = partial(swim_points, how=how, record=record)
+            task = partial(swim_points, measure=measure, record=record)
             for swum, result, failure in found.results(task, chunks):
                 if result is None:
                     failures.append((swum[0][0], failure))
@@ -178,7 +182,7 @@ def sweep(
             f"{one_line(repr(failures[0][1]))}; "
             + (f"the others are kept in {parts.folder}" if out else "nothing was kept")
         )
-    data = _dataset(xarray, names, axes, points, done, how, gait)
+    data = _dataset(xarray, names, axes, points, done, gait)
     if key:
         data.attrs["sweep"] = key
     parts.finish(data)
@@ -192,7 +196,9 @@ def _warned(data: Any) -> Any:
     return data
 
 
-def swim_points(points: list[tuple[int, Swim]], how: SwimSettings, record: SweepRecordings | None = None) -> Results:
+def swim_points(
+    points: list[tuple[int, Swim]], measure: Measure | tuple[str, ...], record: SweepRecordings | None = None
+) -> Results:
     """A worker's task: simulate the points, given with their indices, measure and `record` each.
 
     Returns the measures of each point by its index, with "error": the message of a stopped point, else empty.
@@ -200,11 +206,11 @@ def swim_points(points: list[tuple[int, Swim]], how: SwimSettings, record: Sweep
     result = {}
     for index, point in points:
         try:
-            run = run_of_point(point, how)
+            run = run_of_point(point)
         except SimulationStopped as stopped:
             result[index] = {"error": str(stopped)}
             continue
-        result[index] = {"error": ""} | how.measured(run)
+        result[index] = {"error": ""} | measured(run, measure)
         if record is not None:
             record.record(index, run)
     return result
@@ -249,7 +255,6 @@ def _dataset(
     axes: list[list[Any]],
     points: list[Swim],
     done: Results,
-    how: SwimSettings,
     gait: Gait,
 ) -> Any:
     shape, first = [len(values) for values in axes], points[0]
@@ -268,7 +273,7 @@ def _dataset(
         if isinstance(gait, str)
         else getattr(gait, "__name__", None) or getattr(first.law, "name", shown(first.law)),
         "duration": first.duration if until_settled(first.duration) else float(first.duration),
-        "estimate": int(how.estimate),
+        "estimate": int(first.estimate),
         "axes": REP103,
     }
     if first.sample_period is not None:

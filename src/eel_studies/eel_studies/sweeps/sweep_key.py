@@ -20,18 +20,17 @@ from eel_dynamics.runs.storage.plain import plain_of, plain_robot
 from eel_dynamics.runs.storage.tables import needed
 from eel_dynamics.runs.swim import Swim
 
-from eel_studies.points import SwimSettings
+from eel_studies.points import Measure
 
 
-def key_of(points: list[Swim], how: SwimSettings) -> str:
+def key_of(points: list[Swim], measure: Measure | tuple[str, ...]) -> str:
     """The key, 32 hexadecimal digits.
 
-    It is a hash of the points, their `SwimSettings`, the measure's code and closure, and the software's version.
+    It is a hash of the points, the measure's code and closure, and the software's version.
     `ValueError` for a function that cannot be hashed.
     """
-    content = hashlib.sha256(repr((how.estimate, how.most_evaluations)).encode())
+    content = hashlib.sha256(repr((points[0].estimate, points[0].most_evaluations)).encode())
     content.update(VERSION.encode())
-    measure = how.measure
     content.update(_content_of_function("measure", measure) if callable(measure) else repr(measure).encode())
     bodies = {}
     for point in points:

@@ -110,9 +110,9 @@ class Trade:
 def bare(swim: Swim) -> Swim:
     """The `swim` for so many seconds with torque and samples, without the ledger."""
     scene = replace(swim.scene, ledger=False, internal_wrench=True)
-    swim = swim._replace(scene=scene, sample_period=swim.sample_period or SAMPLE_PERIOD)
+    swim = swim.changed(scene=scene, sample_period=swim.sample_period or SAMPLE_PERIOD)
     if isinstance(swim.duration, str):
-        swim = swim._replace(duration=float(swim.run(estimate=False).time[-1]))
+        swim = swim.changed(duration=float(swim.run(estimate=False).time[-1]))
     return swim
 
 
@@ -146,7 +146,7 @@ def affordable(swim: Swim, quick: bool, repeats: int) -> tuple[list[Accuracy], i
 
     quick: as in `settings`.
     """
-    standard = swim._replace(accuracy=Accuracy.of(STANDARD).in_scene(swim.scene))
+    standard = swim.changed(accuracy=Accuracy.of(STANDARD).in_scene(swim.scene))
     cost = DEARER * cpu_seconds([standard], float(swim.duration), 1)[0]
     for fewer, rounds in ((quick, repeats), (True, repeats), (True, 1)):
         rows = settings(swim, fewer)
@@ -170,7 +170,7 @@ def measure(
     say("the reference: two methods on two grids")
     reference, apart = reference_of(swim, REACHED, least=0, seconds=MOST_SECONDS)
     say(f"errors of {len(rows)} settings")
-    swims = [swim._replace(accuracy=each) for each in rows]
+    swims = [swim.changed(accuracy=each) for each in rows]
     runs = dict(zip(rows, attempts(swims, estimate=False), strict=True))
     steady = [each for each in swims if isinstance(runs[each.accuracy], Run)]
     times = cpu_seconds(steady, float(swim.duration), repeats, say)
@@ -182,7 +182,7 @@ def measure(
         measured.append(Measured(each.accuracy, position, torque, seconds, run))  # type: ignore[arg-type]
     say("the model without each of its terms")
     parts = {"": swim} | terms_of(swim)
-    fine = [each._replace(accuracy=Accuracy.of(FINE).in_scene(each.scene).as_it_is()) for each in parts.values()]
+    fine = [each.changed(accuracy=Accuracy.of(FINE).in_scene(each.scene).as_it_is()) for each in parts.values()]
     whole, *poorer = attempts(fine, estimate=False)
     found = zip(list(parts)[1:], poorer, strict=True)
     pairs = {name: run for name, run in found if isinstance(run, Run)} if isinstance(whole, Run) else {}

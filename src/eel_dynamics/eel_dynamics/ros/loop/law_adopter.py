@@ -59,7 +59,7 @@ class LawAdopter:
         self._awaited.end(SAMPLES)
         self._report.end("resting")
         self._report.note("law adopted", f"law {shown(law.name)} adopted at t = {simulation.time:g} s")
-        if slow := slow_motors(simulation.setup.modes, law, LOOKED_AT):
+        if slow := slow_motors(simulation.swimmer.modes, law, LOOKED_AT):
             self._report.event("slow motors", slow.text, differing=True)
         if until is not None and until > simulation.time:
             self._report.event(

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The set-up of a simulation: its checked arguments, and the accuracy and grid that follow from them."""
+"""One swimmer in its water as one value: everything that a simulation starts from."""
 
-from dataclasses import dataclass, fields, replace
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Self
 
 import numpy as np
 from eel_common.cached import cached_property
@@ -10,6 +10,7 @@ from eel_common.quantity import checked_instance, checked_row, positive
 from eel_common.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
+from numpy.typing import ArrayLike
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import STANDARD, Accuracy
@@ -23,87 +24,116 @@ from eel_dynamics.model.body.body import Body, checked_body
 from eel_dynamics.model.equality import EqualByFields
 from eel_dynamics.model.fins.fins import Fin, checked_fins, edges_of, knots_of, servo_time
 from eel_dynamics.model.flow.flow import Flow, check_covers, checked_flow, core_flow
-from eel_dynamics.model.initial_state import InitialState, checked_state, time_scale
+from eel_dynamics.model.initial_state import AT_REST, InitialState, checked_state, time_scale
 from eel_dynamics.model.robot.compiled import ModeTable, mode_table
 from eel_dynamics.model.robot.robot import Robot, checked_robot
-from eel_dynamics.model.scene import Scene, checked_scene
+from eel_dynamics.model.scene import OF_PAPER, Scene, checked_scene
 from eel_dynamics.model.wrenches.external_wrench import ExternalWrench, checked_wrenches, instants_of
 
+OF_STANDARD = Accuracy.of(STANDARD)
 FITTING = 1e-6  # of the body's length: tolerance for the length of a law's rows
 
 
 @dataclass(frozen=True, eq=False)
-class SimulationSetup(EqualByFields):
-    """The constant part of a simulation, which marches and resets keep. `of` checks the arguments."""
+class Swimmer(EqualByFields):
+    """A swimmer, its water and its start, checked when it is made. It never changes.
 
-    body: Body
-    scene: Scene
-    accuracy: Accuracy  # as given
-    x: np.ndarray  # (M,) m, stations
-    initial_state: InitialState
-    default_transition: float  # s
-    most_evaluations: float  # per simulated second
-    flow: Flow | None
-    robot: Robot | None
-    fins: tuple[Fin, ...]
-    wrenches: tuple[ExternalWrench, ...] = ()
-    sensors: tuple[float, ...] = ()  # m, X of the observed ones, rising
-    until: float = 0.0  # s, until which functions of time are sampled beforehand; 0: not at all
+    `ValueError` names the field that does not fit. World and head have REP-103 axes.
+    """
 
-    @staticmethod
+    law: Any = None  #: a `Law` or `SampledLaw`, the first that it follows, and what servos follow; None: straight
+    body: Body = None  # type: ignore[assignment]  #: None: the robot's, or that of the paper
+    scene: Scene = OF_PAPER  #: the physics and the water
+    accuracy: Accuracy = OF_STANDARD  #: or a preset's name, or a target relative error
+    start: InitialState = AT_REST  #: of the head
+    flow: Flow | None = None  #: the water's own motion, besides the scene's current
+    robot: Robot | None = None  #: what bends by itself; None: the law is imposed
+    fins: tuple[Fin, ...] = ()  #: may be given as a list of fins and of pairs of them
+    stations: Any = 51  #: number of equidistant ones, or X (M,) [m]; None: no profiles along the body
+    wrenches: tuple[ExternalWrench, ...] = ()  #: from outside
+    sensors: tuple[float, ...] = ()  #: X [m] of the stations whose motion is observed; then rising, each once
+    default_transition: float = DEFAULT_TRANSITION  #: s, of a blend where a law gives none
+    most_evaluations: float = MOST_EVALUATIONS  #: of the head's dynamics per simulated second
+    until: float = 0.0  #: s, until which functions of time are sampled beforehand; 0: not at all
+
+    def __post_init__(self) -> None:
+        robot = checked_robot(self.robot)
+        body = checked_body(robot.body if self.body is None and robot is not None else self.body)
+        scene = checked_scene(self.scene)
+        self._set(robot=robot, body=body, scene=scene, accuracy=Accuracy.of(self.accuracy))
+        checked_stations(self.stations, body.length)
+        self._set(start=_checked_start(scene, self.start, self.flow), fins=checked_fins(self.fins, body, scene))
+        self._set(wrenches=checked_wrenches(self.wrenches, body, bool(scene.planar)))
+        assert self.modes or robot is None  # the robot fits the body
+        positive("most_evaluations", self.most_evaluations, "per simulated second")
+        positive("default_transition", self.default_transition, "s")
+        self._set(sensors=checked_sensors(self.sensors, body.length), law=self._checked_law())
+
+    def _set(self, **checked: Any) -> None:
+        self.__dict__.update(checked)
+
+    def _checked_law(self) -> Law | SampledLaw | None:
+        law = self.law
+        if law is not None:
+            check_planar_law(checked_instance("law", law, (Law, SampledLaw)), self.scene)
+        return law
+
+    @classmethod
     def of(
+        cls,
         *,
-        body=None,
-        scene=None,
-        accuracy=STANDARD,
-        stations=51,
-        position=(0.0, 0.0, 0.0),
-        orientation=(0.0, 0.0, 0.0, 1.0),
-        twist=(0.0,) * 6,
-        flow=None,
-        robot=None,
-        fins=None,
-        sensors=(),
-        wrenches=None,
-        most_evaluations=MOST_EVALUATIONS,
-        default_transition=DEFAULT_TRANSITION,
-    ) -> "SimulationSetup":
-        """The set-up from the arguments of `Simulation`. `ValueError` names an unsuitable one."""
-        robot = checked_robot(robot)
-        body = checked_body(robot.body if body is None and robot is not None else body)
-        scene, accuracy, x = checked_scene(scene), Accuracy.of(accuracy), checked_stations(stations, body.length)
-        start = _checked_start(scene, position, orientation, twist, flow)
-        fins, wrenches = checked_fins(fins, body, scene), checked_wrenches(wrenches, body, bool(scene.planar))
-        if robot is not None:
-            mode_table(robot, body, bool(scene.planar))
-        most_evaluations = positive("most_evaluations", most_evaluations, "per simulated second")
-        transition = positive("default_transition", default_transition, "s")
-        where = checked_sensors(sensors, body.length)
-        how = start, transition, most_evaluations
-        return SimulationSetup(body, scene, accuracy, x, *how, flow, robot, fins, wrenches, where)
+        position: ArrayLike | None = None,
+        orientation: ArrayLike | None = None,
+        twist: ArrayLike | None = None,
+        start: InitialState = AT_REST,
+        **others: Any,
+    ) -> Self:
+        """The swimmer of these fields, where the parts of the `start` may be given one by one."""
+        given = {"position": position, "orientation": orientation, "twist": twist}
+        parts: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+        return cls(start=start._replace(**parts), **others)
 
-    def starting(self, position, orientation, twist, flow) -> "SimulationSetup":
-        """The same with another start and flow. `ValueError` as in `of`."""
-        start = _checked_start(self.scene, position, orientation, twist, flow)
-        return replace(self, initial_state=start, flow=flow)
+    def changed(self, **fields: Any) -> Self:
+        """The same with other fields, as in `of`. All are checked again."""
+        return self.of(**self._fields | fields)
 
-    def with_robot(self, robot: Robot | None) -> "SimulationSetup":
+    def with_checked(self, **fields: Any) -> Self:
+        """The same with other fields that are known to fit. Nothing is checked."""
+        made = object.__new__(type(self))
+        made._set(**self._fields | fields)
+        return made
+
+    @property
+    def _fields(self) -> dict[str, Any]:
+        return {name: self.__dict__[name] for name in self.__dataclass_fields__}
+
+    def starting(self, start: InitialState, flow: Flow | None) -> Self:
+        """The same with another start and flow. `ValueError` for one that does not fit."""
+        return self.with_checked(start=_checked_start(self.scene, start, flow), flow=flow)
+
+    def with_robot(self, robot: Robot | None) -> Self:
         """The same with other numbers of the robot. `ValueError` for other parts, or at other places."""
-        changed = replace(self, robot=checked_robot(robot))
+        changed = self.with_checked(robot=checked_robot(robot))
         parts = changed.robot.parts if changed.robot and changed.modes else ()  # they fit the body
         if [*map(_place, parts)] != [*map(_place, self.robot.parts if self.robot else ())]:
             raise ValueError("robot must have the same parts at the same places to go on")
         return changed
 
-    def __hash__(self) -> int:  # type: ignore[override]
-        water, parts = (self.scene, self.flow), (self.robot, self.fins, self.wrenches, self.sensors)
-        return hash((self.body, self.accuracy, self.x.tobytes(), *water, *parts))
-
-    def __deepcopy__(self, memo: dict) -> "SimulationSetup":
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
         return self
 
     def __getstate__(self) -> dict[str, Any]:  # without cached values
-        return {each.name: getattr(self, each.name) for each in fields(self)}
+        return self._fields
+
+    @cached_property
+    def x(self) -> np.ndarray:
+        """X (M,) [m] of the stations."""
+        return checked_stations(self.stations, self.body.length)
+
+    @property
+    def has_wrench(self) -> bool:
+        """Whether the internal wrench along the body is computed."""
+        return self.scene.internal_wrench and self.stations is not None
 
     @cached_property
     def current(self) -> np.ndarray:
@@ -126,7 +156,7 @@ class SimulationSetup(EqualByFields):
     @cached_property
     def sudden_changes(self) -> frozenset[float]:
         """As `sudden_changes`."""
-        place, turn, _ = (tuple(each.tolist()) for each in self.initial_state)
+        place, turn, _ = (tuple(each.tolist()) for each in self.start)
         return sudden_changes(self.robot, self.flow, place, turn, self.body.length, self.until, self.wrenches)
 
     @property
@@ -160,7 +190,7 @@ class SimulationSetup(EqualByFields):
     @cached_property
     def initial_twist(self) -> np.ndarray:
         """Initial twist (6,) [rad/s, m/s] of the head relative to the current, in the head's axes."""
-        return self.initial_state.in_water(self.current)
+        return self.start.in_water(self.current)
 
     @cached_property
     def time_scale(self) -> float:
@@ -202,9 +232,9 @@ def _place(part: Any) -> tuple[Any, ...]:
     return type(part), *where, getattr(getattr(part, "actuator", None), "has_spring", False)
 
 
-def _checked_start(scene: Scene, position, orientation, twist, flow) -> InitialState:
+def _checked_start(scene: Scene, start: Any, flow: Any) -> InitialState:
     """The start. `ValueError` for a start or flow that `scene` does not allow, or for a head out of the water."""
-    start = checked_state(scene.planar, position, orientation, twist)
+    start = checked_state(scene.planar, *start)
     flow = checked_flow(flow, scene.planar)
     check_covers(flow, 0.0)
     if flow is not None and (out := flow.outside(0.0, start.position)):
@@ -215,7 +245,9 @@ def _checked_start(scene: Scene, position, orientation, twist, flow) -> InitialS
 
 
 def checked_stations(stations, length: float) -> np.ndarray:
-    """X (M,) [m] of the stations: a number of equidistant ones, or X that rise within 0 to `length` [m]."""
+    """X (M,) [m] of the stations: a number of them, X that rise within 0 to `length` [m], or None: the head alone."""
+    if stations is None:
+        return np.zeros(1)
     if isinstance(stations, (int, np.integer)) and not isinstance(stations, bool):
         if not 2 <= stations <= 100_000:
             raise ValueError(f"stations must be 2 or more, or their X in m, got {shown(stations)}")

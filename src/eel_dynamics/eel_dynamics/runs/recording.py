@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A requested swim as a value: `simulate`, batches, companions and repetitions of a run all make one."""
+"""A swim with its samples: marched to its end, with the estimate of its error. Runs, batches and repetitions use it."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -13,15 +13,14 @@ from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.model.flow.flow import check_covers
 from eel_dynamics.runs.companion import stable_step, with_error_estimate
-from eel_dynamics.runs.motions import Motion, law_from
+from eel_dynamics.runs.motions import check_duration
 from eel_dynamics.runs.run_data import RunData
 from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
-from eel_dynamics.runs.settled_duration import duration_of
 from eel_dynamics.runs.storage.variables import arrays_of
 from eel_dynamics.simulation.bending.slow_motors import SlowMotors, slow_motors
 from eel_dynamics.simulation.march import March
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
+from eel_dynamics.simulation.swimmer import Swimmer
 
 LEAST_COMPARED = 40  # least number of intervals between instants at which a robot's torque is compared
 
@@ -37,62 +36,42 @@ class SwimResult(NamedTuple, Generic[Kind]):
     stopped: SimulationStopped | None
 
 
-class SwimRequest(NamedTuple, Generic[Kind]):
-    """A swimmer with its `law`, the times (T,) [s] of its samples, and whether to record wrench and load.
+class Recording(NamedTuple, Generic[Kind]):
+    """The samples to record of a `swimmer`, at `times` (T,) [s] from 0 on.
 
-    kind: class of the run. estimate: whether to estimate its error, and to refine it if that exceeds its target. every:
-    number of instants observed per sample in that case.
+    kind: class of the run. load: whether to record the water's load. estimate: whether to estimate the run's error, and
+    to refine it if that exceeds its target. every: number of instants observed per sample in that case.
     """
 
     kind: type[Kind]
-    law: Law | SampledLaw
-    setup: SimulationSetup
+    swimmer: Swimmer
     times: np.ndarray
-    wrench: bool
-    load: bool
+    load: bool = False
     estimate: bool = False
     every: int = 1
 
-    @staticmethod
-    def of(
-        kind: type[Kind],
-        motion: Motion,
-        setup: SimulationSetup,
-        duration: float | str,
-        sample_period: float | None,
-        load: bool = False,
-        estimate: bool = False,
-    ) -> "SwimRequest[Kind]":
-        """The request from these arguments of `simulate`. `ValueError` as there."""
-        seconds: Any = duration_of(duration, [(motion, setup)])  # a text is refused below
-        law = law_from(motion, seconds, setup.body.length)
-        period = default_sample_period([law], seconds) if sample_period is None else sample_period
-        times, wrench = checked_times(seconds, period), setup.scene.internal_wrench
-        check_covers(setup.flow, float(times[-1]))
-        check_memory(1, len(times), len(setup.x), wrench, bool(load), 2 if estimate else 1)
-        request = SwimRequest(kind, law, setup, times, wrench, bool(load))
-        return request.to_refine() if estimate else request
+    def of_swimmer(self, **changes: Any) -> "Recording[Kind]":
+        """The same with other fields of the `swimmer`, which fit."""
+        return self._replace(swimmer=self.swimmer.with_checked(**changes))
 
-    def changed(self, **changes: Any) -> "SwimRequest[Kind]":
-        """The same with changed fields of its `setup`."""
-        return self._replace(setup=replace(self.setup, **changes))
-
-    def to_refine(self) -> "SwimRequest[Kind]":
+    def to_refine(self) -> "Recording[Kind]":
         """The same for a run whose error is estimated.
 
         The torque of a robot jumps when motors and stops reach their limits. Only instants that are close together show
         an error there.
         """
-        gaps, accuracy = len(self.times) - 1, self.setup.accuracy
-        every = -(-LEAST_COMPARED // gaps) if self.setup.robot is not None and self.wrench and gaps else 1
-        if isinstance(accuracy, Accuracy) and accuracy.target:
-            accuracy = replace(accuracy, refinable=True)
-        return self.changed(accuracy=accuracy)._replace(estimate=True, every=every)
+        gaps, swimmer = len(self.times) - 1, self.swimmer
+        every = -(-LEAST_COMPARED // gaps) if swimmer.robot is not None and swimmer.has_wrench and gaps else 1
+        recording = self._replace(estimate=True, every=every)
+        if not swimmer.accuracy.target:
+            return recording
+        return recording.of_swimmer(accuracy=replace(swimmer.accuracy, refinable=True))
 
     @property
     def slow_motors(self) -> SlowMotors | None:
         """Motors that cannot follow the law, if any."""
-        return slow_motors(self.setup.modes, self.law, float(self.times[-1]))
+        law = self.swimmer.law
+        return None if law is None else slow_motors(self.swimmer.modes, law, float(self.times[-1]))
 
     @property
     def instants(self) -> np.ndarray:
@@ -104,21 +83,25 @@ class SwimRequest(NamedTuple, Generic[Kind]):
 
     def march(self, accuracy: Accuracy | None = None) -> March:
         """Its march at the start, with the settings `accuracy` if given."""
-        setup = self.setup if accuracy is None else replace(self.setup, accuracy=accuracy)
-        return March(replace(setup, until=float(self.times[-1])), self.law)
+        accuracy = self.swimmer.accuracy if accuracy is None else accuracy
+        return March(self.swimmer.with_checked(accuracy=accuracy, until=float(self.times[-1])))
 
     def swim(self, march: March, look: Callable[[float], None] | None = None) -> SwimResult[Kind]:
         """Swim with this `march`, which must be at its start. look: as in `Simulation.record`."""
-        instants, setup, start = self.instants, self.setup, march.energy_at_start
-        out, works, done, stopped = march.record(instants, self.wrench, self.load, look)
+        instants, swimmer, start = self.instants, self.swimmer, march.energy_at_start
+        out, works, done, stopped = march.record(instants, swimmer.has_wrench, self.load, look)
         steps, _, evaluations = march.core.counts
-        arrays = arrays_of(out, works, start, march.joints, done, bool(setup.scene.ledger))
-        others = {"law": self.law, "accuracy": march.setup.settings, "nodes": len(march.discretisation.grid.x)}
+        arrays = arrays_of(out, works, start, march.joints, done, bool(swimmer.scene.ledger))
+        others: dict[str, Any] = {
+            "law": swimmer.law,
+            "accuracy": march.swimmer.settings,
+            "nodes": len(march.discretisation.grid.x),
+        }
         others |= {"steps": steps, "evaluations": evaluations}
-        run = compared = self.kind.of(setup, instants[:done], arrays, **others)
+        run = compared = self.kind.of(swimmer, instants[:done], arrays, **others)
         if self.every > 1:
             sampled = {name: np.ascontiguousarray(each[:: self.every]) for name, each in arrays.items()}
-            run = self.kind.of(setup, compared.time[:: self.every], sampled, **others)
+            run = self.kind.of(swimmer, compared.time[:: self.every], sampled, **others)
         return SwimResult(run, compared, start, stopped)
 
     def outcome(self, look: Callable[[float], None] | None = None) -> SwimResult[Kind]:
@@ -143,34 +126,38 @@ class SwimRequest(NamedTuple, Generic[Kind]):
         raise stopped
 
 
-def simulated_again(
+def recording_again(
     run: Kind,
     law: Law | SampledLaw,
     accuracy: Accuracy,
     most_evaluations: float = MOST_EVALUATIONS,
     finer: int = 1,
     load: bool = False,
-) -> Kind:
+) -> Recording[Kind]:
     """The swim of `run` with another law or accuracy, `finer` samples, or its `load`; without an error estimate.
 
     `ValueError` if the run begins after t = 0.
     """
-    request = request_again(run, law, accuracy, most_evaluations, finer, load)
-    return request.swim_to_end().in_axes(run.axes)
-
-
-def request_again(
-    run: Kind,
-    law: Law | SampledLaw,
-    accuracy: Accuracy,
-    most_evaluations: float = MOST_EVALUATIONS,
-    finer: int = 1,
-    load: bool = False,
-) -> SwimRequest[Kind]:
-    """The request of `simulated_again`."""
     if run.time[0] != 0.0:
         raise ValueError(f"run must begin at t = 0 to be simulated again, got {run.time[0]:g} s")
-    setup = run.setup_at(0, run.x, accuracy, most_evaluations)
+    swimmer = run.swimmer_at(0, run.x, accuracy, most_evaluations).with_checked(law=law)
     sample_period = float(run.time[1] - run.time[0]) / finer if len(run.time) > 1 else 1.0
-    load = load or run.fluid_force is not None
-    return SwimRequest.of(type(run), law, setup, float(run.time[-1]), sample_period, load)
+    times, load = times_of(swimmer, float(run.time[-1]), sample_period), load or run.fluid_force is not None
+    check_memory(1, len(times), len(swimmer.x), swimmer.has_wrench, load)
+    return Recording(type(run), swimmer, times, load)
+
+
+def simulated_again(run: Kind, *changes: Any, **others: Any) -> Kind:
+    """The run of `recording_again`, which has these arguments, in the axes of `run`."""
+    return recording_again(run, *changes, **others).swim_to_end().in_axes(run.axes)
+
+
+def times_of(swimmer: Swimmer, duration: float, sample_period: float | None) -> np.ndarray:
+    """Times (T,) [s] of the samples of a swim of `duration` [s]. `ValueError` where its law or flow is shorter."""
+    if swimmer.law is None:
+        raise ValueError("law must be given for a swim, got None")
+    check_duration(swimmer.law, duration)
+    period = default_sample_period([swimmer.law], duration) if sample_period is None else sample_period
+    times = checked_times(duration, period)
+    check_covers(swimmer.flow, float(times[-1]))
+    return times
