@@ -54,10 +54,8 @@ def inertia_at(swimmer: Simulation, time: float) -> np.ndarray:
 def inertias(body: Body, ratio: float, accuracy: str | float = "draft") -> tuple[np.ndarray, np.ndarray]:
     """Inertia matrices (6, 6) [kg] about the head, rotation first, of the straight body of `ratio` times the water's
     density, and of its added mass."""
-    here, scene = (
-        Simulation(body=body, scene=_water(ratio), accuracy=accuracy, stations=None).discretisation,
-        _water(ratio),
-    )
+    scene = _water(ratio)
+    here = Simulation(body=body, scene=scene, accuracy=accuracy, stations=None).discretisation
     none = np.zeros_like(here.sections.mass)
     dry = here.sections._replace(added2=none, added3=none, inertia1=here.sections.inertia1 - here.sections.added_roll)
     own = straight_inertia(here.grid, dry, 0.0, body.length)
