@@ -113,7 +113,9 @@ def test_a_straight_body_takes_its_part_of_the_water_s_acceleration(density):
         rate = CubicSpline(TIME, rows, bc_type="clamped")(0.7, 1)[axis]
         velocity = CubicSpline(TIME, rows, bc_type="clamped")(0.7)
         flow = Uniform(rows, time=TIME - 0.7)
-        simulation = Simulation(body, scene, 1e-6, law=STILL, flow=flow, twist=np.r_[np.zeros(3), velocity])
+        simulation = Simulation(
+            body=body, scene=scene, accuracy=1e-6, law=STILL, flow=flow, twist=np.r_[np.zeros(3), velocity]
+        )
         area = 1000.0 * np.pi * 0.03 * 0.05  # by the square of the shape, as the added mass
         got = simulation.observe().head_acceleration[3 + axis]
         assert np.isclose(got, (area + added) / (area * density / 1000.0 + added) * rate, rtol=1e-9)
@@ -129,7 +131,7 @@ def test_a_spheroid_in_a_plane_strain_feels_the_derivative_of_the_water_s_energy
         rate=lambda x, t: 0 * x,
     )
     body, scene = pointed(0.05, 0.05), Scene(resistive=False, nose=False)
-    simulation = Simulation(body, scene, 1e-9, law=STILL, position=(0.5, 0.0, 0.0), flow=flow)
+    simulation = Simulation(body=body, scene=scene, accuracy=1e-9, law=STILL, position=(0.5, 0.0, 0.0), flow=flow)
     x, w = np.polynomial.legendre.leggauss(60)
     added = 1000.0 * np.pi * 0.05**2 * (1.0 - x**2)  # M2 = m of a neutral body of round sections, over X = x / 2
     second, first = np.sum(0.5 * w * added * (x / 2) ** 2), np.sum(0.5 * w * added * added / (4000.0 * np.pi))

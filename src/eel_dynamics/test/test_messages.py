@@ -274,7 +274,7 @@ def test_start_is_given_in_ros_frames_and_published_back():
 
 def test_body_has_its_outline_and_mass():
     body = Body.boyer2010()
-    message = body_message(Simulation(body, stations=11), "section")
+    message = body_message(Simulation(body=body, stations=11), "section")
     x = np.array(message.x)
     assert x[0] == 0.0 and x[-1] == body.length and np.all(np.diff(x) > 0.0)
     assert set(np.linspace(0.0, 1.0, 11)) <= set(x)
@@ -282,7 +282,9 @@ def test_body_has_its_outline_and_mass():
     assert np.array_equal(message.half_width, body.half_width(x)) and np.array_equal(
         message.half_height, body.half_height(x)
     )
-    assert body_message(Simulation(body, Scene(density=500.0)), "section").mass == pytest.approx(0.5 * message.mass)
+    assert body_message(Simulation(body=body, scene=Scene(density=500.0)), "section").mass == pytest.approx(
+        0.5 * message.mass
+    )
 
 
 def test_samples_keep_their_names():

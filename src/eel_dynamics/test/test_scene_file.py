@@ -49,7 +49,7 @@ def test_what_is_read_is_what_is_swum(tmp_path):
 
 def test_what_is_written_comes_back_equal(tmp_path):
     swim = load_scene(scene_in(tmp_path))
-    for each in (swim, swim.with_gait(period=0.5), swim._replace(flow=None, scene=Scene(), duration="settled")):
+    for each in (swim, swim.with_gait(period=0.5), swim.changed(flow=None, scene=Scene(), duration="settled")):
         save_scene(each, tmp_path / "again.yaml")
         again = load_scene(tmp_path / "again.yaml")
         assert words_of(again) == words_of(each)
@@ -62,7 +62,7 @@ def test_a_robot_is_a_word(tmp_path):
     assert swim.robot == Robot.named("eight_servos") and words_of(swim)["robot"] == "eight_servos"
     assert swim.run() == simulate(straight(), 0.5, robot=swim.robot, accuracy=1e-2)
     with pytest.raises(ValueError, match="robot 'eight_servos' cannot be written"):
-        words_of(swim._replace(robot=swim.robot.changed(torque_limit=None)))
+        words_of(swim.changed(robot=swim.robot.changed(torque_limit=None)))
 
 
 def test_fins_are_words():
@@ -186,7 +186,7 @@ def test_what_no_file_can_hold_is_refused(changes, named, tmp_path):
     swim = swim_of({"gait": "straight"})
     assert isinstance(swim, Swim)
     with pytest.raises(ValueError, match=named):
-        save_scene(swim._replace(**changes), tmp_path / "scene.yaml")
+        save_scene(swim.changed(**changes), tmp_path / "scene.yaml")
     with pytest.raises(ValueError, match="swim must be a Swim, got None"):
         save_scene(None, tmp_path / "scene.yaml")
     assert not (tmp_path / "scene.yaml").exists()
@@ -194,5 +194,5 @@ def test_what_no_file_can_hold_is_refused(changes, named, tmp_path):
 
 def test_flows_come_back():
     for flow in (Gust(hold=2.0), Shear(width=2.0)):
-        swim = swim_of({"gait": "straight"})._replace(flow=flow)
+        swim = swim_of({"gait": "straight"}).changed(flow=flow)
         assert swim_of(words_of(swim)).flow == flow

@@ -88,7 +88,9 @@ def test_a_body_that_turns_about_all_axes_feels_euler_s_equations():
     _, centre, inertia = sections(body)
     omega = np.array([0.9, -1.3, 2.1])
     twist = np.concatenate((omega, np.array([0.5, 0.1, -0.2]) + np.cross(omega, [centre, 0.0, 0.0])))
-    simulation = Simulation(body, ALONE, twist=twist, law=STRAIGHT, sensors=[0.8, 0.25], accuracy="reference")
+    simulation = Simulation(
+        body=body, scene=ALONE, twist=twist, law=STRAIGHT, sensors=[0.8, 0.25], accuracy="reference"
+    )
     seen = simulation.observe()
     alpha = np.cross(inertia * omega, omega) / inertia
     for index, station in enumerate((0.25, 0.8)):

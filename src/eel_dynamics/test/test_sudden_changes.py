@@ -83,14 +83,14 @@ def test_a_gust_that_is_a_function_moves_a_body_that_has_long_lain_still():
 def test_a_ramp_of_a_muscle_ends_a_step():
     moment = Law(Term(amplitude=(0.1,), envelope=(Ramp(3.0, 3.01, 1.0),)))
     robot = Robot([Muscle(0.3, 0.8, 1.0, 0.1, moment)])
-    assert set(Swimmer.of(robot=robot).breakpoints) == {3.0, 3.01}
+    assert set(Swimmer(robot=robot).breakpoints) == {3.0, 3.01}
 
 
 def test_a_stiffness_that_is_high_on_a_short_part_counts():
     def profile(x):
         return 0.1 + 50.0 * np.exp(-(((x - 0.7113) / 0.001) ** 2))
 
-    swimmer = Swimmer.of(robot=Robot([PassiveTail(0.6, profile, 0.01)]))
+    swimmer = Swimmer(robot=Robot([PassiveTail(0.6, profile, 0.01)]))
     wanted = 0.1 * 0.4 + 50.0 * 0.001 * np.sqrt(np.pi)
     assert swimmer.modes.stiffness[0, 0] == pytest.approx(wanted, rel=1e-6)
 

@@ -6,10 +6,11 @@ import warnings
 import numpy as np
 import pytest
 import scipy.optimize
+from eel_dynamics.batches.simulate_batch import swum
 from eel_dynamics.runs.swim import Swim
 from eel_studies.gradients.fixed_discretisation import common_step, on_one_grid, step_of
 from eel_studies.gradients.gradient import share_across_jump
-from eel_studies.points import batch_of_points, point_at
+from eel_studies.points import point_at
 
 from eel_dynamics import Accuracy, Body, Scene, SimulationStopped, simulate
 from eel_gaits import Law, Term, falling, sampled, straight
@@ -105,20 +106,20 @@ def test_the_grid_is_that_of_the_middle_however_many_waves_are_beside_it():
 
 
 def test_swims_beside_the_values_have_one_grid_and_what_the_measures_need(monkeypatch):
-    swum = []
+    noted = []
 
-    def noting(points, how, *others):
-        batch = batch_of_points(points, how, *others)
-        swum.append((points, [batch[index] for index in range(len(points))]))
+    def noting(points, *others):
+        batch = swum(points, *others)
+        noted.append((points, [batch[index] for index in range(len(points))]))
         return batch
 
-    monkeypatch.setattr("eel_studies.gradients.gradient.batch_of_points", noting)
+    monkeypatch.setattr("eel_studies.gradients.gradient.swum", noting)
     values = {"period": 0.8, "wavelength": 0.3}
 
     def beside(of, friction="laminar"):
-        swum.clear()
+        noted.clear()
         found = gradient(of, values, scene=Scene(friction=friction), estimate=False, **SHORT)
-        (_, (middle,)), (points, runs) = swum
+        (_, (middle,)), (points, runs) = noted
         assert found.run == middle and middle.energy is not None and middle.torque is not None
         assert len({(run.nodes, run.steps) for run in runs}) == 1
         scene = points[0].scene

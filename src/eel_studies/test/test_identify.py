@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from eel_dynamics.runs.swim import AT_REST
+from eel_dynamics.model.initial_state import AT_REST
 from eel_studies.identification.command import main
 from eel_studies.identification.statistics import Block, correlation_of, gauss_newton_covariance
 

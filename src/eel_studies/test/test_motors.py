@@ -68,7 +68,7 @@ def test_the_best_tail_s_stiffness_goes_with_the_square_of_the_frequency():
     peaks, speeds = [], []
     for period in (0.5, 1.0, 2.0):
         scene = Scene(planar=True, friction="none")
-        swim = SWIM._replace(law=straight(period=period), scene=scene, duration=12.0 * period)
+        swim = SWIM.changed(law=straight(period=period), scene=scene, duration=12.0 * period)
         values = [0.075 * 2.0**k / period**2 for k in range(6)]
         tail = Robot([PassiveTail(0.6, 1.0, 0.01 / period)])
         row = [figures.speed * period for _, figures in comparison(tail, swim, "bending_stiffness", values)]
@@ -139,6 +139,6 @@ def test_what_does_not_fit_is_one_line(capsys, words, told):
 
 def test_a_joint_without_a_servo_has_no_error():
     robot = Robot([Joint(0.4, actuator=Servo()), Joint(0.7, stiffness=1.0, damping=0.05)])
-    figures = motor_swim(robot, SWIM._replace(duration=2.0))
+    figures = motor_swim(robot, SWIM.changed(duration=2.0))
     assert np.isnan(figures.joints[1].error_rms) and figures.joints[0].error_rms > 0.0
     assert figures.joints[1].torque == 0.0

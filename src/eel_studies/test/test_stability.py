@@ -26,7 +26,7 @@ from eel_studies.stability.maps import (
 from eel_studies.stability.report import STUDIES, report
 from eel_studies.varied import varied
 
-from eel_dynamics import Body, Scene, Simulation
+from eel_dynamics import Body, Simulation
 from eel_gaits import falling, straight
 
 PART = "<!-- {0}: written by `stability` -->\n{1}<!-- end of {0} -->"  # of a page
@@ -247,7 +247,7 @@ def test_what_grows_out_of_the_plane_is_the_model_s():
 
 
 def test_the_condition_of_the_matrix_is_that_of_the_inertia_that_is_solved():
-    swimmer = Simulation(Body.boyer2010(), Scene(), 1e-4, law=falling())
+    swimmer = Simulation(accuracy=1e-4, law=falling())
     at_rest = inertia.inertia_at(swimmer, 0.0)  # the gait starts from the straight shape
     table, nose_mass = swimmer.discretisation, nose_of(swimmer.body, swimmer.scene)[0]
     straight = straight_inertia(table.grid, table.sections, nose_mass, 1.0)

@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 from eel_common.wording import shown
 from eel_dynamics.analysis.measures import measures_of
+from eel_dynamics.batches.simulate_batch import swum
 from eel_dynamics.runs.swim import Swim
-from eel_studies.points import SwimSettings, base_point, batch_of_points, point_at
+from eel_studies.points import base_of, point_at
 from eel_studies.sweeps import command as sweep_command
 from eel_studies.sweeps.command import main
 from eel_studies.sweeps.sweep_key import key_of
@@ -95,8 +96,8 @@ def test_a_scene_of_a_file_is_swept(tmp_path, capsys):
     assert main([str(scene), *words.split(), "--scene", "friction=laminar", "--out", str(out)]) == 0
     kept = xarray.load_dataset(out, engine="scipy")
     assert kept.attrs["gait"] == "straight" and kept.attrs["duration"] == 1.2
-    laminar = swim.with_gait(period=0.6)._replace(scene=Scene(planar=True, friction="laminar"))
-    alone = measures_of(laminar._replace(flow=Gust(velocity=(0.1, 0.0, 0.0), rise=0.5)).run())
+    laminar = swim.with_gait(period=0.6).changed(scene=Scene(planar=True, friction="laminar"))
+    alone = measures_of(laminar.changed(flow=Gust(velocity=(0.1, 0.0, 0.0), rise=0.5)).run())
     for name in ("mean_speed", "greatest_torque"):
         assert float(kept[name].sel({"period": 0.6, "flow.rise": 0.5})) == alone[name]
     data = sweep({"period": [0.6]}, gait=swim, accuracy=1e-3, measure=("mean_speed",))  # what is given comes first
@@ -272,8 +273,7 @@ def test_the_key_changes_with_whatever_the_results_depend_on():
     bodies += [Body(length=1.0, half_width=lambda x, k=k: k * np.sqrt(x), half_height=np.sqrt) for k in (0.01, 0.02)]
 
     def key(measure=measures_of, body=bodies[0]):
-        how = SwimSettings(measure)
-        return key_of([Swim(straight(), body, Scene(), Accuracy.of("draft"))], how)
+        return key_of([Swim(straight(), body, Scene(), Accuracy.of("draft"))], measure)
 
     keys = [key(body=body) for body in bodies]
     keys += [key(measure) for measure in (measure_of(1.0), measure_of(2.0), lambda run: {"far": 1.0})]
@@ -288,11 +288,11 @@ def test_the_key_is_the_same_in_another_process(tmp_path):
     script = tmp_path / "script.py"
     script.write_text(
         "from eel_dynamics import Accuracy, Body, Scene\nfrom eel_studies.sweeps.sweep_key import key_of\n"
-        "from eel_dynamics.runs.swim import Swim\nfrom eel_studies.points import SwimSettings\n"
+        "from eel_dynamics.runs.swim import Swim\n"
         "from eel_gaits import straight\nLIMIT = 0.3\n"
         "def measure(run):\n    return {'far': run.path_length > LIMIT, 'near': run.path_length < LIMIT}\n"
         "point = Swim(straight(), Body.kern2006(), Scene(), Accuracy.of('draft'))\n"
-        "print(key_of([point], SwimSettings(measure)))\n"
+        "print(key_of([point], measure))\n"
     )
 
     def key():
@@ -584,7 +584,7 @@ def test_a_flow_of_a_function_is_swept_and_known_by_its_code(tmp_path):
 
 
 def test_a_sweep_varies_the_numbers_of_a_flow():
-    base = base_point(None, None, Accuracy.of("draft"))
+    base = base_of("straight", accuracy="draft", estimate=False)
     flow = "vortex_street core=0.3"
     point = point_at({"flow.spacing": 2.0, "period": 0.9}, "straight", {"flow": flow}, base)
     assert point.flow == VortexStreet(core=0.3, spacing=2.0)
@@ -592,8 +592,8 @@ def test_a_sweep_varies_the_numbers_of_a_flow():
         point_at({"flow.width_": 2.0}, "straight", {"flow": flow}, base)
     with pytest.raises(ValueError, match="flow must be one built-in flow for spacing to change, got"):
         point_at({"flow.spacing": 2.0}, "straight", {}, base)
-    point = point._replace(duration=1.0, sample_period=0.25, stations=2)
-    swims = batch_of_points([point, point._replace(flow=None)], SwimSettings(("mean_speed",), False))
+    point = point.changed(duration=1.0, sample_period=0.25, stations=2)
+    swims = swum([point, point.changed(flow=None)])
     assert not np.allclose(swims.position[0], swims.position[1])
 
 

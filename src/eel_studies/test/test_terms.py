@@ -92,7 +92,7 @@ def test_terms_that_are_small_alone_and_great_together_come_back(plain):
 
 def test_a_term_without_which_the_swim_stops_matters(monkeypatch):
     def stops(swim):
-        return swim._replace(scene=replace(swim.scene, wake=False), stations=-1)
+        return swim.changed(scene=replace(swim.scene, wake=False), law=1e9 * swim.law)
 
     monkeypatch.setitem(TERMS, "made up", stops)
     found = terms(swim_of({"gait": "straight", "duration": 1, "accuracy": 1e-2}), tolerance=0.5)
@@ -132,5 +132,5 @@ def test_bad_input_is_one_line(words, named, capsys):
 
 
 def test_a_scene_that_cannot_be_swum_is_said():
-    with pytest.raises(ValueError, match="stations must be 2 or more"):
-        terms(swim_of({"gait": "straight"})._replace(stations=-1))
+    with pytest.raises(ValueError, match="sample_period must be at most the duration"):
+        terms(swim_of({"gait": "straight", "sample_period": 20.0}))

@@ -10,8 +10,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from eel_dynamics.model.initial_state import AT_REST
 from eel_dynamics.runs.companion import relative_errors
-from eel_dynamics.runs.swim import AT_REST, Swim
+from eel_dynamics.runs.swim import Swim
 from eel_studies.pictures import spread
 from eel_studies.reference import front, reference_of
 from eel_studies.tradeoff import measuring, report
@@ -109,7 +110,7 @@ def test_a_dear_scene_gets_fewer_settings(monkeypatch):
 
 
 def test_a_robot_has_settings_of_its_one_method():
-    robot = swim_of(straight())._replace(robot=Robot.named("passive_tail"))
+    robot = swim_of(straight()).changed(robot=Robot.named("passive_tail"))
     found = settings(robot)[: -len(ASKED_FOR)]
     assert {each.method for each in found} == {"dormand_prince", "classical"}
     assert len({(each.resolution, each.tolerance, each.step) for each in found}) == len(found)

@@ -25,19 +25,23 @@ Motion = Law | SampledLaw | Callable[..., Any] | str | os.PathLike[str]
 
 def law_from(motion: Motion, duration: float, length: float) -> Law | SampledLaw:
     """The law of a `motion` for `duration` [s] and a body of `length` [m]. `ValueError` for an unsuitable one."""
+    check_motion(motion)
     if isinstance(motion, LAWS):
-        law = motion
-    elif isinstance(motion, (str, os.PathLike)) and is_table(motion, ARCHIVE):
-        law = read_motion(motion, length=length)
-    elif callable(motion):
-        if not _takes(motion, 0.0, None):
-            name = getattr(motion, "__name__", type(motion).__name__)
-            raise _no_motion(motion, f": call it, {name}()" if _takes(motion) else ", which does not take (t, X)")
-        law = sampled(motion, duration, length=length)
-    else:
+        return motion
+    if callable(motion):
+        return sampled(motion, duration, length=length)
+    return read_motion(motion, length=length)
+
+
+def check_motion(motion: Any) -> None:
+    """`ValueError` for a `motion` that is no law, no function K(t, X), and no file."""
+    if isinstance(motion, LAWS) or (isinstance(motion, (str, os.PathLike)) and is_table(motion, ARCHIVE)):
+        return
+    if not callable(motion):
         raise _no_motion(motion, f": write gait({motion!r})" if isinstance(motion, str) and motion in GAITS else "")
-    check_duration(law, duration)
-    return law
+    if not _takes(motion, 0.0, None):
+        name = getattr(motion, "__name__", type(motion).__name__)
+        raise _no_motion(motion, f": call it, {name}()" if _takes(motion) else ", which does not take (t, X)")
 
 
 def _no_motion(motion: object, hint: str) -> ValueError:

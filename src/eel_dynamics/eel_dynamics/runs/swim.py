@@ -9,15 +9,13 @@ from typing import Any, Self
 from eel_common.cached import cached_property
 from eel_common.wording import shown
 from eel_gaits.gaits.settings import Settings
-from eel_gaits.laws.law import Law
-from eel_gaits.sources.sampled_law import SampledLaw
 
-from eel_dynamics.runs.motions import LAWS, law_from
+from eel_dynamics.runs.motions import LAWS, check_motion, law_from
 from eel_dynamics.runs.progress_monitor import ProgressMonitor
 from eel_dynamics.runs.recording import Recording, times_of
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.sampling import check_memory
-from eel_dynamics.runs.settled_duration import period_of, settling_time, until_settled
+from eel_dynamics.runs.settled_duration import settling_time, until_settled
 from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.swimmer import Swimmer
 
@@ -26,7 +24,7 @@ from eel_dynamics.simulation.swimmer import Swimmer
 class Swim(Swimmer):
     """The arguments of `simulate` as one value. Every field has a default.
 
-    law: may be given as any motion of `simulate`; None in settings that several swims share.
+    law: any motion of `simulate`; None in settings that several swims share.
     """
 
     duration: float | str = 10.0  #: s, or "settled"
@@ -37,13 +35,11 @@ class Swim(Swimmer):
     body_file: str = ""  #: the body's file, if any
     robot_file: str = ""  #: the robot's file, if any
 
-    def _checked_law(self) -> Law | SampledLaw | None:
-        law: Any = self.law
-        if law is not None and not isinstance(law, LAWS):
-            if until_settled(self.duration):
-                period_of(law, self.body.length)  # which refuses it
-            self._set(law=law_from(law, float(self.duration), self.body.length))
-        return super()._checked_law()
+    def _checked_law(self) -> Any:
+        if self.law is None or isinstance(self.law, LAWS):
+            return super()._checked_law()
+        check_motion(self.law)
+        return self.law
 
     @cached_property
     def seconds(self) -> float:
@@ -54,9 +50,11 @@ class Swim(Swimmer):
 
     def recording(self) -> Recording[Run]:
         """What is to be recorded of it. `ValueError` for samples that its law, its flow or the memory does not have."""
-        times = times_of(self, self.seconds, self.sample_period)
+        law = law_from(self.law, self.seconds, self.body.length)
+        swim = self if law is self.law else self.with_checked(law=law)
+        times = times_of(swim, self.seconds, self.sample_period)
         check_memory(1, len(times), len(self.x), self.has_wrench, bool(self.load), 2 if self.estimate else 1)
-        recording = Recording(Run, self, times, bool(self.load))
+        recording = Recording(Run, swim, times, bool(self.load))
         return recording.to_refine() if self.estimate else recording
 
     def run(

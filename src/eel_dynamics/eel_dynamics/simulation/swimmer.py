@@ -65,14 +65,14 @@ class Swimmer(EqualByFields):
         self._set(start=_checked_start(scene, self.start, self.flow), fins=checked_fins(self.fins, body, scene))
         self._set(wrenches=checked_wrenches(self.wrenches, body, bool(scene.planar)))
         assert self.modes or robot is None  # the robot fits the body
-        positive("most_evaluations", self.most_evaluations, "per simulated second")
-        positive("default_transition", self.default_transition, "s")
+        self._set(most_evaluations=positive("most_evaluations", self.most_evaluations, "per simulated second"))
+        self._set(default_transition=positive("default_transition", self.default_transition, "s"))
         self._set(sensors=checked_sensors(self.sensors, body.length), law=self._checked_law())
 
     def _set(self, **checked: Any) -> None:
         self.__dict__.update(checked)
 
-    def _checked_law(self) -> Law | SampledLaw | None:
+    def _checked_law(self) -> Any:
         law = self.law
         if law is not None:
             check_planar_law(checked_instance("law", law, (Law, SampledLaw)), self.scene)
