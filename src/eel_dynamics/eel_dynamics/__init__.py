@@ -28,6 +28,7 @@ from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.prescribed import HydrodynamicWrench, hydrodynamic_wrench
 from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.stopping import SimulationStopped
+from eel_dynamics.simulation.swimmer import Swimmer
 
 __all__ = [
     "Accuracy",
@@ -44,6 +45,7 @@ __all__ = [
     "SimulationStopped",
     "Snapshot",
     "Swim",
+    "Swimmer",
     "Trim",
     "Unsettled",
     "Velocity",

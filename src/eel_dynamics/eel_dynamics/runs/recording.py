@@ -31,7 +31,7 @@ class SwimResult(NamedTuple, Generic[Kind]):
     """A run, and the reason if it stopped before its end."""
 
     run: Kind
-    compared: Kind  # the run at all instants of the request, for the estimate of its error
+    compared: Kind  # the run at all instants, for the estimate of its error
     energy_at_start: float  # J
     stopped: SimulationStopped | None
 
