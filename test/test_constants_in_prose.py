@@ -13,8 +13,8 @@ from eel_dynamics.accuracy.sudden_changes import UNSEEN
 from eel_dynamics.curvature.curvature_samples import MOST_POINTS as MOST_POINTS_OF_A_SAMPLE
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 from eel_dynamics.model.fins.fins import Fin
+from eel_dynamics.ros.inputs.law_messages import LARGEST_LAW
 from eel_dynamics.ros.loop import law_adopter, sample_output
-from eel_dynamics.ros.messages import LARGEST_LAW
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.runs import companion
 from eel_dynamics.runs.recording import LEAST_COMPARED

@@ -9,7 +9,8 @@ import pytest
 from eel_common.ros.loop.serialised_message import MARKED_TIME, SerialisedMessage
 from eel_common.topics import ENERGY_FIELDS
 from eel_dynamics.accuracy.error_estimate import HeadErrors
-from eel_dynamics.ros.messages import SampleMessages, body_message, diagnostic_array, samples_from_message
+from eel_dynamics.ros.inputs.law_messages import samples_from_message
+from eel_dynamics.ros.messages import SampleMessages, body_message, diagnostic_array
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
 from eel_dynamics.runs.exchange.messages_of_run import messages_of_run

@@ -14,7 +14,7 @@ from eel_common.ros.serving import PolledGroup, ServedNode, log_dropped
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.qos import ReliabilityPolicy
 
-from eel_dynamics.ros.messages import refused, samples_from_message
+from eel_dynamics.ros.inputs.law_messages import refused, samples_from_message
 from eel_msgs.msg import CurvatureSamples
 
 TOPIC = "curvature_samples"

@@ -18,8 +18,9 @@ from eel_gaits.laws.law_message import law_from_message
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.qos import QoSProfile
 
+from eel_dynamics.ros.inputs.law_messages import law_name, read_law
+from eel_dynamics.ros.inputs.stamps import stamped
 from eel_dynamics.ros.loop.run_loop import RunLoop
-from eel_dynamics.ros.messages import law_name, read_law, stamped
 from eel_msgs.msg import CurvatureLaw
 
 DEPTH = 10  # laws

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Converts between snapshots and messages: fills serialised sample messages, and reads laws and samples of laws.
+"""Makes messages of snapshots and of the simulation: samples, the body, transforms, diagnostics.
 
 Poses, twists and the backbone are in REP-103 axes; section quantities have the paper's section axes: 1 = -x, 2 = -y,
 3 = +z of the section, turned as base_link. The library has the same axes. `joint_signs` has the signs of joints.
@@ -11,16 +11,11 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from eel_common.attitude import heading
-from eel_common.ros.headers import FieldReader, Stamp, seconds_of, stamp_of
+from eel_common.ros.headers import stamp_of
 from eel_common.ros.loop.serialised_message import SerialisedMessage
-from eel_common.ros.serving import read_message
 from eel_common.topics import ENERGY_FIELDS
-from eel_common.wording import shown
-from eel_gaits.laws.law import MAXIMUM_TERMS
-from eel_gaits.ros.messages import ROWS
 from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped, Vector3Stamped
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
@@ -28,26 +23,20 @@ from tf2_msgs.msg import TFMessage
 
 from eel_dynamics.accuracy.error_estimate import HeadErrors
 from eel_dynamics.analysis.joint_demand import Joints
-from eel_dynamics.curvature.curvature_samples import LateSample, check_points
 from eel_dynamics.model.axes import with_section_axes
 from eel_dynamics.model.flow.flow import lattice_around, velocities_at
 from eel_dynamics.model.robot.actuators import current_by_torque, most_torque
 from eel_dynamics.model.robot.joint_signs import OF_SECTIONS, message_signs
-from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
+from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.wrench_frames import wrench_frames
 from eel_dynamics.runs.exchange.message_fields import FIELDS, LINEAR, OF_JOINTS, SIGNED
 from eel_dynamics.runs.exchange.messages_of_run import fields_of_fins, fields_of_joints, numbers_of_appendages, outline
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
 from eel_msgs import msg
-from eel_msgs.srv import SetState
 
-JOIN = "a controller that joins a running simulation begins 1/rate or more after the stamp of the last odom"
 Numbers = dict[str, np.ndarray]  # of a SerialisedMessage, by path
 SECOND = 1_000_000_000  # ns
-STAMP_ERROR = 1.5e-9  # s: rounding error of a stamp that a controller computes from another stamp
-FAR_AHEAD = 3600.0  # s: a stamp further ahead of the simulation is wall time by mistake
-LARGEST_LAW = 2**19  # bytes, without the name: 1,000 terms of 30 knots, which are adopted in half a second
 
 
 class SampleMessages:
@@ -278,97 +267,6 @@ def body_message(simulation: Simulation, section_frame: str) -> msg.BodyGeometry
     for name, values in outline(body, simulation.x).items():
         setattr(message, name, array.array("d", values.tolist()))
     return message
-
-
-def law_name(data: bytes) -> str:
-    """The name in a serialised CurvatureLaw. `EOFError` if the message ends before its terms."""
-    return FieldReader(data).text()
-
-
-def read_law(data: bytes) -> msg.CurvatureLaw:
-    """The CurvatureLaw in a serialised message. `ValueError` for too many terms, or too many numbers in them.
-
-    They are counted before the message is deserialised, because 10^5 terms would block the process for a second.
-    """
-    fields = FieldReader(data)
-    name, terms = fields.text(), fields.number()
-    if terms > MAXIMUM_TERMS:
-        raise ValueError(f"terms must be at most {MAXIMUM_TERMS}, got {terms}")
-    if len(data) - len(name) > LARGEST_LAW:
-        raise ValueError(f"its terms must have at most {LARGEST_LAW} bytes, got {len(data) - len(name)}")
-    return read_message(data, msg.CurvatureLaw)
-
-
-def stamped(stamp: Time | Stamp, now: float) -> float:
-    """The `stamp` [s] of a message. now: simulation time [s]. `ValueError` for an invalid stamp, or one far ahead."""
-    time = seconds_of(stamp)
-    if time > now + FAR_AHEAD:
-        raise ValueError(
-            f"header.stamp must be simulation time, at most {FAR_AHEAD:g} s ahead of {now:g} s, got {time:.3f} s: "
-            "that looks like wall time, does its publisher have use_sim_time set?"
-        )
-    return time
-
-
-def on_sample(stamp: float, rate: float) -> float:
-    """A controller's `stamp` [s], or the time [s] of a sample at `rate` [Hz] if the two differ by rounding alone."""
-    instant = round(stamp * rate) / rate
-    return instant if abs(instant - stamp) < STAMP_ERROR else stamp
-
-
-def samples_from_message(data: bytes, now: float) -> dict[str, Any]:
-    """The arguments of `Simulation.add_samples`: time [s], x [m], curvatures and two time derivatives, section axes.
-
-    data: a serialised CurvatureSamples. Deserialising it would cost five times as much as reading its numbers here.
-    now: simulation time [s]. `ValueError` for an invalid stamp, or too many points; `EOFError` if the message ends
-    before its fields.
-    """
-    fields = FieldReader(data)
-    x = fields.numbers()
-    check_points(len(x))
-    return {"time": stamped(fields.stamp, now), "x": x} | {name: fields.numbers() for name in ROWS}
-
-
-def current_from_message(message: Vector3Stamped, now: float, world_frame: str) -> tuple[float, np.ndarray]:
-    """Stamp [s] and velocity (3,) [m/s], world, of a current. now: simulation time [s].
-
-    `ValueError` for an invalid stamp, or another frame than `world_frame`.
-    """
-    frame, stamp = message.header.frame_id, stamped(message.header.stamp, now)
-    if frame not in ("", world_frame):
-        raise ValueError(f"header.frame_id must be {world_frame}, got {shown(frame)}")
-    velocity = np.array([message.vector.x, message.vector.y, message.vector.z])
-    return stamp, velocity
-
-
-def refused(error: Exception, driven: bool = False) -> str:
-    """The log line for curvature samples that are refused with an `error`.
-
-    driven: whether earlier samples drive the swimmer, or drove it until they ran out.
-    """
-    reason = str(error).removeprefix("curvature samples ")
-    if reason.startswith("time "):
-        reason = f"header.stamp{reason.removeprefix('time')}"
-    if isinstance(error, LateSample):
-        reason += f": {'send them further ahead' if driven else JOIN}"
-    return f"curvature samples refused: {reason}"
-
-
-def state_from_message(request: SetState.Request) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The arguments of `Simulation.set_state` from a request. `ValueError` names the field."""
-    pose, twist = request.pose, request.twist
-    groups = {
-        "pose.position": [getattr(pose.position, axis) for axis in "xyz"],
-        "pose.orientation": [getattr(pose.orientation, axis) for axis in "xyzw"],
-        "twist.angular": [getattr(twist.angular, axis) for axis in "xyz"],
-        "twist.linear": [getattr(twist.linear, axis) for axis in "xyz"],
-    }
-    for name, values in groups.items():
-        if not np.isfinite(values).all():
-            raise ValueError(f"{name} must be finite, got {shown(values)}")
-    position, orientation, angular, linear = groups.values()
-    unit = unit_quaternion("pose.orientation", orientation)
-    return np.array(position), np.array(unit), np.array([*angular, *linear])
 
 
 def diagnostic_array(time: float, name: str, level: int, text: str, values: dict[str, Any]) -> DiagnosticArray:

@@ -38,10 +38,11 @@ from eel_dynamics.ros.command_subscriptions import subscribe_to_commands
 from eel_dynamics.ros.curvature_inbox import CurvatureInbox
 from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.inputs.awaited import INPUTS
+from eel_dynamics.ros.inputs.command_messages import state_from_message
 from eel_dynamics.ros.inputs.inputs import check_inputs
 from eel_dynamics.ros.law_subscription import LawSubscription
 from eel_dynamics.ros.loop.run_loop import RunLoop
-from eel_dynamics.ros.messages import diagnostic_array, root_transform, state_from_message, values_of_status
+from eel_dynamics.ros.messages import diagnostic_array, root_transform, values_of_status
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.publishers import Publishers
 from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads messages with commands for joints and fins (sensor_msgs/JointState), and with external wrenches.
+"""Reads messages with commands for joints and fins (sensor_msgs/JointState), external wrenches, currents and states.
 
 A joint command holds position, velocity or effort, or several of them. A message need not have a value for each joint:
 a value may be NaN, and an array may be shorter than `name` if some joints lack that interface (the parameter
@@ -11,13 +11,16 @@ import math
 from collections.abc import Collection, Mapping
 from typing import Any
 
+import numpy as np
 from eel_common.quantity import checked_choice
 from eel_common.wording import shown
-from geometry_msgs.msg import WrenchStamped
+from geometry_msgs.msg import Vector3Stamped, WrenchStamped
 from sensor_msgs.msg import JointState
 
 from eel_dynamics.model.robot.robot import Robot
-from eel_dynamics.ros.messages import stamped
+from eel_dynamics.ros.inputs.stamps import stamped
+from eel_dynamics.ros.parameters import unit_quaternion
+from eel_msgs.srv import SetState
 
 INTERFACES = ("position", "velocity", "effort")
 ANY, NONE = "any", "none"  # special values of command_interfaces
@@ -122,3 +125,32 @@ def wrench_from_message(
         if not all(map(math.isfinite, row)):
             raise ValueError(f"wrench.{name} must be finite, got {shown(row)}")
     return stamp, frame, (*rows["force"], *rows["torque"])
+
+
+def current_from_message(message: Vector3Stamped, now: float, world_frame: str) -> tuple[float, np.ndarray]:
+    """Stamp [s] and velocity (3,) [m/s], world, of a current. now: simulation time [s].
+
+    `ValueError` for an invalid stamp, or another frame than `world_frame`.
+    """
+    frame, stamp = message.header.frame_id, stamped(message.header.stamp, now)
+    if frame not in ("", world_frame):
+        raise ValueError(f"header.frame_id must be {world_frame}, got {shown(frame)}")
+    velocity = np.array([message.vector.x, message.vector.y, message.vector.z])
+    return stamp, velocity
+
+
+def state_from_message(request: SetState.Request) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The arguments of `Simulation.set_state` from a request. `ValueError` names the field."""
+    pose, twist = request.pose, request.twist
+    groups = {
+        "pose.position": [getattr(pose.position, axis) for axis in "xyz"],
+        "pose.orientation": [getattr(pose.orientation, axis) for axis in "xyzw"],
+        "twist.angular": [getattr(twist.angular, axis) for axis in "xyz"],
+        "twist.linear": [getattr(twist.linear, axis) for axis in "xyz"],
+    }
+    for name, values in groups.items():
+        if not np.isfinite(values).all():
+            raise ValueError(f"{name} must be finite, got {shown(values)}")
+    position, orientation, angular, linear = groups.values()
+    unit = unit_quaternion("pose.orientation", orientation)
+    return np.array(position), np.array(unit), np.array([*angular, *linear])

@@ -7,9 +7,8 @@ import numpy as np
 from eel_common.ros.loop.diagnostics import Report
 
 from eel_dynamics.ros.inputs.awaited import ALL, CURRENT, Awaited
-from eel_dynamics.ros.inputs.command_messages import Values
+from eel_dynamics.ros.inputs.command_messages import Values, current_from_message
 from eel_dynamics.ros.inputs.command_queue import CommandQueue
-from eel_dynamics.ros.messages import current_from_message
 from eel_dynamics.simulation.simulation import Simulation
 
 

@@ -10,7 +10,7 @@ from eel_gaits.laws.law import Law
 
 from eel_dynamics.curvature.curvature_samples import LateSample
 from eel_dynamics.ros.inputs.awaited import LAW, SAMPLES, Awaited
-from eel_dynamics.ros.messages import refused
+from eel_dynamics.ros.inputs.law_messages import refused
 from eel_dynamics.simulation.bending.slow_motors import slow_motors
 from eel_dynamics.simulation.simulation import Simulation
 

@@ -30,12 +30,12 @@ from eel_dynamics.ros.declaration import Declaration, Sensors
 from eel_dynamics.ros.inputs.awaited import MESSAGES
 from eel_dynamics.ros.inputs.command_queue import STAND_IN, CommandQueue
 from eel_dynamics.ros.inputs.inputs import Inputs
+from eel_dynamics.ros.inputs.stamps import on_sample
 from eel_dynamics.ros.loop.law_adopter import LawAdopter
 from eel_dynamics.ros.loop.next_sample import NextSample
 from eel_dynamics.ros.loop.run_gate import RunGate, parts_of_reason
 from eel_dynamics.ros.loop.sample_output import SampleOutput, nanoseconds
 from eel_dynamics.ros.loop.servo_limit import ServoLimit
-from eel_dynamics.ros.messages import on_sample
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.publishers import Publishers
 from eel_dynamics.simulation.simulation import Simulation
