@@ -155,6 +155,8 @@ def test_what_the_bag_lacks_is_none_or_named(run, tmp_path):
     bag = write_bag(tmp_path / "bodiless", run, left_out=("body", "curvature_law"))
     with pytest.raises(ValueError, match="no message on body: give the body"), pytest.warns(UserWarning, match="law"):
         Run.from_bag(bag)
+    with pytest.raises(ValueError, match=r"there must be \d+ instants or more .*, got 2"):
+        Run.from_bag(write_bag(tmp_path / "two", run, first=len(run.time) - 2))
     with pytest.raises(ValueError, match="does not exist") as error:
         Run.from_bag(tmp_path / "nowhere")
     assert "\n" not in str(error.value)

@@ -11,6 +11,7 @@ import pytest
 from eel_common.version import software
 from eel_dynamics.analysis.measures import measures_of
 from eel_dynamics.commands import simulate as command
+from eel_dynamics.model.equality import same
 from eel_dynamics.runs.storage import netcdf
 
 from eel_dynamics import (
@@ -138,6 +139,12 @@ def test_pickled_runs_and_batches_are_equal(run, batch):
     assert again == batch and all(again[index] == batch[index] for index in range(len(batch)))
     stopped = pickle.loads(pickle.dumps(batch.error[3]))
     assert isinstance(stopped, SimulationStopped) and str(stopped) == str(batch.error[3]) and stopped.time > 0.0
+
+
+def test_not_a_number_is_equal_to_itself_alone():
+    nan = float("nan")
+    assert same(nan, float("nan")) and not same(nan, 1.0) and not same(1.0, nan)
+    assert same([np.array([nan])], [np.array([nan])]) and not same([np.array([nan])], [np.array([1.0])])
 
 
 def test_bodies_are_equal_by_value_alone():

@@ -3,6 +3,7 @@
 
 import math
 import pickle
+import re
 
 import numpy as np
 import pytest
@@ -172,6 +173,8 @@ def test_curvature_that_was_measured_is_read(tmp_path):
         value[:, 1], 0.5 * value[:, 2], atol=0.05
     )
     assert np.allclose(rate[:, 2], wanted[1][:, 2], atol=0.5)
+    left = float(re.search(r"residual \(RMS\) .*?([0-9.e-]+) rad/m in time", law.about)[1])
+    assert 0.0 < left < 0.01  # there is no noise
 
 
 def test_a_lateral_displacement_becomes_the_curvature_of_its_midline():
@@ -208,6 +211,7 @@ def test_a_law_of_rows_is_saved_read_and_pickled(tmp_path):
             )
             for by in (0.67, 0.94, 1.06)
         ),
+        ({"x": (lambda x: np.where(np.arange(len(x)) // 21 == 30, 1.5 * x, x))}, ["a midline of 1.", "others have 1"]),
         ({"x": (lambda x: np.where(np.arange(len(x)) == 30, np.nan, x))}, ["line 32", "x must be finite, got nan"]),
         ({"arc_length": (lambda s: np.where(np.arange(len(s)) == 30, 0.4, s))}, ["line 32", "arc_length must rise"]),
     ],
