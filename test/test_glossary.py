@@ -21,7 +21,7 @@ PRIVATE = (
 # Telegraphy, and words that have become others: never again in code or pages.
 BANNED = (
     r"that there (is|are) not", r"\bfor who\b", r"(?i)\bwhoever\b", r"\bunvouched\b", r"\bvouches for\b",
-    r"\bround alike\b", r"whatever calls",
+    r"\bround alike\b", r"whatever calls", r"\bwhat (does|do) not fit\b", r"\bhas no word for\b",
 )  # fmt: skip
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What sensors on the swimmer of a run read: `Run.imu` and the like.
+"""The readings of sensors on the swimmer of a run: `Run.imu` and the like.
 
-A run keeps no motion of sensors, which may sit at any X: its swim is marched again for them, to the same bit.
+A run does not keep the motion at all X, so its swim is marched again for a sensor, with equal results to the last bit.
 """
 
 from functools import partial
@@ -30,7 +30,7 @@ class SensedRun(RunData):
     rate: [Hz], at most that of the run's samples; None: theirs. settings: further ones of the kind of sensor, as
     `eel_dynamics.Imu` and the others document them. The node's sensors read the same with the same settings and
     samples; of joints, the signs of topics may be others. A latency changes nothing here: a reading has its own time.
-    `ValueError` for what does not fit, and for a run that was not made by `simulate`.
+    `ValueError` for a bad setting, and for a run that was not made by `simulate`.
     """
 
     def imu(self, station: float = 0.0, rate: float | None = None, **settings: Any) -> ImuReadings:
@@ -86,7 +86,7 @@ class SensedRun(RunData):
 
     @cached_property
     def _seen(self) -> dict[float, Observations]:
-        """What was seen at each X [m] so far."""
+        """Observations by X [m], of the sensors that were read."""
         return {}
 
 

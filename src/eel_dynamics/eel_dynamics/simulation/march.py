@@ -42,7 +42,7 @@ from eel_dynamics.simulation.stopping import (
 )
 from eel_dynamics.simulation.swimmer import Swimmer
 
-UNCUT = 2**62  # nodes that a march evaluates before it comes back: all
+UNCUT = 2**62  # nodes that a march evaluates before it returns: all
 MARCHED, SINGULAR, UNFINISHED = (eel_core.STATUSES.index(name) for name in ("marched", "singular", "unfinished"))
 
 
@@ -50,7 +50,7 @@ class March:
     """A march of a `swimmer` from its start under its law, whose own t = 0 lies at `origin` [s].
 
     It begins on a grid of these `settings`, or a finer one that the law needs. Without a law the body is straight.
-    `ValueError` where the law cannot be begun, `SimulationStopped` where the initial state has no finite energy.
+    `ValueError` if the law cannot begin, `SimulationStopped` if the energy of the initial state is not finite.
 
     Attributes:
         core: the march of eel_core: state, works and counts.
@@ -64,15 +64,15 @@ class March:
         energy_at_start: [J], kinetic and potential.
     """
 
-    @np.errstate(over="ignore", invalid="ignore")  # what is not finite is reported
+    @np.errstate(over="ignore", invalid="ignore")  # values that are not finite are reported
     def __init__(self, swimmer: Swimmer, origin: float = 0.0, settings: GridSettings | None = None):
         law = swimmer.law
         self.swimmer, self.time, self._time_scale = swimmer, 0.0, swimmer.time_scale
         self._needs = swimmer.shape_needs(law)
         self._commands: dict[str, float] = {}  # rad, of fins
-        self._held: dict[float, ExternalWrench] = {}  # by station [m]: applied, until others are
-        self._next_jump = math.inf  # s, of a wrench from outside
-        self._reference = np.zeros((0, 0))  # what the servos of a robot follow, by the law's factors
+        self._held: dict[float, ExternalWrench] = {}  # by station [m]: applied wrenches
+        self._next_jump = math.inf  # s, of an external wrench
+        self._reference = np.zeros((0, 0))  # references of a robot's servos, from the law's factors
         wanted = swimmer.grid_for(self._needs)
         self.core = eel_core.March(*self._on_grid(wanted if settings is None else settings.at_least(wanted)))
         self._places = self.core.row
@@ -88,14 +88,14 @@ class March:
             raise stopped if law is None else ValueError(f"law {shown(law.name)} cannot be begun: {stopped.quantity}")
 
     def __deepcopy__(self, memo: dict[int, Any]) -> "March":
-        """What never changes is shared."""
+        """Constant data are shared."""
         copied = object.__new__(type(self))
         copied.__dict__.update(self.__dict__)
         copied.core, copied.follower = copy(self.core), copy(self.follower)
         return copied
 
     def __getstate__(self) -> dict[str, Any]:
-        """Without what follows from the rest; of the core what goes on, as bytes."""
+        """Without data that follow from others. The state of the core's march is in bytes."""
         left_out = "core", "discretisation", "robot", "law_on_grid", "_bounds", "_places"
         kept = {name: value for name, value in self.__dict__.items() if name not in left_out}
         return kept | {"core": self.core.state_as_bytes()}
@@ -135,7 +135,7 @@ class March:
         self._hand_over_law()
 
     def change_robot(self, robot: Robot | None):
-        """Go on with a robot that differs in its numbers alone."""
+        """Continue with a robot that differs only in its numbers."""
         self.swimmer = self.swimmer.with_checked(robot=robot)
         self._change_grid(self.settings)
 
@@ -145,8 +145,8 @@ class March:
         self._hand_over_law()
 
     def apply_wrench(self, wrench: ExternalWrench):
-        """Hold a constant `wrench` from now on, in place of the one that was held at its station."""
-        if all(each.station != wrench.station for each in self.swimmer.wrenches):  # a panel is to end there
+        """Hold a constant `wrench` from now on, instead of the previous one at its station."""
+        if all(each.station != wrench.station for each in self.swimmer.wrenches):  # a panel must end there
             self.swimmer = self.swimmer.with_checked(wrenches=(*self.swimmer.wrenches, ExternalWrench(wrench.station)))
         self._held = self._held | {wrench.station: wrench}
         edges = self.swimmer.grid_for(self._needs).edges
@@ -168,7 +168,7 @@ class March:
         self.core.command(servo, kind, angle, rate, torque, low, high)
 
     def _fit(self, needs: ShapeNeeds, coarser: bool = False):
-        """Make the grid fine enough for the `needs`; `coarser` where it is much finer."""
+        """Make the grid fine enough for the `needs`. coarser: coarsen a grid that is much finer."""
         wanted = self.swimmer.grid_for(needs)
         settings = self.settings.fitted(wanted) if coarser else self.settings.at_least(wanted)
         if settings is not self.settings:
@@ -193,7 +193,7 @@ class March:
         return swimmer, by.method, by.order, bool(self.swimmer.scene.planar), modes
 
     def _hand_over_law(self, smoothly: bool = False):
-        """Continue under the follower's law. The next step begins anew, unless the motion goes on `smoothly`."""
+        """Continue under the follower's law. The steps restart, unless the motion continues `smoothly`."""
         swimmer, follower = self.swimmer, self.follower
         law = self.law_on_grid = follower.law_on_grid
         scale, speed = min(follower.time_scale, self._time_scale), follower.speed(swimmer.body.length)
@@ -206,7 +206,7 @@ class March:
         self.core.follow(law, *steps, *water, smoothly, angles, self._reference, self._wrenches())
 
     def _wrenches(self) -> list[Any]:
-        """The wrenches from outside for the core, up to the next that jumps."""
+        """The external wrenches for the core, up to the next jump."""
         swimmer, wrenches = self.swimmer, (*self.swimmer.wrenches, *self._held.values())
         self._next_jump = next_jump(wrenches, self.time)
         where = swimmer.body, self.discretisation.grid, swimmer.x
@@ -235,10 +235,10 @@ class March:
         return True
 
     def _pass_event(self) -> float:
-        """Change the source of curvature, and wrenches that jump, where that is due at present; the next time [s] of
-        such a change.
+        """Make the changes of the source of curvature, and jumps of wrenches, that are due at present. Returns the time
+        [s] of the next one.
 
-        From one pair of samples to the next the curvature has two continuous derivatives, and the motion goes on
+        From one pair of samples to the next the curvature has two continuous derivatives, and the motion continues
         smoothly: the rate of the momentum depends on the curvature and its rate.
         """
         follower, before = self.follower, self.follower.between_samples
@@ -250,7 +250,7 @@ class March:
         return min(follower.next_event(self.time), self._next_jump)
 
     def record(self, times: np.ndarray, wrench: bool, load: bool, look=None, enough=None) -> tuple:
-        """As `Simulation.record`. enough(out, works): asked after each sample with the works so far, whether to end."""
+        """As `Simulation.record`. enough(out, works): called after each sample; whether to end."""
         out = Observations(
             len(times), len(self.swimmer.x), wrench, load, len(self.swimmer.fins), len(self.swimmer.sensors)
         )
@@ -330,9 +330,9 @@ class March:
         return InitialState(state[:3], state[3:7], self.twist).against_water(self.swimmer.current)
 
     def set_state(self, state: InitialState):
-        """Put the head into `state` at the present time; the next step begins anew.
+        """Set the `state` of the head at the present time; the steps restart.
 
-        `ValueError` without a finite energy; the march then stays as it is.
+        `ValueError` if its energy is not finite; the march is then unchanged.
         """
         before, twist, relative = np.array(self.core.state), self.twist, state.in_water(self.swimmer.current)
         with np.errstate(over="ignore", invalid="ignore"):

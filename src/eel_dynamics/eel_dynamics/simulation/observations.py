@@ -25,7 +25,7 @@ class Variable(NamedTuple):
 
 
 class Observed:
-    """A quantity of `Observations`: a view of their numbers, made when it is asked for."""
+    """A quantity of `Observations`: a view of their numbers, made on request."""
 
     def __init__(self, dimensions: str, unit: str, description: str):
         self.variable = Variable(tuple(dimensions.split()), unit, description)
@@ -47,8 +47,8 @@ class Observations:
     """Samples of a swimmer: T instants ("time"), M stations ("station"). World and head in REP-103 axes, SI units.
 
     Section axes are the paper's; those of a sensor are its section's, turned as the head's (x forward). All quantities
-    are views of `whole` (n,), where they lie one behind the other at their `places`. A quantity that was not asked for
-    has no instants.
+    are views of `whole` (n,), at their `places`, one after the other. A quantity that was not requested has no
+    instants.
     """
 
     __slots__ = ("places", "whole")
@@ -112,7 +112,7 @@ class Observations:
     __hash__ = object.__hash__
 
     def arrays(self) -> dict[str, np.ndarray]:
-        """All quantities by name, without those that a `Snapshot` was not asked for."""
+        """All quantities by name, of a `Snapshot` only the requested ones."""
         places = self.places.items()
         return {name: self.whole[where].reshape(shape) for name, (where, shape) in places if shape is not None}
 
@@ -125,10 +125,10 @@ SENSORS = tuple(name for name in OBSERVED if name.startswith("sensor_"))
 
 
 class Snapshot(Observations):
-    """One instant: the quantities have no dimension "time", and are None where they were not asked for.
+    """One instant: the quantities have no dimension "time", and are None if they were not requested.
 
-    The arrays are views: copy what is to be kept. ledger: the works (8,) [J] since the start, and the energy [J] there.
-    joints: the `JointMotion` of the instant. sensors: how many there are.
+    The arrays are views: copy them to keep them. ledger: the works (8,) [J] since the start, and the energy [J] there.
+    joints: the `JointMotion` of the instant. sensors: their number.
 
     Attributes:
         time: [s].
@@ -173,12 +173,12 @@ class Snapshot(Observations):
 
     @property
     def closure_torque(self) -> float | None:
-        """[N m], what is left of the internal torque at the nose; None without the wrench."""
+        """[N m], remainder of the internal torque at the nose; None without the wrench."""
         return None if self.torque is None else float(self.closure[0])
 
     @property
     def closure_force(self) -> float | None:
-        """[N], what is left of the internal force there, less the load on the nose; None without the wrench."""
+        """[N], remainder of the internal force at the nose, minus the nose's load; None without the wrench."""
         return None if self.torque is None else float(self.closure[1])
 
 
@@ -186,7 +186,7 @@ class Snapshot(Observations):
 def places_of(
     samples: int | None, stations: int, wrench: bool, load: bool, fins: int = 0, sensors: int = 0
 ) -> tuple[Places, int]:
-    """The places of all quantities, and how many numbers these hold."""
+    """The places of all quantities, and the number of their numbers."""
     places: Places = {}
     end = 0
     for name, (begin, instants, numbers, of) in eel_core.layout(

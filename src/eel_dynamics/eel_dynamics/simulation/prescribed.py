@@ -58,7 +58,7 @@ def hydrodynamic_wrench(
 
     The head moves with `twist` (6,) = (Omega, V) [rad/s, m/s] and `twist_rate` (6,) = (Omegadot, Vdot) [rad/s^2,
     m/s^2], the rates of these components in the head's axes. Head and world coincide, so a current of the scene is
-    along the head's axes. `ValueError` names what does not fit.
+    along the head's axes. `ValueError` names a bad argument.
     """
     twist, twist_rate = checked_row("twist", twist, 6), checked_row("twist_rate", twist_rate, 6)
     checked_instance("law", law, Law)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a simulation tells: the present instant, what drives it, what it has cost, and its error. It changes nothing."""
+"""The read-only part of a simulation: the present instant, its law, its cost and its error."""
 
 import numpy as np
 from eel_gaits.laws.law import Law
@@ -51,12 +51,12 @@ class Present:
 
     @property
     def fins(self) -> tuple[Fin, ...]:
-        """The fins, each of a pair by itself."""
+        """The fins, with pairs separated."""
         return self._swimmer.fins
 
     @property
     def wrenches(self) -> tuple[ExternalWrench, ...]:
-        """The wrenches from outside that were given at the start, without those that are applied."""
+        """The external wrenches given at the start, without those applied later."""
         return self._swimmer.wrenches
 
     @property
@@ -81,7 +81,7 @@ class Present:
 
     @property
     def samples_until(self) -> float | None:
-        """Last instant [s] of a controller's samples, or None where there are none."""
+        """Last instant [s] of a controller's samples, or None without samples."""
         return self._march.follower.samples.end
 
     @property
@@ -101,7 +101,7 @@ class Present:
 
     @property
     def flow(self) -> Flow | None:
-        """How the water moves at present, beside the scene's current."""
+        """The flow of the water at present, besides the scene's current."""
         return self._march.swimmer.flow
 
     def observe(self, wrench: bool = True, load: bool = True) -> Snapshot:
@@ -139,13 +139,13 @@ class Present:
         """Numbers of steps, rejected steps and evaluations of the head's dynamics so far."""
         return self._march.core.counts
 
-    # -- error, where it is measured (`measure_error`); else None
+    # -- error, if it is measured (`measure_error`); else None
 
     @property
     def error_estimate(self) -> ErrorEstimate | None:
         """The errors of the motion since `measured_since`, at the last comparison.
 
-        They are relative to the path and to the greatest torque since then, and infinite where the companion stopped.
+        They are relative to the path and to the greatest torque since then, and infinite if the companion stopped.
         """
         return self._meter.estimate(self._march) if self._meter.wanted else None
 
@@ -153,17 +153,17 @@ class Present:
     def head_errors(self) -> HeadErrors | None:
         """The errors of the head's motion since `measured_since`, at the last comparison.
 
-        All are infinite where the companion stopped. The absolute ones are also infinite before the first comparison,
+        All are infinite if the companion stopped. The absolute ones are also infinite before the first comparison,
         and once the position was lost.
         """
         return self._meter.head_errors if self._meter.wanted else None
 
     @property
     def measured_since(self) -> float | None:
-        """[s], start of the estimate. It begins again once the errors have grown so far that they grow no more."""
+        """[s], start of the estimate. It restarts once the errors are saturated: so large that they no longer grow."""
         return self._meter.measured_since if self._meter.wanted else None
 
     @property
     def lost_at(self) -> float | None:
-        """[s], when it first began again because of that; None where it never did."""
+        """[s], first such restart of the estimate; None without one."""
         return self._meter.lost_at if self._meter.wanted else None

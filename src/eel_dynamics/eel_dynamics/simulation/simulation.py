@@ -27,13 +27,14 @@ from eel_dynamics.simulation.present import Present
 from eel_dynamics.simulation.stopping import SimulationStopped
 from eel_dynamics.simulation.swimmer import Swimmer
 
-ROUNDING = 1e-12  # of a time, s at least: how far the first one to record may lie before the present
+ROUNDING = 1e-12  # relative, or s: by how much the first time to record may lie before the present
 
 
 class Simulation(Present):
     """The march of one swimmer, from its start on. Adopt a law (or add samples), advance, observe.
 
-    `ValueError` names the argument that does not fit. A copy, by `copy` or a pickle, goes on by itself to the same bit.
+    `ValueError` names a bad argument. A copy, by `copy` or a pickle, continues independently, with the same results to
+    the last bit.
 
         Simulation(law=straight(), scene=Scene(planar=True), twist=(0, 0, 0, 0.3, 0, 0))
 
@@ -41,7 +42,7 @@ class Simulation(Present):
         swimmer: its body, water and start.
         measure_error: whether a companion with coarser settings follows, for `error_estimate` and `head_errors`.
         fields: of `Swimmer`, and position (3,) [m], orientation (4,) x y z w, twist (6,) (Omega, V) [rad/s, m/s] of the
-            head at the start; in place of a swimmer, or of its own.
+            head at the start. They make a swimmer, or replace those of the given one.
     """
 
     def __init__(self, swimmer: Swimmer | None = None, *, measure_error: bool = False, **fields: Any) -> None:
@@ -95,11 +96,11 @@ class Simulation(Present):
 
         The rows hold the curvature [rad/m], its rate [rad/m/s] and its acceleration [rad/m/s^2] at the points `x` (n,)
         [m]. They are interpolated by natural cubic splines in X; beyond the first and the last point, where these do
-        not lie at nose and tail, each row goes on in a straight line with its slope there. Between two
+        not lie at nose and tail, each row is extended linearly with its slope there. Between two
         instants they follow the quintic that meets value, rate and acceleration at both. The samples take over as soon
         as two instants bracket the present.
         waves: on the body, which the grid must resolve; None: as many as the points can carry, one for eight of them.
-        `ValueError` names what does not fit.
+        `ValueError` names a bad argument.
         """
         if type(x) is not np.ndarray or x.ndim != 1:
             x = checked_row("curvature samples x", x, None)
@@ -123,7 +124,8 @@ class Simulation(Present):
         """Add a sample of a current: the `velocity` (3,) [m/s], world, that it has at `time` [s], everywhere.
 
         The water then moves with the course through the samples (`CurrentStream`), besides the scene's current and the
-        flow. A sample no newer than the last is left out. A reset forgets them. `ValueError` for what does not fit.
+        flow. A sample that is not newer than the last is ignored. A reset removes all. `ValueError` names a bad
+        argument.
         """
         if not is_finite(time):
             raise ValueError(f"current time must be finite, got {shown(time)} s")
@@ -140,9 +142,9 @@ class Simulation(Present):
         self._on_both(lambda march: march.change_flow(flow))
 
     def command_fins(self, commands: Mapping[str, float]) -> None:
-        """Have the servos of commanded fins follow these angles [rad], by `Fin.name`, from the present time on.
+        """Command these angles [rad] of fins, by `Fin.name`, from the present time on.
 
-        A reset forgets them. `ValueError` for a fin that is not commanded, or an angle that is no number.
+        A reset removes them. `ValueError` for a fin that is not commanded, or an angle that is no number.
         """
         angles = checked_commands(self._swimmer.fins, commands)
         self._on_both(lambda march: march.command_fins(angles))
@@ -154,11 +156,11 @@ class Simulation(Present):
         torque: ArrayLike = (0.0, 0.0, 0.0),
         frame: str = "section",
     ) -> None:
-        """Have a wrench from outside act on the section at `station` [m], from the present time on.
+        """Apply an external wrench to the section at `station` [m], from the present time on.
 
-        It replaces the one that was applied there before, and holds until another does; zero ends it. Those of
-        `wrenches` go on beside it. A reset forgets it. A first one at a station inside the body makes a new grid,
-        unless one of the `wrenches` has that station.
+        It replaces the previous one applied there, and holds until the next one; a zero wrench ends it. `wrenches` act
+        in addition. A reset removes it. The first one at a station inside the body changes the grid, unless one of
+        `wrenches` has that station.
 
         Args:
             station: X [m], 0 at the head.
@@ -166,7 +168,7 @@ class Simulation(Present):
             torque: (3,) [N m], about it.
             frame: their axes, "section" (x forward, y left, z up, as the section is turned) or "world".
 
-        `ValueError` for what does not fit.
+        `ValueError` names a bad argument.
         """
         wrench = self.check_wrench(station, force, torque, frame)
         self._on_both(lambda march: march.apply_wrench(wrench))
@@ -185,19 +187,19 @@ class Simulation(Present):
     def command(
         self, joint: str, *, position: float | None = None, velocity: float | None = None, effort: float | None = None
     ) -> None:
-        """Have the servo of a robot's `joint` hold a position [rad], turn with a velocity [rad/s], or give an effort
-        [N m], from now on and whatever the law; with none of them, follow the law again.
+        """Command the servo of a robot's `joint`, from now on: a position [rad], a velocity [rad/s] or an effort [N m].
+        Without any of them it follows the law again.
 
-        With a position the velocity is the rate of the reference, which the damping of the feedback works on; alone it
-        moves the reference, up to the joint's limits. With either of them the effort is added to the torque of the
-        feedback. All are limited by the servo. The sign is the joint's.
+        With a position, the velocity is the rate of the reference for the feedback's damping. Alone, it moves the
+        reference, up to the joint's limits. With either of them, the effort is added to the torque of the feedback.
+        The servo's limits always hold. The sign is the joint's.
         `ValueError` for an unknown joint, one without a servo, or a number that is not finite.
         """
         self.check_driven(joint)
         given = ("position", position), ("velocity", velocity), ("effort", effort)
         values = [
             value
-            if value is None or (type(value) is float and -LARGEST <= value <= LARGEST)  # as of a message
+            if value is None or (type(value) is float and -LARGEST <= value <= LARGEST)  # as from a message
             else number(f"{name} of joint {shown(joint)}", value)
             for name, value in given
         ]
@@ -215,16 +217,16 @@ class Simulation(Present):
             raise ValueError(f"joint {shown(joint)} cannot be commanded: it has no servo")
 
     def _on_both(self, action: Callable[[March], March | None]) -> None:
-        """Do it to the march and, where the error is measured, to its companion, at the same time.
+        """Apply an action to the march and, if the error is measured, to its companion, at the same time.
 
-        An action may return another march in its place.
+        An action may return a march that replaces the one it got.
         """
         self._meter.catch_up(self._march)
         self._march = action(self._march) or self._march
         self._meter.repeat(action)
 
     def __copy__(self) -> "Simulation":
-        """A copy that goes on by itself, to the same bit; `copy.deepcopy` and pickles give such a one too."""
+        """An independent copy, with the same results to the last bit; as by `copy.deepcopy` or a pickle."""
         return deepcopy(self)
 
     def copy_with(self, accuracy: Accuracy | None = None, robot: Robot | None = None) -> "Simulation":
@@ -245,7 +247,7 @@ class Simulation(Present):
         return other
 
     def change_robot(self, robot: Robot) -> None:
-        """Go on with other numbers of the robot, as of `copy_with`, from the present time on, and after a reset too.
+        """Continue with other numbers of the robot, as in `copy_with`, from the present time on, and after a reset too.
 
         Commands hold. `ValueError` for other parts, or at other places.
         """
@@ -259,9 +261,9 @@ class Simulation(Present):
     def advance(self, time: float, interrupted: Callable[[], bool] | None = None) -> bool:
         """March to `time` [s]. Returns whether it was reached.
 
-        Raises `SimulationStopped` where the march cannot continue; the state is then the last good one. interrupted()
-        is called every few milliseconds. Once it returns true the march ends where it is. Another `advance` continues
-        as if there had been no interruption.
+        Raises `SimulationStopped` if the march cannot continue; the state is then the last good one. interrupted() is
+        called every few milliseconds. Once it returns true, the march ends at its present time. The next `advance`
+        continues as if there had been no interruption.
         """
         if not self.ready:
             raise RuntimeError("no law has been adopted")
@@ -274,10 +276,10 @@ class Simulation(Present):
         return reached
 
     def set_state(self, position: ArrayLike, orientation: ArrayLike, twist: ArrayLike) -> None:
-        """Put the head elsewhere, with another twist, at the present time. The arguments are those of `Simulation`.
+        """Set pose and twist of the head at the present time. The arguments are those of `Simulation`.
 
-        The shape and its motion go on. The momentum becomes that of the twist. The ledger leaves out the jump of the
-        energy. `ValueError` for a state that the scene does not allow, or without a finite energy.
+        The shape and its motion continue. The momentum becomes that of the twist. The ledger does not count the jump of
+        the energy. `ValueError` for a state that the scene does not allow, or without a finite energy.
         """
         self._march.set_state(checked_state(self.scene.planar, position, orientation, twist))
         self._meter.begin_again(self._march)
@@ -285,7 +287,7 @@ class Simulation(Present):
     def reset(self, keep_law: bool = True) -> None:
         """Reset state and time to the start. The last law stays, with its own t = 0 at 0, unless `keep_law` is false.
 
-        `ValueError` for a law that cannot begin from the initial state; the simulation then stays as it is.
+        `ValueError` for a law that cannot begin from the initial state; the simulation is then unchanged.
         """
         self._march = March(self._swimmer.with_checked(law=self.law if keep_law else None))
         self.currents = CurrentStream(self._swimmer.default_transition)

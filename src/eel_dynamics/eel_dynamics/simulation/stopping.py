@@ -2,9 +2,9 @@
 """The reasons why a march could not continue, the remedies, and the first sample of a run that cannot be returned.
 
 Too long a fixed step does not fail by itself: the motion grows, but every number stays finite. The ledger (eq.
-60 times the head's twist) shows the error: the energy gains more than the integral of the powers. Where this
-excess exceeds a share of all energy that was present or passed, the motion is not the model's. A motion below
-`floor`, too small on the body's scale to need steps of its own, passes: its error is relative to the body's length.
+60 times the head's twist) shows the error: the energy gains more than the integral of the powers. If this
+excess exceeds a share of all energy that was present or passed, the motion is wrong. A motion below `floor` is
+too small on the body's scale to need smaller steps, and is accepted: its error is relative to the body's length.
 """
 
 import math
@@ -23,7 +23,7 @@ OPEN = 0.2  # share of the energy; at twice the longest useful step of the robot
 
 
 class SimulationStopped(WorkStopped):
-    """The march could not continue. `quantity` failed with `value` at `time` [s]. `hint` says what to change."""
+    """The march could not continue. `quantity` failed with `value` at `time` [s]. `hint` tells what to change."""
 
     def __init__(self, time: float, quantity: str, value: float, hint: str):
         super().__init__(f"stopped at t = {time:.6g} s: {quantity} ({value:.3g}); {hint}")
@@ -105,7 +105,7 @@ def first_bad_sample(
     """The first bad sample of the first `done` ones: its index, the quantity and its value. None if all are good.
 
     out: `Observations`. works (T, 8) [J]. start [J]: the energy at the start. floor [J]: energy that counts as
-    none; where it is infinite, the ledger is not checked. robot (T, 3): as of `EnergyLedger.of`.
+    none; where it is infinite, the ledger is not checked. robot (T, 3): as in `EnergyLedger.of`.
     """
     with np.errstate(over="ignore", invalid="ignore"):
         failures = []

@@ -38,7 +38,7 @@ FITTING = 1e-6  # of the body's length: tolerance for the length of a law's rows
 class Swimmer(EqualByFields):
     """A swimmer, its water and its start, checked when it is made. It never changes.
 
-    `ValueError` names the field that does not fit. World and head have REP-103 axes.
+    `ValueError` names a bad field. World and head have REP-103 axes.
     """
 
     law: Any = None  #: a `Law` or `SampledLaw`, the first that it follows, and what servos follow; None: straight
@@ -47,12 +47,12 @@ class Swimmer(EqualByFields):
     accuracy: Accuracy = OF_STANDARD  #: or a preset's name, or a target relative error
     start: InitialState = AT_REST  #: of the head
     flow: Flow | None = None  #: the water's own motion, besides the scene's current
-    robot: Robot | None = None  #: what bends by itself; None: the law is imposed
+    robot: Robot | None = None  #: None: the law is imposed
     fins: tuple[Fin, ...] = ()  #: may be given as a list of fins and of pairs of them
     stations: Any = 51  #: number of equidistant ones, or X (M,) [m]; None: no profiles along the body
     wrenches: tuple[ExternalWrench, ...] = ()  #: from outside
     sensors: tuple[float, ...] = ()  #: X [m] of the stations whose motion is observed; then rising, each once
-    default_transition: float = DEFAULT_TRANSITION  #: s, of a blend where a law gives none
+    default_transition: float = DEFAULT_TRANSITION  #: s, of a blend if the law gives none
     most_evaluations: float = MOST_EVALUATIONS  #: of the head's dynamics per simulated second
     until: float = 0.0  #: s, until which functions of time are sampled beforehand; 0: not at all
 
@@ -88,7 +88,7 @@ class Swimmer(EqualByFields):
         start: InitialState = AT_REST,
         **others: Any,
     ) -> Self:
-        """The swimmer of these fields, where the parts of the `start` may be given one by one."""
+        """The swimmer of these fields. The parts of the `start` may be given one by one."""
         given = {"position": position, "orientation": orientation, "twist": twist}
         parts: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
         return cls(start=start._replace(**parts), **others)
@@ -108,7 +108,7 @@ class Swimmer(EqualByFields):
         return {name: self.__dict__[name] for name in self.__dataclass_fields__}
 
     def starting(self, start: InitialState, flow: Flow | None) -> Self:
-        """The same with another start and flow. `ValueError` for one that does not fit."""
+        """The same with another start and flow. `ValueError` for one that the scene does not allow."""
         return self.with_checked(start=_checked_start(self.scene, start, flow), flow=flow)
 
     def with_robot(self, robot: Robot | None) -> Self:

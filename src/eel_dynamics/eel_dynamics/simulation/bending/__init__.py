@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The march of a robot: a body that bends by itself."""
+"""The march of a robot, with dynamic bending."""

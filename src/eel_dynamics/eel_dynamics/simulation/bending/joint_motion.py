@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a robot's joints, motors and bending parts do at instants, from the coordinates of the march.
+"""The motion of a robot's joints, motors and bending parts at instants, from the coordinates of the march.
 
 `JOINT_ARRAYS` is the one description of these quantities, as `OBSERVED` is of the swimmer's own. Joints are those of
 `Robot.joints`, in their order and in their sign; modes are those of its tails and muscles, in section axes.
@@ -24,11 +24,11 @@ JOINT_ARRAYS = {
     "mode_amplitude": Variable(("time", "mode"), "rad/m", "curvature of the modes of tails and muscles"),
     "mode_rate": Variable(("time", "mode"), "rad/m/s", "its rate"),
 }
-OF_LEDGER = "elastic", "damping_power", "damping_work"  # what a robot adds to the ledger [J, W, J]
+OF_LEDGER = "elastic", "damping_power", "damping_work"  # a robot's part of the ledger [J, W, J]
 
 
 class JointMotion:
-    """The motion of a robot's coordinates at T instants, computed when it is asked for.
+    """The motion of a robot's coordinates at T instants, computed on request.
 
     rows: (T, R), as the core writes them at the `places` of their names.
     """

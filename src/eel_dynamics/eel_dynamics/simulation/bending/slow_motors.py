@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Motors that are asked for more than their speed, found before the swim.
+"""Motors that are too slow for a law, found before the swim.
 
-At its speed limit a motor has no torque left: it lags behind the law, and its torque has a kink each time that it gets
-there. Such a swim takes many steps.
+At its speed limit a motor has no torque left. It lags behind the law, and its torque has a kink whenever it reaches the
+limit. Such a swim takes many steps.
 """
 
 from typing import NamedTuple
@@ -13,20 +13,20 @@ from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.model.robot.compiled import ModeTable
 
-LOOKS = 24  # instants at which the law is looked at
+LOOKS = 24  # instants at which the law is evaluated
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)  # its multiples fall on all phases of any period alike
 FAR = 3.0  # times its speed limit, from which a motor is far too slow
 
 
 class SlowMotors(NamedTuple):
-    """What is said of motors that are too slow, and whether one is far too slow."""
+    """A text about motors that are too slow, and whether one is far too slow."""
 
     text: str
     far: bool
 
 
 def slow_motors(table: ModeTable | None, law: Law | SampledLaw, duration: float) -> SlowMotors | None:
-    """The motors in a `table` that cannot follow a `law` within `duration` [s]; None where all can."""
+    """The motors in a `table` that cannot follow a `law` within `duration` [s]; None if all can."""
     motors = () if table is None else table.motors
     fastest = np.array([motor.servo.speed_limit or np.inf for motor in motors])
     if table is None or not np.isfinite(fastest).any():
