@@ -75,7 +75,8 @@ def draw_body(figure: Figure, recording: str | os.PathLike[str]) -> None:
         near = np.argsort(EYE[name] * faces[:, :, away].mean(axis=1), kind="stable")  # far parts first
         axes.set_facecolor(GROUND)
         axes.plot(path[:, along], path[:, up], color=PATH, linewidth=1.0, zorder=1)
-        drawn = PolyCollection(faces[near][:, :, [along, up]], facecolors=lit[near], edgecolors="face", linewidths=0.3)
+        corners_of: Any = faces[near][:, :, [along, up]]
+        drawn = PolyCollection(corners_of, facecolors=lit[near], edgecolors="face", linewidths=0.3)
         axes.add_collection(drawn)
         for head, row in zip(heads, rows, strict=True) if away == 1 else ():  # the other view has no room for words
             place = {"xytext": (8, 8), "textcoords": "offset points", "color": LABEL}

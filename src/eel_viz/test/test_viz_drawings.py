@@ -234,6 +234,12 @@ def test_letters_have_a_contrast_of_4_5_on_their_ground_in_every_theme(name):
     assert min(contrast(letter, ground) for letter in letters) >= 4.5
 
 
+@pytest.mark.parametrize("ground", [colours.WATER_DEEP, colours.WATER_SHALLOW, colours.WATER_FLOOR])
+def test_grids_have_a_contrast_of_3_on_our_grounds(ground):
+    assert contrast(colours.WATER_LINE_MAJOR, ground) >= 3.0
+    assert contrast(colours.TICK, colours.PLOT_BACKGROUND) >= 3.0 and contrast(colours.FRAME, colours.TICK) > 1.2
+
+
 @pytest.mark.parametrize("ground", [(255, 255, 255), (13, 16, 17)])
 def test_curves_have_a_contrast_of_3_on_the_ground_of_either_theme(ground):
     """WCAG 2.2 asks this of lines; the viewer's own grounds are these."""
