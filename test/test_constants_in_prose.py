@@ -74,7 +74,8 @@ QUOTED = {
     "docs/appendix/robustness.md": (f"{DynamicsParameters().subscriber_timeout:g} s at most",),
     "docs/howto/fins.md": (
         f"{WORDS[eel_core.MOST_SERVOS]} servos at most have a time constant",
-        f"C_D = {Fin.friction_drag:g} + (1 - k) L^2 / (pi {Fin.efficiency:g} AR) + k {Fin.normal_drag:g} S^2",
+        rf"C_D = {Fin.friction_drag:g} + (1 - k)\,\frac{{L^2}}{{{Fin.efficiency:g}\,\pi\Lambda}} + "
+        rf"{Fin.normal_drag:g}\,k\,S^2",
     ),
     "docs/howto/motions.md": (
         f"a gap exceeds {SIDES[LONGEST_GAP]} of the fastest period",
