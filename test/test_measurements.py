@@ -3,8 +3,8 @@
 
 import csv
 
-import measurements
 import pytest
+from studied import measurements
 from validation import MEASUREMENTS
 
 STALE = f"{MEASUREMENTS.name} is stale: make validation"

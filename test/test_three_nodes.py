@@ -201,12 +201,3 @@ def test_the_bag_played_to_a_live_visualiser_is_shown_as_the_run_was(results, st
     assert player.wait(150.0) == 0, player.output()
     assert node.wait(90.0) == 0, node.output()
     assert differences(results.recording, tmp_path / "played.rrd", until=2 * 10**9) == []
-
-
-@pytest.mark.soak
-def test_the_library_s_run_is_shown_as_the_live_one(results, library, tmp_path):
-    """Every entity at every time, to round-off: 1e-14, but for the energy's residual, a small difference itself."""
-    from compared import differences
-
-    library.to_rerun(tmp_path / "library.rrd")
-    assert differences(results.recording, tmp_path / "library.rrd", tolerance=1e-8) == []

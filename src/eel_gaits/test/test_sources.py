@@ -214,6 +214,10 @@ def test_a_law_of_rows_is_saved_read_and_pickled(tmp_path):
         ({"x": (lambda x: np.where(np.arange(len(x)) // 21 == 30, 1.5 * x, x))}, ["a midline of 1.", "others have 1"]),
         ({"x": (lambda x: np.where(np.arange(len(x)) == 30, np.nan, x))}, ["line 32", "x must be finite, got nan"]),
         ({"arc_length": (lambda s: np.where(np.arange(len(s)) == 30, 0.4, s))}, ["line 32", "arc_length must rise"]),
+        (
+            {"arc_length": (lambda s: np.where(np.arange(len(s)) // 21 == 30, 1.2 * s, s))},
+            ["line 652", "arc_length of point 21 must stay the same, got 1.2, on average 1.0"],
+        ),
     ],
 )
 def test_bad_rows_of_midlines_are_named(tmp_path, change, words):
