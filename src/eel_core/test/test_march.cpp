@@ -15,7 +15,7 @@ std::shared_ptr<const Modes> bend_with_spring()
     modes->modes = modes->coordinates = 1;
     modes->axis = {LawOnGrid::yaw}, modes->first = {0}, modes->last = {panel_nodes}, modes->continuous = {true};
     modes->span = modes->moment = {1.0};
-    modes->inertia = {0.01}, modes->rest = {0.2}, modes->stiffness = {2.0}, modes->damping = {0.1};
+    modes->armature = {0.01}, modes->rest = {0.2}, modes->stiffness = {2.0}, modes->damping = {0.1};
     modes->servos.push_back({0, 1.0, 0.1, 5.0, 20.0});
     return modes;
 }
