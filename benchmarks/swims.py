@@ -122,8 +122,9 @@ def gym() -> Lines:
     """Control steps of 20 ms at accuracy standard, per second of CPU: bare advance and observe under a law that stays
     the same, then steps of the environments with a new action each; and what threads gain in wall time."""
     cases, names = {}, ("Heading", "Depth")
+    settings: dict[str, Any] = {"disable_env_checker": True, "control_period": STEP, "duration": 1e4}
     for name in names:
-        env: Any = gymnasium.make(f"Eel/{name}-v0", disable_env_checker=True, duration=1e4).unwrapped
+        env: Any = gymnasium.make(f"Eel/{name}-v0", **settings).unwrapped
         actions = np.random.default_rng(1).uniform(-0.2, 0.2, (STEPS, *env.action_space.shape))
         cases[f"bare, scene of {name}"] = partial(_bare, env.scene)
         cases[f"Eel/{name}-v0"] = partial(_steps, env, actions)
@@ -140,7 +141,9 @@ def gym() -> Lines:
     for count, greatest in ((SWIMMERS, 0.0), (SWIMMERS, 0.2), (2 * SWIMMERS, 0.2)):
         actions = np.random.default_rng(1).uniform(-greatest, greatest, (STEPS, count, 1))
         steps = {
-            threads: partial(_steps, gymnasium.make_vec("Eel/Heading-v0", num_envs=count, threads=threads), actions)
+            threads: partial(
+                _steps, gymnasium.make_vec("Eel/Heading-v0", count, threads=threads, control_period=STEP), actions
+            )
             for threads in (1, 2)
         }
         (seconds,) = times_in_turn({1: steps[1]}, 5).values()

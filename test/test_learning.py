@@ -13,7 +13,7 @@ from nav_msgs.msg import Odometry
 from swim_client import LIMIT, SwimClient, nanoseconds
 
 from eel_dynamics import Scene
-from eel_gym import HeadingEnv
+from eel_gym import HeadingEnv, JointAction
 from eel_viz import entities
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -45,7 +45,7 @@ def test_the_policy_holds_the_heading_of_new_episodes(example):
 
 def test_the_policy_swims_through_the_points_of_new_episodes(example):
     weights = np.array(FOUND["policy_way_points"]["weights"])
-    assert swum(example, "way_points", weights, [11, 12]).reached.tolist() == [3, 3]
+    assert swum(example, "way_points", weights, [11, 12]).reached.tolist() == [5, 5]
 
 
 def test_the_policy_swims_to_the_depth_of_new_episodes_and_rolls_little(example):
@@ -64,35 +64,70 @@ def test_training_finds_a_policy_that_does_the_task(example, name):
     assert len(found["curve"]) == task.generations and found["curve"][-1][0] > found["curve"][0][0] + 1.0
     swims = example.tested(task, np.array(found["weights"]))
     if name == "way_points":
-        assert swims.reached.mean() > 2.8
+        assert swims.reached.mean() > 4.5
     else:
         assert task.error(swims).max() < {"heading": 6.0, "depth": 0.1}[name]
 
 
-def test_the_policy_over_topics_swims_as_in_the_environment(start, fresh_domain):
-    """The same start, gait, water and policy. The positions of the head agree to a tenth of the target, 1e-4 of the
-    path: the two march by methods of their own, stamps are whole nanoseconds, and observations have single precision.
-    The heading is held."""
+@pytest.mark.parametrize(("robot", "steps"), [("", 120), ("eight_servos", 40)])
+def test_a_policy_over_topics_swims_as_in_the_environment(start, fresh_domain, tmp_path, policies, robot, steps):
+    """The same start, water and policy: by the curvature the one that PPO has learned, by joints a network of numbers
+    drawn at random. The paths of the head agree to 1e-9 m: node and environment march by the same steps on the same
+    grid, so that observations, which have single precision, are the same too."""
+    own = (f"robot:={robot}",) if robot else ()
+    settings = own or ("accuracy:=standard, fixed steps",)
+    settings += ("scene.planar:=true", "scene.internal_wrench:=false", "scene.ledger:=false", "estimate_error:=false")
+    pace = ("real_time_factor:=0", "rate:=10", f"duration:={steps / 10}", "wait_for_subscribers:=2")
+    action = JointAction(robot) if robot else None
+    env = AtRest(action=action, accuracy="standard" if robot else "standard, fixed steps")
+    env.target, policy = 0.6, EXAMPLES / "ppo" / "heading.npz"
+    if robot:
+        policy = written(tmp_path / "policy.npz", *env.observation_space.shape, *env.action_space.shape)
+
     swim = SwimClient(domain=fresh_domain, topics=())
     swim.listen("odom", Odometry)
-    settings = ("scene.planar:=true", "scene.internal_wrench:=false", "scene.ledger:=false", "estimate_error:=false")
-    pace = ("real_time_factor:=0", "rate:=10", "duration:=12", "wait_for_subscribers:=2", "subscriber_timeout:=60")
-    node = start("dynamics", "--ros-args", *(word for each in (*settings, *pace) for word in ("-p", each)))
-    start(sys.executable, EXAMPLES / "policy_controller.py", "--ros-args", "-p", "heading:=0.6")
-    swim.until(lambda: swim.received["odom"] and swim.received["odom"][-1].header.stamp.sec >= 12, "the end", 2 * LIMIT)
+    words = (*settings, *pace, "subscriber_timeout:=60")
+    node = start("dynamics", "--ros-args", *(word for each in words for word in ("-p", each)))
+    words = ("heading:=0.6", f"policy:={policy}", *own)
+    controller = EXAMPLES / "policy_controller.py"
+    start(sys.executable, controller, "--ros-args", *(word for each in words for word in ("-p", each)))
+    last = steps * 100_000_000
+
+    def ended():
+        return swim.received["odom"] and nanoseconds(swim.received["odom"][-1].header.stamp) == last
+
+    swim.until(ended, "the end", 2 * LIMIT)
     assert node.wait(LIMIT) == 0 and "ERROR" not in node.output() and "run out" not in node.output(), node.output()
     positions = {nanoseconds(each.header.stamp): each.pose.pose.position for each in swim.received["odom"]}
     swim.close()
 
-    env, weights = AtRest(control_period=0.1), np.array(FOUND["policy_heading"]["weights"])[0]
-    env.target = 0.6
+    act, path, far = policies.Policy(policy), [], 0.0
     observation, _ = env.reset()
-    for k in range(1, 121):
-        action = np.tanh([weights[:-1] @ observation + weights[-1]])
-        observation, *_ = env.step(action)
+    for k in range(1, steps + 1):
+        observation, *_ = env.step(act(observation))
         seen = positions[k * 100_000_000]
-        assert (seen.x, seen.y, seen.z) == pytest.approx(env.head.position.tolist(), rel=1e-5, abs=1e-5)
-    assert env.heading == pytest.approx(0.6, abs=0.05)
+        path.append(env.head.position.tolist())
+        far = max(far, np.abs(np.subtract((seen.x, seen.y, seen.z), path[-1])).max())
+    print(f"{robot or 'the body'}: {steps / 10:g} s, {np.ptp(path, axis=0).max():.3g} m, at most {far:.2g} m apart")
+    assert far < 1e-9 and np.ptp(path, axis=0).max() > 0.5
+    assert robot or env.heading == pytest.approx(0.6, abs=np.radians(5.0))
+
+
+@pytest.fixture
+def policies(monkeypatch):
+    """The module of the controller."""
+    monkeypatch.syspath_prepend(EXAMPLES)
+    import policy_controller
+
+    return policy_controller
+
+
+def written(path, observations, actions):
+    """The file of a network of 16 tanh, with weights drawn at random."""
+    draw = np.random.default_rng(3).normal
+    weights = {"weight_0": draw(size=(16, observations)), "bias_0": draw(size=16)}
+    np.savez(path, **weights, weight_1=draw(size=(actions, 16)) / 4.0, bias_1=draw(size=actions) / 4.0)
+    return path
 
 
 class AtRest(HeadingEnv):

@@ -51,7 +51,7 @@ class Swum(NamedTuple):
     reward: np.ndarray  # (n,) in total
     length: np.ndarray  # (n,) control steps
     reached: np.ndarray  # (n,) rewards above a half: points that were reached
-    seen: np.ndarray  # (T, n, O) observations
+    seen: np.ndarray  # (T, n, O) observations, times their scales
     position: np.ndarray  # (T, n, 3) m, of the head: x, y left, z up
 
 
@@ -67,7 +67,7 @@ TASKS = {
     ),
     "way_points": Task(
         {"id": "Eel/WayPoints-v0", "control_period": 0.1, "duration": 40.0},
-        *(25, 1, 1.0, "distance of the point [m]"),
+        *(25, 1, 3.0, "distance of the point [m]"),
     ),
 }
 
@@ -94,6 +94,7 @@ def swim(task: Task, weights: np.ndarray, seeds: list[int]) -> Swum:
     """Swim an episode with each policy `weights` (n, A, O + 1), from the n `seeds`."""
     envs: Any = gymnasium.make_vec(num_envs=len(seeds), scene=task.scene, **task.settings)
     observations, _ = envs.reset(seed=seeds)
+    scales = envs.get_attr("scales")[0]
     going, total = np.ones(len(seeds), dtype=bool), np.zeros(len(seeds))
     length, reached = np.zeros((2, len(seeds)), dtype=int)
     seen, positions = [], []
@@ -104,7 +105,7 @@ def swim(task: Task, weights: np.ndarray, seeds: list[int]) -> Swum:
             length + going,
             reached + going * (rewards > 0.5),
         )
-        seen.append(np.where(going[:, None], observations, np.nan))
+        seen.append(np.where(going[:, None], scales * observations, np.nan))
         positions.append(np.where(going[:, None], [head.position for head in envs.get_attr("head")], np.nan))
         going &= ~(terminated | truncated)
     envs.close()

@@ -11,8 +11,9 @@ from eel_common.head_motion import wrapped
 from eel_common.quantity import quantity
 
 from eel_gym.swimmer_env import SwimmerEnv
-from eel_gym.task import FARTHEST, FASTEST, GREATEST_START_SPEED, SPIN, Episode, Observed, Start
+from eel_gym.task import ANGLE, GREATEST_START_SPEED, SPEED, SPIN, Episode, Observed, Start
 
+HEIGHT = 0.5  # m, scale of the observed error
 LEAST_CHANGE = 0.05  # body lengths: least scale of the reward, for a task without a change of depth
 
 
@@ -47,17 +48,17 @@ class DepthEnv(SwimmerEnv):
     Numbers = DepthNumbers
     numbers: DepthNumbers
     observed = (
-        Observed("error of the depth; positive: the target is above", "m", FARTHEST),
-        Observed("velocity of the head, upwards in the world", "m/s", FASTEST),
-        Observed("angle of the head above the horizontal", "rad", math.pi),
-        Observed("roll of the head; positive: right side down", "rad", math.pi),
-        Observed("heading since the start, averaged over the gait's period; positive: left", "rad", math.pi),
+        Observed("error of the depth; positive: the target is above", "m", HEIGHT),
+        Observed("velocity of the head, upwards in the world", "m/s", SPEED),
+        Observed("angle of the head above the horizontal", "rad", ANGLE),
+        Observed("roll of the head; positive: right side down", "rad", ANGLE),
+        Observed("heading since the start, averaged over the gait's period; positive: left", "rad", ANGLE),
         Observed("angular velocity of the head, about forward", "rad/s", SPIN),
         Observed("angular velocity of the head, about left", "rad/s", SPIN),
         Observed("angular velocity of the head, about up", "rad/s", SPIN),
-        Observed("velocity of the head, forward", "m/s", FASTEST),
-        Observed("velocity of the head, to the left", "m/s", FASTEST),
-        Observed("velocity of the head, up in its axes", "m/s", FASTEST),
+        Observed("velocity of the head, forward", "m/s", SPEED),
+        Observed("velocity of the head, to the left", "m/s", SPEED),
+        Observed("velocity of the head, up in its axes", "m/s", SPEED),
     )
 
     def begin(self, options: dict[str, Any]) -> Start:

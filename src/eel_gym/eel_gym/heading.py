@@ -11,7 +11,7 @@ from eel_common.quantity import quantity
 from eel_dynamics.model.scene import Scene
 
 from eel_gym.swimmer_env import SwimmerEnv
-from eel_gym.task import FASTEST, GREATEST_START_SPEED, SPIN, Episode, Observed, Start
+from eel_gym.task import ANGLE, GREATEST_START_SPEED, SPEED, SPIN, Episode, Observed, Start
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,12 +45,12 @@ class HeadingEnv(SwimmerEnv):
     numbers: HeadingNumbers
     observed = (
         Observed(
-            "error of the heading, averaged over the gait's period; positive: the target is to the left", "rad", math.pi
+            "error of the heading, averaged over the gait's period; positive: the target is to the left", "rad", ANGLE
         ),
-        Observed("error of the head's heading now", "rad", math.pi),
+        Observed("error of the head's heading now", "rad", ANGLE),
         Observed("yaw rate of the head, positive: left", "rad/s", SPIN),
-        Observed("velocity of the head, forward", "m/s", FASTEST),
-        Observed("velocity of the head, to the left", "m/s", FASTEST),
+        Observed("velocity of the head, forward", "m/s", SPEED),
+        Observed("velocity of the head, to the left", "m/s", SPEED),
     )
 
     def __init__(self, **settings: Any):

@@ -11,8 +11,8 @@ from eel_dynamics.simulation.sampled_swimmers import Array
 
 KINDS = {"position": ("rad", None), "velocity": ("rad/s", "speed_limit"), "torque": ("N m", "torque_limit")}
 """For each kind of command: its unit, and the servo's field with its limit."""
-GREATEST_ANGLE, GREATEST_RATE = 0.6, 20.0  # rad, rad/s: default of a greatest position; bound of an observed rate
-SEEN_ANGLE = 3.0  # rad, bound of an observed angle
+GREATEST_ANGLE = 0.6  # rad, default of a greatest position
+ANGLE, RATE = 0.3, 2.0  # rad, rad/s: scales of what is observed of a joint
 
 
 class JointAction:
@@ -83,10 +83,10 @@ class JointAction:
 
     @property
     def names_of_state(self) -> list[tuple[str, str, float]]:
-        """Name, unit and greatest magnitude of each value of `state`."""
+        """Name, unit and scale of each value of `state`."""
         names = [joint.name for joint in self.robot.joints]
-        return [(f"angle of {name}", "rad", SEEN_ANGLE) for name in names] + [
-            (f"rate of {name}", "rad/s", GREATEST_RATE) for name in names
+        return [(f"angle of {name}", "rad", ANGLE) for name in names] + [
+            (f"rate of {name}", "rad/s", RATE) for name in names
         ]
 
     @property

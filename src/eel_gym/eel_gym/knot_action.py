@@ -91,7 +91,7 @@ class KnotAction:
 
     @property
     def names_of_state(self) -> list[tuple[str, str, float]]:
-        """Name, unit and greatest magnitude of each value of `state`."""
+        """Name, unit and scale of each value of `state`."""
         at = [f"{name} at X = {x:g} m" for name in self.axes for x in self.x]
         return [(f"curvature in {name}", "rad/m", self.greatest_bend) for name in at] + [
             (f"rate of the curvature in {name}", "rad/m/s", self.greatest_rate) for name in at

@@ -12,13 +12,11 @@ import numpy as np
 from eel_common.quantity import checked_instance, checked_row, positive
 from eel_common.wording import shown
 from eel_dynamics.accuracy.law_waves import check_law
+from eel_dynamics.curvature.curvature_samples import POINTS_PER_WAVE
 from eel_dynamics.simulation.sampled_swimmers import Array
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.steered_law import BENDS, NUMBERS, SteeredLaw
 from eel_gaits.laws.term import Term
-
-# Bounds of the observation: a critically damped number and its rate are at most 1 and 2/e of its greatest target.
-ROOM_OF_VALUE, ROOM_OF_RATE = 1.5, 2.0
 
 
 class LawAction:
@@ -31,15 +29,22 @@ class LawAction:
         numbers: name of each number: (low, high). See `NUMBERS` for names and units.
         response: [s], time constant of a number's response to its action.
         length: [m], of the body.
-        points: number of points along the body.
+        points: number of points along the body; None: so many that the dynamics node, which does not know the law,
+            takes the same grid.
 
     Attributes:
         x: (points,) [m], points along the body.
-        waves: number of waves on the body, with all numbers at their greatest magnitude.
+        waves: number of waves on the body for the grid: those with all numbers at their greatest magnitude, or more.
     """
 
     def __init__(
-        self, law: Law, numbers: dict[str, Any], *, response: float = 0.2, length: float = 1.0, points: int = 21
+        self,
+        law: Law,
+        numbers: dict[str, Any],
+        *,
+        response: float = 0.2,
+        length: float = 1.0,
+        points: int | None = None,
     ):
         checked_instance("law", law, Law)
         for name, bounds in checked_instance("numbers", numbers, dict).items():
@@ -54,9 +59,12 @@ class LawAction:
         length = positive("length", length, "m")
         self.law, self.names, self._rate = law, tuple(numbers), 1.0 / response
         self._span = [(0.5 * (low + high), 0.5 * (high - low)) for low, high in numbers.values()]  # middle, half width
+        self.waves = max(1.0, check_law(_largest(law, numbers), length))
+        if points is None:
+            self.waves = 2.0 ** math.ceil(math.log2(self.waves))
+            points = round(POINTS_PER_WAVE * self.waves) + 1
         self._steered = SteeredLaw(law, response=response, length=length, points=points)
         self.x = self._steered.x
-        self.waves = max(1.0, check_law(_largest(law, numbers), length))
 
     @property
     def size(self) -> int:
@@ -96,15 +104,12 @@ class LawAction:
 
     @property
     def names_of_state(self) -> list[tuple[str, str, float]]:
-        """Name, unit and greatest magnitude of each value of `state`."""
+        """Name, unit and scale of each value of `state`: a number's greatest target, and that by the response."""
         named = []
         for name, (middle, half) in zip(self.names, self._span, strict=True):
             unit = NUMBERS[name].unit
             size = max(abs(middle) + half, abs(NUMBERS[name].rest))
-            named += [
-                (name, unit, ROOM_OF_VALUE * size),
-                (f"{name} rate", f"{unit}/s" if unit else "1/s", ROOM_OF_RATE * size * self._rate),
-            ]
+            named += [(name, unit, size), (f"{name} rate", f"{unit}/s" if unit else "1/s", size * self._rate)]
         return [*named, ("sine of the wave's phase", "", 1.0), ("cosine of the wave's phase", "", 1.0)]
 
     @property

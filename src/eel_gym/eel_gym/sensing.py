@@ -19,37 +19,37 @@ from eel_dynamics.sensors.timing import Delay
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.swimmer import Swimmer
 
-from eel_gym.task import FARTHEST, FASTEST, SPIN, Observed
+from eel_gym.joint_action import ANGLE, RATE
+from eel_gym.task import SPEED, SPIN, Observed
 
-STRONGEST = 200.0  # m/s^2, bound of a specific force
-WIDEST = 3.2  # rad, bound of an angle of a joint
+GRAVITY, DEPTH = 10.0, 1.0  # m/s^2, m: scales of a specific force and of a depth
 
 
 def observed_by(settings: Sequence[SensorSettings], robot: Robot | None) -> tuple[Observed, ...]:
-    """The numbers that a policy observes of sensors with these `settings`: names as of topics, units, bounds."""
+    """The numbers that a policy observes of sensors with these `settings`: names as of topics, units, scales."""
     seen: list[Observed] = []
     for each in settings:
         if not each.rate:
             continue
         for name in each.names:
-            seen += [Observed(f"{name} {part}", unit, bound) for part, unit, bound in _parts(each, robot)]
+            seen += [Observed(f"{name} {part}", unit, scale) for part, unit, scale in _parts(each, robot)]
     return tuple(seen)
 
 
 def _parts(settings: SensorSettings, robot: Robot | None) -> list[tuple[str, str, float]]:
     if isinstance(settings, Imu):
-        parts = [(f"specific force {axis}", "m/s^2", STRONGEST) for axis in "xyz"]
+        parts = [(f"specific force {axis}", "m/s^2", GRAVITY) for axis in "xyz"]
         parts += [(f"angular velocity {axis}", "rad/s", SPIN) for axis in "xyz"]
         return parts + [(f"orientation {axis}", "", 1.0) for axis in "xyzw" if settings.orientation]
     if isinstance(settings, Pressure):
-        return [("depth", "m", FARTHEST)]
+        return [("depth", "m", DEPTH)]
     if isinstance(settings, Encoders):
         names = [joint.name for joint in robot.joints] if robot else []
         return [
-            *((f"angle {name}", "rad", WIDEST) for name in names),
-            *((f"rate {name}", "rad/s", SPIN) for name in names),
+            *((f"angle {name}", "rad", ANGLE) for name in names),
+            *((f"rate {name}", "rad/s", RATE) for name in names),
         ]
-    return [(f"velocity {axis}", "m/s", FASTEST) for axis in "xyz"]
+    return [(f"velocity {axis}", "m/s", SPEED) for axis in "xyz"]
 
 
 class Sensing:

@@ -217,7 +217,7 @@ class SwimmerEnv(Task):
         rows = self.action.advance(actions, self.numbers.control_period)
         self._add_trim(rows, self._trim)
         self.ticks += 1
-        elapsed = self.ticks * self.numbers.control_period
+        elapsed = self.ticks / (1.0 / self.numbers.control_period)  # to the bit the instants of a node with this rate
         reasons = self.swimmers.advance(elapsed, rows if self.shape else rows[None], self._status)
         self._look()
         self.heading = self._mean_heading.add(self.head_heading)
@@ -240,8 +240,10 @@ class SwimmerEnv(Task):
             return self
         other = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
-        other.shape, other.head = (), HeadMotion(*(part[:, index] for part in self.head))
-        other.head_heading, other.heading = float(self.head_heading[index]), float(self.heading[index])
+        other.shape, other.heading = (), float(self.heading[index])
+        if self.head is not None:  # after the first reset
+            other.head = HeadMotion(*(part[:, index] for part in self.head))
+            other.head_heading = float(self.head_heading[index])
         other.goal, other.readings = self.goal[:, index], self.readings[:, index]
         return other
 

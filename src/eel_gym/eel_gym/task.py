@@ -21,17 +21,18 @@ from eel_gym.knot_action import KnotAction
 from eel_gym.law_action import LawAction
 
 Action = LawAction | KnotAction | JointAction
-FASTEST, SPIN, FARTHEST = 10.0, 50.0, 100.0  # m/s, rad/s, m: bounds of observed values
-LEAST, MOST = np.array(-1.0), np.array(1.0)  # bounds of an action, as arrays, which are faster than floats
+ANGLE, SPEED, SPIN = 0.5, 0.5, 1.0  # rad, m/s, rad/s: scales of observed values, near those of straight()
+MOST = 10.0  # greatest magnitude of an observed number, in its scale
+LOW, HIGH = np.array(-1.0), np.array(1.0)  # bounds of an action, as arrays, which are faster than floats
 GREATEST_START_SPEED = 0.5  # m/s: greatest start speed that tasks draw, near that of straight()
 
 
 class Observed(NamedTuple):
-    """A number in the observation."""
+    """A number in the observation, which holds value / scale, at most 10 in magnitude."""
 
     name: str
     unit: str
-    bound: float  #: greatest magnitude; a larger value is clipped to it
+    scale: float  #: typical magnitude of the value
 
 
 class Start(NamedTuple):
@@ -50,7 +51,7 @@ class Start(NamedTuple):
 class Episode(Quantities):
     """The numbers common to all tasks."""
 
-    control_period: float = quantity(0.02, unit="s", description="length of a control step", minimum=1e-3, maximum=1.0)
+    control_period: float = quantity(0.1, unit="s", description="length of a control step", minimum=1e-3, maximum=1.0)
     duration: float = quantity(
         20.0, unit="s", description="length of an episode, at which it is truncated", minimum=0.1, maximum=1e5
     )
@@ -89,14 +90,13 @@ class Task(gymnasium.Env[Any, Any]):
         self.action = self.default_action() if action is None else action
         self.sensed = sensed  #: what sensors tell
         seen = (*self.observed, *sensed, *self.action.names_of_state)
-        bounds = np.array([each[2] for each in seen], dtype=np.float32)
-        self.observation_space = gymnasium.spaces.Box(-bounds, bounds, dtype=np.float32)
+        self.observation_space = gymnasium.spaces.Box(-MOST, MOST, (len(seen),), np.float32)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (self.action.size,), np.float32)
         self.shape = shape  #: () for one swimmer, or (N,)
         self._shape_of_action = (*shape, self.action.size)
-        self._seen = np.empty((len(bounds), *shape), dtype=np.float32)
-        self._high = np.full_like(self._seen.T, bounds).T
-        self._low = -self._high
+        self._seen: Array = np.empty((len(seen), *shape))
+        self.scales: Array = np.array([each[2] for each in seen])  #: (D,) of the numbers of the observation
+        self._by_scale = np.full_like(self._seen.T, 1.0 / self.scales).T
         self.head: Any = None  #: a HeadMotion after the first reset
         self.head_heading: Any = None  #: rad, of the head at present; positive: left
         self.heading: Any = np.zeros(shape) if shape else 0.0  #: rad, the same averaged over the gait's period
@@ -137,10 +137,10 @@ class Task(gymnasium.Env[Any, Any]):
     # -- results
 
     def observation(self) -> np.ndarray:
-        """(D,) or (N, D) float32: what the task observes, readings and the state of the action, clipped."""
+        """(D,) or (N, D) float32: what the task observes, readings and the state of the action, each by its scale."""
         for row, value in enumerate((*self.observe(), *self.readings, *self.action.state)):
             self._seen[row] = value
-        return np.minimum(np.maximum(self._seen, self._low), self._high).T
+        return (self._seen * self._by_scale).T.clip(-MOST, MOST).astype(np.float32, order="C")
 
     def checked_action(self, action: Any) -> Array:
         """The action of each swimmer, clipped to the bounds. `InvalidAction` for an unsuitable one."""
@@ -152,12 +152,12 @@ class Task(gymnasium.Env[Any, Any]):
         if values.shape != shape or not all(map(math.isfinite, values.ravel().tolist())):
             wanted = f"{'actions' if self.shape else 'action'} must be {' x '.join(map(str, shape))} finite numbers"
             raise gymnasium.error.InvalidAction(f"{wanted}, got {shown(action)}")
-        return np.asarray(np.minimum(np.maximum(values, LEAST), MOST))
+        return np.asarray(np.minimum(np.maximum(values, LOW), HIGH))
 
     def describe(self) -> str:
-        """One line for each number of the observation and of the action, with unit and bounds."""
+        """One line for each number of the observation, with unit and scale, and of the action, with unit and bounds."""
         seen = [*self.observed, *self.sensed, *self.action.names_of_state]
-        lines = [f"  {name} [{unit or '1'}], {-bound:g} to {bound:g}" for name, unit, bound in seen]
+        lines = [f"  {name} [{unit or '1'}] / {scale:g}" for name, unit, scale in seen]
         return "\n".join(
             ["observation:", *lines, "action, each from -1 to 1:", *(f"  {each}" for each in self.action.described())]
         )
@@ -199,8 +199,8 @@ class MeanHeading:
 
 def described_task(task: type[Task]) -> str:
     """The docstring of a task, with its observation and its numbers."""
-    seen = "\n".join(f"    {each.name} [{each.unit or '1'}], at most {each.bound:g}" for each in task.observed)
-    observed = f"Observed, before the state of the action:\n{seen}"
+    seen = "\n".join(f"    {each.name} [{each.unit or '1'}] / {each.scale:g}" for each in task.observed)
+    observed = f"Observed, by its scale, before the state of the action:\n{seen}"
     text = inspect.cleandoc(task.__doc__ or "A task.")
     return f"{text}\n\n{observed}\n\nNumbers:\n{described_fields(task.Numbers)}\n"
 

@@ -12,7 +12,7 @@ from eel_common.quantity import quantity
 from eel_dynamics.model.scene import Scene
 
 from eel_gym.swimmer_env import SwimmerEnv
-from eel_gym.task import FARTHEST, FASTEST, GREATEST_START_SPEED, SPIN, Episode, Observed, Start
+from eel_gym.task import ANGLE, GREATEST_START_SPEED, SPEED, SPIN, Episode, Observed, Start
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,7 +22,7 @@ class WayPointsNumbers(Episode):
     duration: float = quantity(
         40.0, unit="s", description="length of an episode, at which it is truncated", minimum=0.1, maximum=1e5
     )
-    points: float = quantity(3.0, unit="", description="number of points", minimum=1.0, maximum=100.0)
+    points: float = quantity(5.0, unit="", description="number of points", minimum=1.0, maximum=100.0)
     distance: float = quantity(
         3.0, unit="m", description="distance from one point to the next", minimum=0.5, maximum=100.0
     )
@@ -51,13 +51,13 @@ class WayPointsEnv(SwimmerEnv):
     numbers: WayPointsNumbers
     observed = (
         Observed(
-            "bearing of the point from the heading, averaged over the gait's period; positive: left", "rad", math.pi
+            "bearing of the point from the heading, averaged over the gait's period; positive: left", "rad", ANGLE
         ),
-        Observed("distance of the point", "m", FARTHEST),
-        Observed("turn at the point to the next one, 0 at the last; positive: left", "rad", math.pi),
+        Observed("distance of the point, by that between points", "", 1.0),
+        Observed("turn at the point to the next one, 0 at the last; positive: left", "rad", ANGLE),
         Observed("yaw rate of the head, positive: left", "rad/s", SPIN),
-        Observed("velocity of the head, forward", "m/s", FASTEST),
-        Observed("velocity of the head, to the left", "m/s", FASTEST),
+        Observed("velocity of the head, forward", "m/s", SPEED),
+        Observed("velocity of the head, to the left", "m/s", SPEED),
     )
 
     def default_scene(self) -> Scene:
@@ -78,7 +78,7 @@ class WayPointsEnv(SwimmerEnv):
         """Bearing and distance of the point, turn to the next, yaw rate, velocity in the plane."""
         (_, _, yaw_rate), (forward, left, _) = map(components, (self.head.angular_velocity, self.head.velocity))
         bearing, distance, turn = self._way()
-        return [wrapped(bearing - self.heading), distance, turn, yaw_rate, forward, left]
+        return [wrapped(bearing - self.heading), distance / self.numbers.distance, turn, yaw_rate, forward, left]
 
     def reward(self) -> Any:
         """See the class."""

@@ -166,14 +166,14 @@ def test_the_body_bends_as_the_action_says():
 
 
 @pytest.mark.parametrize(
-    ("scene", "flow", "apart"),  # m/s, rad/s: in the plane steps integrate rates of bending exactly
+    ("scene", "flow"),
     [
-        (Scene(planar=True), None, 2e-6),
-        (Scene(current=(0.2, -0.1, 0.05)), None, 1e-12),
-        (Scene(planar=True), Vortex(circulation=0.2, core=0.8, centre=(-0.5, 0.4, 0.0)), np.inf),
+        (Scene(planar=True), None),
+        (Scene(current=(0.2, -0.1, 0.05)), None),
+        (Scene(planar=True), Vortex(circulation=0.2, core=0.8, centre=(-0.5, 0.4, 0.0))),
     ],
 )
-def test_an_environment_swims_as_a_simulation_with_the_same_samples_to_the_bit(scene, flow, apart):
+def test_an_environment_swims_as_a_simulation_with_the_same_samples_to_the_bit(scene, flow):
     env = HeadingEnv(scene=scene, flow=flow, action=LawAction(straight(), {"left_bend": (-0.5, 0.5)}))
     env.reset(seed=3)
     (start,) = env.starts
@@ -181,17 +181,17 @@ def test_an_environment_swims_as_a_simulation_with_the_same_samples_to_the_bit(s
     settings = {"accuracy": env.swimmers.accuracy, "stations": 2}
     simulation = Simulation(scene=env.scene, orientation=orientation, twist=twist, flow=flow, **settings)
     other = LawAction(straight(), {"left_bend": (-0.5, 0.5)})
-    rows, trim = other.begin(start.own_time), np.zeros((6, 21))
+    rows, trim = other.begin(start.own_time), np.zeros((6, len(other.x)))
     trim[3] = start.left_trim
-    simulation.add_samples(0.0, other.x, *(rows - trim), waves=other.waves)
+    simulation.add_samples(0.0, other.x, *(rows - trim))
     for k, action in enumerate(random_actions(env, 40), 1):
         env.step(action)
-        simulation.add_samples(0.02 * k, other.x, *(other.advance(action, 0.02) - trim), waves=other.waves)
-        simulation.advance(0.02 * k)
+        simulation.add_samples(k / 10, other.x, *(other.advance(action, 0.1) - trim))
+        simulation.advance(k / 10)
         seen = simulation.observe()
         if flow is None:
             assert env.head.position.tolist() == seen.position.tolist()
-            assert np.abs((*env.head.angular_velocity, *env.head.velocity) - seen.twist).max() < apart
+            assert (*env.head.angular_velocity, *env.head.velocity) == pytest.approx(tuple(seen.twist), abs=1e-13)
         assert np.allclose(env.head.position, seen.position, rtol=0.0, atol=1e-5)
 
 
@@ -253,7 +253,7 @@ def test_a_point_that_is_reached_is_rewarded_and_the_last_one_ends_the_episode()
         _, reward, terminated, truncated, _ = env.step([0.0])
         rewards.append(reward)
         assert not truncated
-    assert sum(rewards) == pytest.approx(1.0 + 0.3, abs=0.02)  # the point, and the way to within 0.3 m of it
+    assert sum(rewards) == pytest.approx(1.0 + 0.3, abs=0.06)  # the point, and the way to within 0.3 m of it
 
 
 # -- what is refused

@@ -22,7 +22,7 @@ def actions(steps, joints=8):
 
 @pytest.mark.parametrize("kind", MODES)
 def test_a_step_is_that_of_the_simulation_with_these_commands(kind):
-    env = WayPointsEnv(action=JointAction("eight_servos", kind, GREATEST[kind]))
+    env = WayPointsEnv(action=JointAction("eight_servos", kind, GREATEST[kind]), control_period=0.02)
     env.reset(seed=1)
     start, robot = env.starts[0], Robot.named("eight_servos")
     twist = (start.roll_rate, 0.0, 0.0, start.speed, 0.0, 0.0)
@@ -36,11 +36,12 @@ def test_a_step_is_that_of_the_simulation_with_these_commands(kind):
         for joint, value in zip(robot.joints, action, strict=True):
             trim = start.left_trim / 8 if kind == "position" else 0.0
             alone.command(joint.name, **{MODES[kind]: value * GREATEST[kind] + trim})
-        alone.advance(0.02 * (step + 1))
+        alone.advance((step + 1) / 50)
         assert env.head.position == pytest.approx(alone.head.position, abs=1e-12)
         seen = alone.observe().joints
-        assert observation[-16:-8] == pytest.approx(seen["joint_angle"], abs=1e-6)
-        assert observation[-8:] == pytest.approx(np.clip(seen["joint_rate"], -20.0, 20.0), abs=1e-5)
+        told = env.scales * observation
+        assert told[-16:-8] == pytest.approx(seen["joint_angle"], abs=1e-6)
+        assert told[-8:] == pytest.approx(seen["joint_rate"], abs=1e-5)
     assert np.abs(env.head.velocity).max() > 0.01
 
 

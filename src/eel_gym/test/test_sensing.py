@@ -15,6 +15,9 @@ class BySensors(SwimmerEnv):
 
     name = "BySensors"
 
+    def __init__(self, **settings):
+        super().__init__(control_period=0.02, **settings)
+
     def reward(self):
         return np.zeros(self.shape) if self.shape else 0.0
 
@@ -30,13 +33,15 @@ def stepped(env, steps, seed=3):
 
 
 def test_readings_follow_what_the_task_observes():
-    plain, sensed = HeadingEnv(), HeadingEnv(sensors=[NOISY, Pressure(rate=10.0), Velocity(rate=50.0)])
+    plain = HeadingEnv(control_period=0.02)
+    sensed = HeadingEnv(sensors=[NOISY, Pressure(rate=10.0), Velocity(rate=50.0)], control_period=0.02)
     before, after = plain.reset(seed=2)[0], sensed.reset(seed=2)[0]
     count, own = len(sensed.sensed), len(HeadingEnv.observed)
     assert count == 10 + 10 + 1 + 3 and len(after) == len(before) + count
     assert sensed.sensed[0].name == "imu_1 specific force x" and "imu_2 orientation w" in sensed.describe()
     np.testing.assert_array_equal(np.delete(after, slice(own, own + count)), before)
-    np.testing.assert_allclose(after[own : own + count], sensed.readings, rtol=1e-6)
+    told = (sensed.scales * after)[own : own + count]
+    np.testing.assert_allclose(told, sensed.readings, rtol=1e-6)
     assert sensed.observation_space.contains(after)
     for _ in range(3):
         action = np.full(plain.action_space.shape, 0.7)

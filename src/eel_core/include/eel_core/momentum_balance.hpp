@@ -35,12 +35,6 @@ inline Frame2<double> head_frame(const State& y, Plane)
     return {(w * w - z * z) / square, 2.0 * z * w / square};
 }
 
-inline Twist<Space, double> in_space(const Twist<Space, double>& twist) { return twist; }
-inline Twist<Space, double> in_space(const Twist<Plane, double>& twist)
-{
-    return {{0.0, 0.0, twist.angular}, {twist.linear.x, twist.linear.y, 0.0}};
-}
-
 // Momentum of the state in the axes of the head.
 inline Momentum<Space, double> momentum_in_head(const State& y, const Frame3<double>& head)
 {

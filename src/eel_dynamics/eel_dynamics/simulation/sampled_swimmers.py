@@ -44,8 +44,7 @@ class SampledSwimmers:
     Attributes:
         accuracy: the settings in force.
         heads: (13, N) position [m], orientation x y z w, angular velocity [rad/s] and velocity [m/s] of each, as in
-            `Simulation.head`. In the plane the velocities are those of the steps, which integrate the rate of bending
-            exactly.
+            `Simulation.head`.
     """
 
     def __init__(self, count: int, points: Array, waves: float | None, swimmer: Swimmer, threads: int = 1):

@@ -142,15 +142,12 @@ class March {
     // the inertia is not positive definite.
     std::optional<HeadMotion> head()
     {
-        std::optional<Twist<Space, double>> twist = steps_.twist_at_end(now_.time);
-        if (!twist) {
-            if (!find_head()) return {};
-            twist = steps_.work().twist;
-        }
+        if (!find_head()) return {};
+        const Twist<Space, double>& twist = steps_.work().twist;
         HeadMotion head;
         std::copy_n(now_.state.begin(), 7, head.begin());
-        put(twist->angular, head.data() + 7);
-        put(twist->linear + head_frame(now_.state, Space()).local(settings_.water.current), head.data() + 10);
+        put(twist.angular, head.data() + 7);
+        put(twist.linear + head_frame(now_.state, Space()).local(settings_.water.current), head.data() + 10);
         return head;
     }
 

@@ -41,19 +41,6 @@ class Steps {
         const auto found = std::visit([](const auto& stepper) { return stepper.work().flow.outside(); }, stepper_);
         return found || !observing_ ? found : observing_->flow.outside();
     }
-    // The head's twist relative to the water, where the last step ends at `time` [s] and it is known already.
-    std::optional<Twist<Space, double>> twist_at_end(double time) const
-    {
-        if (due_) return {};
-        return std::visit(
-            [time](const auto& stepper) -> std::optional<Twist<Space, double>> {
-                if constexpr (requires { stepper.twist_at_end(time); })
-                    if (const auto found = stepper.twist_at_end(time)) return in_space(*found);
-                return {};
-            },
-            stepper_);
-    }
-
     // Work space for observations: the stepper's own, unless that is for the plane.
     Workspace<Space>& work()
     {

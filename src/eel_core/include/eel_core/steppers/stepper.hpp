@@ -5,8 +5,6 @@
 // method's dense output, so that the steps do not depend on when the run is sampled.
 #pragma once
 
-#include <optional>
-
 #include "eel_core/algorithm.hpp"
 #include "eel_core/steppers/adams.hpp"
 #include "eel_core/steppers/method.hpp"
@@ -29,13 +27,6 @@ class Stepper {
     const Workspace<M>& work() const { return work_; }
     double end_time() const { return start_ + length_; }
 
-    // The head's twist relative to the water at `time` [s], known if the last step ends there.
-    std::optional<Twist<M, double>> twist_at_end(double time) const
-    {
-        if (anew_ || !ends_at(time)) return {};
-        return end_twist_;
-    }
-
     // Makes the next step begin at the present.
     void begin(const MarchSettings&, const Present& now)
     {
@@ -56,7 +47,7 @@ class Stepper {
     void pass(Archive& archive)
     {
         archive.same(method_.stages), archive.same(method_.adams);
-        archive(pace, adams_, start_, length_, begin_, end_, end_twist_, rate_, works_, powers_, anew_);
+        archive(pace, adams_, start_, length_, begin_, end_, rate_, works_, powers_, anew_);
     }
 
     // Sets state and works to the present time, which lies within the step.
@@ -176,7 +167,7 @@ class Stepper {
             works_ = powers_.works_until(works_, length_, 1.0);
             powers_.at[0] = powers_.at[3];
         }
-        begin_ = end_, end_ = trial_, end_twist_ = work_.twist;  // its end was evaluated last
+        begin_ = end_, end_ = trial_;
         start_ = start, length_ = length, anew_ = false;
         pace.accept(settings.bounds, length, end_);
     }
@@ -202,7 +193,6 @@ class Stepper {
     Workspace<M> work_;
     double start_ = 0.0, length_ = 0.0;  // [s]
     State begin_{}, end_{}, trial_{};
-    Twist<M, double> end_twist_{};
     std::array<State, Method::most_stages> rate_{};
     WorkDone works_{};  // at the start of the step
     StepPowers powers_;
