@@ -114,6 +114,14 @@ OBJECTS = (
 )  # fmt: skip
 
 
+BESIDE = {
+    "angle": "time_constant",
+    "series_stiffness": "rotor_inertia",
+    "knots": "knot",
+    "time": "velocity",
+}  # goes with
+
+
 @pytest.mark.parametrize(("kind", "good"), OBJECTS, ids=[kind.__name__ for kind, _ in OBJECTS])
 def test_a_plain_value_of_any_field_is_taken_or_refused_by_name(kind, good):
     for item in fields(kind):
@@ -134,3 +142,4 @@ def test_a_plain_value_of_any_field_is_taken_or_refused_by_name(kind, good):
                 made(kind, {**good, item.name: value}, kind.__name__.lower())
             except ValueError as error:
                 assert not FOREIGN.search(str(error)) and len(one_line(error)) <= LONGEST, (item.name, value, error)
+                assert re.search(rf"\b({item.name}|{BESIDE.get(item.name)})\b", str(error)), (item.name, value, error)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bad input anywhere in the library: one `ValueError` in one short line that names the argument."""
 
+import re
 from dataclasses import fields
 from pathlib import Path
 
@@ -115,11 +116,14 @@ def samples(**changed):
 CALLS = dict(calls())
 TAKEN = {  # what is no error there, or nothing that can be named
     "Body name": {"text"},
+    "Body file": {"text"},
     "spline values": {"not a number"},
     "spline x": {"not a number"},
     "sweep grid": {"unshowable"},
     "sweep grid of the scene": {"unshowable"},
 }
+NAMED = {"gait name": "gait", "Body of kern2006": "length", "Body named": "body", "Simulation advance": "time"}
+NAMED |= {"sweep grid": "period"}
 
 
 @pytest.mark.fault(
@@ -134,7 +138,9 @@ def test_bad_input_is_one_short_line(what):
         with pytest.raises(ValueError) as refused:
             CALLS[what](BAD[kind])
         message = str(refused.value)
-        assert message and "\n" not in message and len(message) <= 500, (kind, len(message), message[:1000])
+        assert "\n" not in message and len(message) <= 500, (kind, len(message), message[:1000])
+        name = NAMED.get(what, what.split()[-1].removesuffix("s"))
+        assert re.search(rf"\b{name}s?\b.*\bgot |unknown {name} ", message), (name, message)
         assert "int too large" not in message and "integer string conversion" not in message, (kind, message)
 
 
