@@ -21,6 +21,7 @@ from eel_dynamics.analysis.measures import MEASURES
 from eel_dynamics.simulation.observations import OBSERVED
 from eel_gaits.gaits.registry import GAITS
 from eel_gaits.gaits.settings import FILE_GAITS, numbers_of
+from eel_studies.scene_terms.terms import TERMS
 
 FILE = Path(__file__).with_name("interface.txt")
 PACKAGES = "eel_common", "eel_gaits", "eel_dynamics", "eel_studies", "eel_gym", "eel_viz"
@@ -51,7 +52,10 @@ def classes() -> Iterator[type]:
     """All dataclasses of the packages with a quantity."""
     for package in map(importlib.import_module, PACKAGES):
         for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
-            module = importlib.import_module(found.name)
+            try:
+                module = importlib.import_module(found.name)
+            except ImportError:  # of an extra that is not installed
+                continue
             own = (each for each in vars(module).values() if isinstance(each, type) and each.__module__ == found.name)
             yield from (each for each in own if is_dataclass(each) and any("unit" in f.metadata for f in fields(each)))
 
@@ -83,6 +87,7 @@ def lines() -> Iterator[str]:
     yield from (f"gait {name}: {numbers_of(name).__name__}" for name in sorted((*GAITS, *FILE_GAITS)))
     yield from (f"measure {name}: [{unit}]" for name, (unit, *_) in MEASURES.items())
     yield from (f"observed {name}: {text_of(each.dimensions)} [{each.unit}]" for name, each in OBSERVED.items())
+    yield from (f"term {name}" for name in TERMS)
     yield from (f"topic {name}: {kind}" for name, kind in {**OWN, **GLOBAL}.items())
 
 
