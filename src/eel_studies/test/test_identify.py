@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from eel_dynamics.model.initial_state import AT_REST
 from eel_studies.identification.command import main
-from eel_studies.identification.statistics import Block, correlation_of, gauss_newton_covariance
+from eel_studies.identification.statistics import Block, correlation_of, gauss_newton_covariance, whitened
 
 from eel_dynamics import Body, Gust, Scene, Swim, simulate
 from eel_gaits import sampled, straight, turning
@@ -125,6 +125,16 @@ def test_a_whole_swim_keeps_its_body_water_and_start():
 def test_the_friction_is_blended_where_no_scene_is_given():
     found = identify({"body.lateral_drag": 2.0}, MeasuredSpeed(0.6), noise=0.01, accuracy=1e-2, threads=1)
     assert found.runs[0].scene.friction == "blended"
+
+
+def test_whitened_errors_have_the_covariance_of_an_autoregression():
+    step, errors = np.array([1.0, 2.0, 0.5]), np.array([0.3, -1.0, 0.7, 2.0])
+    time = np.concatenate(([0.0], np.cumsum(step)))
+    covariance = 0.6 ** np.abs(time[:, None] - time)
+    white, rows, log = whitened([Block(step, errors, errors[:, None] ** 2)], 0.6)
+    assert white @ white == pytest.approx(errors @ np.linalg.solve(covariance, errors))
+    assert white @ rows[:, 0] == pytest.approx(errors @ np.linalg.solve(covariance, errors**2))
+    assert log == pytest.approx(np.linalg.slogdet(covariance)[1])
 
 
 def test_correlated_errors_are_weighted_as_least_squares_asks():

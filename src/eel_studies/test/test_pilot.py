@@ -57,5 +57,6 @@ def test_a_station_in_a_current_of_half_the_swimmers_speed_is_kept():
     pilot = Pilot()
     pilot.follow(station((2.0, 0.5, 0.0), 0.6, LIMITS))
     voyage = swim_with(pilot, 60.0, scene=Scene(internal_wrench=False, ledger=False, current=(-0.3, -0.12, 0.0)))
+    assert np.array_equal(voyage.last, voyage.time >= voyage.time[-1] - 30.0)
     last = voyage.time > 57.0
     assert np.linalg.norm(voyage.position[last] - (2.0, 0.5, 0.0), axis=1).max() < 0.5
