@@ -62,6 +62,7 @@ def swims(recording, *before, **environment):
 
 
 @pytest.mark.fault("names", "a machine without /dev/shm", "the middleware says so; the three nodes swim and end")
+@pytest.mark.soak
 def test_the_nodes_swim_without_shared_memory(without_shared_memory, fresh_domain, tmp_path):
     swims(tmp_path / "run.rrd", *without_shared_memory)
 

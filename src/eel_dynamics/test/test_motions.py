@@ -72,6 +72,7 @@ def test_a_startle_in_a_long_rest_has_the_torque_of_one_in_a_short_rest():
     assert np.linalg.norm(early.position[-1]) > 0.01 and np.allclose(then, first, atol=2e-3)
 
 
+@pytest.mark.soak
 def test_a_bend_that_is_short_and_local_makes_the_grid_finer():
     def flick(t, x):
         return np.sin(2.0 * math.pi * (x - t)) + bend_at(t) * np.exp(-(((x - 0.62) / 0.03) ** 2))

@@ -46,9 +46,9 @@ def share_with_ramps(law, body, scene, accuracy, twist, duration):
 
 
 SCENES = [
-    pytest.param(robots_anywhere, 500, 0.5, id="robots"),
+    pytest.param(robots_anywhere, 150, 0.5, id="robots"),
     pytest.param(robots_anywhere, 10_000, 0.5, id="ten thousand robots", marks=pytest.mark.soak),
-    pytest.param(anywhere, 500, 0.5, id="all sizes"),
+    pytest.param(anywhere, 150, 0.5, id="all sizes"),
     pytest.param(anywhere, 10_000, 1.0, id="ten thousand of all sizes", marks=pytest.mark.soak),
 ]
 
@@ -80,7 +80,7 @@ def test_a_swimmer_driven_anywhere_finishes_or_says_why_not(scenes, count, durat
 @pytest.mark.timeout(3600)
 @pytest.mark.parametrize(
     ("count", "duration", "accuracy", "open_by"),
-    [(300, 0.15, 1e-7, 1e-8), pytest.param(3000, 1.0, 1e-3, 1e-3, marks=pytest.mark.soak)],
+    [(60, 0.15, 1e-7, 1e-8), pytest.param(3000, 1.0, 1e-3, 1e-3, marks=pytest.mark.soak)],
 )
 @pytest.mark.filterwarnings("ignore")
 def test_swimmers_that_weigh_and_have_fins_close_their_ledger(count, duration, accuracy, open_by):

@@ -63,10 +63,9 @@ def test_a_jump_of_time_begins_the_oscillators_anew_and_is_said_once(jump, monke
     assert len(topic.warnings) == 1 and "a new start" in topic.warnings[0]
 
 
-@pytest.mark.parametrize("jump", [HOUR, 2.0 * HOUR])
-def test_after_a_jump_of_time_rows_go_on_from_the_present_and_some_at_a_time(jump):
-    time = np.arange(0.0, 3.0 * HOUR, 0.1)
-    time = np.concatenate((time[time < jump], np.arange(jump, jump + 10.0, 1e-3)))
+def test_after_a_jump_of_time_rows_go_on_from_the_present_and_some_at_a_time():
+    jump = 0.5 * HOUR
+    time = np.concatenate((np.arange(0.0, jump, 0.1), np.arange(jump, jump + 10.0, 1e-3)))
     topic = Topic()
     stream = RowStream(topic, "section")
     stream.follow(SampledLaw(time, np.linspace(0.0, 1.0, 4), np.zeros((len(time), 2, 3, 4)), name="rows"), 0.0)

@@ -68,6 +68,7 @@ def test_cma_finds_what_gradients_find(front):
     "`optimise` for a speed that no gait within the bounds reaches",
     "one line with the speeds of the gaits that were tried; the other speeds are kept",
 )
+@pytest.mark.soak
 def test_a_speed_out_of_reach_is_told():
     with pytest.warns(UserWarning, match=r"no gait within the bounds was found for 9 m/s; the gaits .* 0\.\d+ to \d"):
         found = optimise({"period": (0.6, 2.5)}, [0.4, 9.0], **QUICK)
