@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import rerun as rr
+from contrast import contrast, linear
 from eel_viz.batched_stream import BatchedStream, Rates
 from eel_viz.limit import Limit
 from eel_viz.plots import heat_map, profile_plot, series
@@ -206,17 +207,6 @@ def test_the_heat_map_forgets_what_is_older_than_its_length(stream):
     assert set(np.unique(image(stream.path))) == {colours.diverging_index(np.zeros(1), 1.0)[0]}
 
 
-def contrast(letters: tuple, ground: tuple) -> float:
-    """Contrast of letters on a ground, 1 to 21, as the Web Content Accessibility Guidelines 2.2 define it."""
-    light = [np.array((0.2126, 0.7152, 0.0722)) @ _linear(np.array(colour) / 255.0) for colour in (letters, ground)]
-    return float((max(light) + 0.05) / (min(light) + 0.05))
-
-
-def _linear(share: np.ndarray) -> np.ndarray:
-    """Intensity of sRGB's shares, 0 to 1."""
-    return np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
-
-
 GROUNDS = {  # the brightest ground of letters: its colour, and those of the letters
     "plots": (colours.PLOT_BACKGROUND, (colours.LABEL, colours.OTHER, *colours.AXIS)),
     "the legend's band": (
@@ -262,8 +252,8 @@ XYZ = np.array(((0.4124, 0.3576, 0.1805), (0.2126, 0.7152, 0.0722), (0.0193, 0.1
 
 def cielab(colour, eyes="all") -> np.ndarray:
     """CIELAB 1976 of a colour (..., 3) as seen by these `eyes`."""
-    linear = np.clip(_linear(np.asarray(colour) / 255.0) @ EYES[eyes].T, 0.0, 1.0)
-    x, y, z = np.moveaxis(np.cbrt(linear @ XYZ.T / (0.9505, 1.0, 1.089)), -1, 0)
+    light = np.clip(linear(np.asarray(colour) / 255.0) @ EYES[eyes].T, 0.0, 1.0)
+    x, y, z = np.moveaxis(np.cbrt(light @ XYZ.T / (0.9505, 1.0, 1.089)), -1, 0)
     return np.stack([116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)], axis=-1)
 
 

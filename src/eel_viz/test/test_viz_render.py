@@ -8,8 +8,13 @@ from collections import Counter
 
 import numpy as np
 import pytest
+from contrast import contrast_in
 from eel_viz.pictures.drawing import drawn
+from eel_viz.plots import series
+from eel_viz.scene3d import colours
 from eel_viz.viewer import CannotRender, _await_listening
+
+from eel_viz import entities
 
 VIEWS = {
     "overview": {"3D": 1, "2D": 2, "TimeSeries": 3, "TextDocument": 2},
@@ -52,6 +57,20 @@ def test_a_picture_shows_the_swimmer_and_changes_with_time(can_draw, tmp_path):
         assert (red > 40).sum() > 300  # skin and path of the head
         assert (blue > 30).sum() > 3000  # water lines, skin
     assert (np.abs(pictures[0] - pictures[1]).sum(axis=2) > 60).sum() > 2000
+
+
+def test_curves_grids_and_letters_have_a_contrast_of_3_in_the_picture(can_draw, tmp_path):
+    from made_up_recording import record
+
+    record(tmp_path / "made_up.rrd", 2.0, 50.0)
+    with drawn(tmp_path / "made_up.rrd", size=(1920, 1080)) as drawing:
+        picture = pixels(drawing.png(1.5))
+    space, plots = picture[90:640, :1020], picture[90:1040, 1030:]
+    seen = {name: contrast_in(plots, colours.curve(colour)) for name, colour in series.SERIES[entities.POWER]}
+    seen |= {name: contrast_in(plots, getattr(colours, name)) for name in ("TICK", "LABEL")}
+    seen["speed"] = contrast_in(plots, colours.curve(colours.PLAIN))
+    seen["lines of the water"] = contrast_in(space, colours.WATER_LINE_MAJOR)
+    assert min(seen.values()) >= 3.0, seen
 
 
 def test_a_bare_picture_is_the_view_alone_in_the_size_that_was_asked_for(can_draw, tmp_path):

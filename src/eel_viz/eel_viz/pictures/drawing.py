@@ -7,6 +7,7 @@ the time is complete, unless it equals the previous picture: then it is checked 
 
 import contextlib
 import io
+import math
 import os
 import pathlib
 import subprocess
@@ -29,7 +30,7 @@ LOADED_CHECKS = 5  # successive checks of a loaded recording, after which no fur
 NOTICE = 2.5  # s after its start, during which a viewer shows a notice in the corner
 PICTURE_LIMIT = 90.0  # s limit for two screenshots to become equal
 SIZE = (1920, 1080)  # pixels
-# Least pixels of a window around a single view: edges, tabs, title, time panel.
+# Most pixels of a window around a single view: edges, tabs, title, time panel. Small windows have fewer.
 WINDOW_EDGES = (8, 132)
 MAGIC = b"RRF"  # first bytes of a recording of any version
 ALONE = "swimmer"  # the arrangement of a bare picture
@@ -61,7 +62,7 @@ class Drawing:
         if picture in (b"", self._last):  # the first, or late, or possibly outdated
             picture = self._stable_picture()
         self._last = picture
-        return picture if self._view is None else _cropped(picture, self._size)
+        return picture if self._view is None else _fitted(picture, self._size)
 
     def arrange(self, name: str, *, bare: bool = False) -> None:
         """Bring the arrangement `name` of the recording to the front. `ValueError` if there is none.
@@ -128,13 +129,21 @@ class Drawing:
         raise CannotRender(f"the viewer did not come to rest within {PICTURE_LIMIT:g} s")
 
 
-def _cropped(png: bytes, size: tuple[int, int]) -> bytes:
-    """The middle of the picture, of `size` [pixels]: the height of a viewer's frame varies between windows."""
+def _window(size: tuple[int, int]) -> tuple[int, int]:
+    """A window whose single view covers `size` [pixels] however high the viewer's frame is (`_fitted`)."""
+    height = size[1] + WINDOW_EDGES[1]
+    return math.ceil(size[0] * height / size[1]) + WINDOW_EDGES[0], height
+
+
+def _fitted(png: bytes, size: tuple[int, int]) -> bytes:
+    """The picture scaled to the height in `size` [pixels], its sides cut: the legend is at the lower edge."""
     with Image.open(io.BytesIO(png)) as image:
         if image.size == size:
             return png
-        left, top = ((whole - part) // 2 for whole, part in zip(image.size, size, strict=True))
-        return _png(image.crop((left, top, left + size[0], top + size[1])))
+        scale = max(size[0] / image.width, size[1] / image.height)
+        left, top = ((whole - part / scale) / 2.0 for whole, part in zip(image.size, size, strict=True))
+        box = left, top, left + size[0] / scale, top + size[1] / scale
+        return _png(image.convert("RGB").resize(size, Image.Resampling.LANCZOS, box=box))
 
 
 def _png(image: Image.Image) -> bytes:
@@ -192,7 +201,7 @@ def drawn(
         raise ValueError(f"size must be {LEAST_SIDE} to {MOST_SIDE} pixels each way, got {size[0]}x{size[1]}")
     with contextlib.ExitStack() as stack:
         path = _readable(pathlib.Path(recording).resolve(), stack)
-        window = (size[0] + WINDOW_EDGES[0], size[1] + WINDOW_EDGES[1]) if bare else size
+        window = _window(size) if bare else size
         drawing = Drawing(stack.enter_context(viewer(window)), path, size)
         if blueprint or bare:
             drawing.arrange(blueprint or ALONE, bare=bare)

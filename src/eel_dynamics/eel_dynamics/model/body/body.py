@@ -86,7 +86,7 @@ class Body:
         joint_drag, link_length: c_s and p [m] of the drag of links, -1/2 rho_f c_s (A / p) abs(V) V1 per length: 0 for
             a smooth body, 0.87 if each link is an isolated blunt cylinder.
         base_drag: c_b, for the area at the tail's end, -1/2 rho_f c_b A(l) V1 abs(V1) there.
-        appendages: `Appendage`s, drag areas fixed to sections. appendage_factor: times all of these areas.
+        appendages: of type `Appendage`, drag areas fixed to sections. appendage_factor: times all of these areas.
         name: of the body in messages.
     """
 
