@@ -61,13 +61,18 @@ def test_no_such_level(configure):
 
 @pytest.mark.timeout(400)
 @pytest.mark.soak
-def test_pip_installs_the_library_without_ros(tmp_path):
-    """`pip install ./src/eel_{common,core,gaits,dynamics}` gives `simulate`."""
+@pytest.mark.parametrize("what", ["packages", "a checkout"])
+def test_pip_installs_the_library_without_ros(tmp_path, what):
+    """`pip install ./src/eel_{common,core,gaits,dynamics}` gives `simulate`, `pip install .` gives `eel` too."""
     environment = {name: os.environ[name] for name in ("PATH", "HOME", "LD_LIBRARY_PATH") if name in os.environ}
     environment["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] = "1"
-    sources = [tmp_path / name for name in ("eel_common", "eel_core", "eel_gaits", "eel_dynamics")]
-    for source in sources:  # setuptools leaves its own files beside the sources
-        shutil.copytree(ROOT / "src" / source.name, source, ignore=shutil.ignore_patterns("*.egg-info", "__pycache__"))
+    checkout = tmp_path / what  # a copy: setuptools leaves its own files beside the sources
+    shutil.copytree(ROOT / "src", checkout / "src", ignore=shutil.ignore_patterns("*.egg-info", "__pycache__"))
+    for name in ("CITATION.cff", "LICENSE", "NOTICES.md", "README.md", "pyproject.toml"):
+        shutil.copy(ROOT / name, checkout)
+    sources = [checkout]
+    if what == "packages":
+        sources = [checkout / "src" / name for name in ("eel_common", "eel_core", "eel_gaits", "eel_dynamics")]
     install = [sys.executable, "-m", "pip", "install", "--no-build-isolation", "--no-deps", "--no-index"]
     options = ["--target", tmp_path / "installed"]
     options += ["--config-settings=cmake.build-type=Debug", "--config-settings=cmake.define.EEL_CORE_LEVELS=v2"]
@@ -91,9 +96,10 @@ print(eel_core.build_info()["level"], run.position[-1, 0])
     level, forward = done.stdout.split()
     assert level == "x86-64-v2"
     assert float(forward) == pytest.approx(simulate(falling(), 0.5).position[-1, 0], rel=1e-9)
-    command = tmp_path / "installed/bin/simulate"
+    command = ["simulate"] if what == "packages" else ["eel", "simulate"]
+    command[0] = str(tmp_path / "installed/bin" / command[0])
     environment["PYTHONPATH"] = str(tmp_path / "installed")
     done = subprocess.run(
-        [command, "falling", "--duration", "0.5"], env=environment, capture_output=True, text=True, timeout=90
+        [*command, "falling", "--duration", "0.5"], env=environment, capture_output=True, text=True, timeout=90
     )
     assert done.returncode == 0 and "wall time" in done.stdout, done.stderr
