@@ -97,6 +97,28 @@ def test_manifest_names_what_the_sources_import(package):
     assert not unused, f"package.xml of {package} names {sorted(unused)}, which nothing imports"
 
 
+def with_dependencies(package: str, *, tests: bool = False) -> set[str]:
+    """The package and those of the suite that it depends on; those of its tests too."""
+    tags = ("depend", "exec_depend", "test_depend") if tests else ("depend", "exec_depend")
+    named = {node.text for node in manifest(package) if node.tag in tags and node.text.startswith("eel_")}
+    return {package}.union(*map(with_dependencies, named))
+
+
+@pytest.mark.parametrize("package", (*PYTHON_PACKAGES, "eel_core"))
+def test_tests_of_a_package_import_it_and_its_dependencies_alone(package):
+    """`make alone` runs them."""
+    paths = (ROOT / "src" / package / "test").glob("*.py")
+    imported = {
+        name.split(".")[0]
+        for path in paths
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, (ast.Import, ast.ImportFrom))
+        for name in ([alias.name for alias in node.names] if isinstance(node, ast.Import) else [node.module or ""])
+    }
+    others = {name for name in imported if name.startswith("eel_")} - {"eel_command"}
+    assert others <= with_dependencies(package, tests=True)
+
+
 @pytest.mark.parametrize("package", (*PYTHON_PACKAGES, "eel_core", "eel_msgs"))
 def test_manifest_is_valid(package):
     from catkin_pkg.package import parse_package

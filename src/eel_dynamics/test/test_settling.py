@@ -11,11 +11,9 @@ from eel_dynamics.analysis.measures import measures_of
 from eel_dynamics.analysis.settling import FEWEST, SETTLED, Settling, settling_of
 from eel_dynamics.commands import simulate as command
 from eel_dynamics.runs.settled_duration import MOST_PERIODS
-from eel_studies.sweeps import command as sweep_command
 
 from eel_dynamics import Scene, Unsettled, simulate, simulate_batch
 from eel_gaits import Law, Ramp, Term, gait, straight
-from eel_studies import sweep
 
 COARSE = {"accuracy": 1e-2, "stations": 5}
 
@@ -171,23 +169,9 @@ def test_a_table_of_a_batch_tells_what_has_not_settled():
         assert batch.analysis().settled.tolist() == [1.0, 0.0]
 
 
-def test_a_sweep_swims_each_point_until_it_has_settled():
-    data = sweep({"period": [0.5, 1.0]}, **COARSE)
-    assert data.attrs["duration"] == "settled" and (data.settled == 1.0).all()
-    assert float(data.duration[0]) < float(data.duration[1])
-    with pytest.warns(Unsettled, match="2 of 2 points have not settled"):
-        short = sweep({"period": [0.5, 1.0]}, duration=2.0, measure="mean_speed", **COARSE)
-    assert (short.settled == 0.0).all()
-    with pytest.raises(ValueError, match="duration 'settled' needs a gait that repeats"):
-        sweep({"scene.viscosity": [1e-6]}, gait="still", **COARSE)
-
-
-def test_the_commands_swim_until_it_has_settled(tmp_path, capsys):
+def test_the_command_swims_until_it_has_settled(capsys):
     assert command.main(["straight", "--accuracy", "1e-2", "--duration", "settled"]) == 0
     assert "gait                settled" in capsys.readouterr().out
-    words = f"straight --vary period=0.5,0.6 --accuracy 1e-2 --duration 1 --out {tmp_path / 'short.nc'}"
-    assert sweep_command.main(words.split()) == 0
-    assert capsys.readouterr().err.splitlines()[-1] == "eel sweep: warning: 2 of 2 points have not settled"
     with pytest.raises(SystemExit):
         command.main(["straight", "--duration", "soon"])
     assert "must be a number of seconds, or settled, got 'soon'" in capsys.readouterr().err
