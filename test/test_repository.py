@@ -10,7 +10,12 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 REQUIREMENTS = ("requirements.txt", "requirements-ros.txt", "requirements-dev.txt", "requirements-uv.txt")
-OTHERS = ("docs/requirements.txt", "test/numpy1.txt", "tools/wheels/requirements.txt")
+OTHERS = (
+    "docs/requirements.txt",
+    "docs/examples/ppo/requirements.txt",
+    "test/numpy1.txt",
+    "tools/wheels/requirements.txt",
+)
 PEERS = tuple(f"evidence/peers/{name}.txt" for name in ("mujoco", "numba", "pyelastica"))
 
 
