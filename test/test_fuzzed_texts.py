@@ -16,13 +16,14 @@ import pytest
 from eel_common.texts import made
 from eel_common.wording import one_line
 from eel_dynamics.model.fins.fins import Fin, RollHold
-from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.pilot.settings import PilotSettings
 from fuzzed_texts import EXTREMES, ODD, VALUES, case_of
+from interface import classes
 
 from eel_dynamics import (
     Appendage,
+    ExternalWrench,
     Gust,
     Joint,
     Muscle,
@@ -37,6 +38,7 @@ from eel_dynamics import (
     Wave,
 )
 from eel_gaits import Law, Term
+from eel_studies import MeasuredSpeed
 
 LIMIT, SECONDS = 4000, 20  # MB of address space, and s of wall time, of a case
 LONGEST = 330  # characters of a line
@@ -110,8 +112,10 @@ OBJECTS = (
     (Fin, FIN), (RollHold, {}), (Joint, {"position": 0.5}), (Servo, {}), (Torque, {"torque": (0, 1), "time": (0, 1)}),
     (PassiveTail, TAIL), (Muscle, TAIL | {"end": 0.9, "moment": Law(Term(**WAVE))}), (Scene, {}), (Term, WAVE),
     (Ramp, {"start": 0, "end": 1, "delta": 1}), (Appendage, {"x": 0.1}), (Uniform, {"velocity": (0, 0, 0)}), (Gust, {}),
-    (Shear, {}), (Vortex, {}), (VortexStreet, {}), (Wave, {}), (DynamicsParameters, {}), (PilotSettings, {}),
+    (Shear, {}), (Vortex, {}), (VortexStreet, {}), (Wave, {}), (PilotSettings, {}),
+    (ExternalWrench, {"station": 0.5}), (MeasuredSpeed, {"speed": 0.3}),
 )  # fmt: skip
+OBJECTS += tuple((kind, {}) for kind in dict.fromkeys(classes()) if kind not in dict(OBJECTS))
 
 
 BESIDE = {

@@ -217,6 +217,8 @@ def test_motions_without_a_beat_are_refused():
     with pytest.raises(ValueError, match=r"rigid up to 0.9 of the length leaves 1 points to bend, too few"):
         beat_of(film(swimming(arc=np.linspace(0.0, 1.0, 6))), rigid=0.9)
     assert beat_of(film(swimming(arc=np.linspace(0.0, 1.0, 6))), rigid=0.7).knots == 2
+    with pytest.raises(ValueError, match=r"^fish.csv: its frames are too few for a beat, 4"):
+        beat_of(film(swimming()[:4], TIMES[:4]))
     with pytest.raises(ValueError, match=r"rigid must be"):
         beat_of(film(swimming()), rigid=1.5)
 

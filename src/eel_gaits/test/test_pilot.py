@@ -12,7 +12,7 @@ from eel_gaits.pilot import goals
 from eel_gaits.pilot.estimate import PeriodMeans, plane_of
 from eel_gaits.pilot.guidance import PathGuidance, against_water
 from eel_gaits.pilot.pilot import Pilot, Progress
-from eel_gaits.pilot.regulator import TorqueLimiter
+from eel_gaits.pilot.regulator import RECOVERY, TorqueLimiter
 from eel_gaits.pilot.settings import PilotSettings
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -192,6 +192,9 @@ def test_the_beat_slows_down_where_the_torque_is_too_great():
         said.append(limiter.exceeded(4.0 * tempo**2, 1.0, 0.02 * k, tempo))
         tempo += 0.1 * (limiter.tempo - tempo)
     assert tempo == pytest.approx(0.5, rel=0.05) and not any(said)
+    before = limiter.tempo
+    limiter.exceeded(0.0, 1.0, 7.99, tempo)  # 0.01 s later
+    assert limiter.tempo == pytest.approx(before * (1.0 + 0.01 * RECOVERY), rel=1e-9)
     said = [limiter.exceeded(9.0, 1.0, 8.0 + 0.02 * k, 0.3) for k in range(50)]
     assert limiter.tempo == 0.3 and sum(said) == 1
     assert not limiter.exceeded(math.nan, 1.0, 9.1, 0.3)

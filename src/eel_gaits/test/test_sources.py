@@ -126,6 +126,7 @@ def test_smoothing_makes_measured_accelerations_useful(tmp_path):
     smooth = apart_on_average(read_motion(path), WAVE, inside)
     raw = apart_on_average(read_motion(path, smooth=False), WAVE, inside)
     assert max(smooth) < 0.2 and raw[2] > 10.0 * smooth[2]
+    assert re.search(r"instants, not smoothed$", read_motion(path, smooth=False).about)
 
 
 def test_a_helix_has_its_curvature_and_no_twist():

@@ -76,6 +76,8 @@ def test_after_a_jump_of_time_rows_go_on_from_the_present_and_some_at_a_time():
     counts = len(topic.times) - sent
     assert topic.times[sent] == pytest.approx(jump, abs=0.11) and topic.times[-1] <= jump + ROWS_AHEAD
     assert MOST_SAMPLES < counts <= 5 * MOST_SAMPLES and np.all(np.diff(topic.times) > 0.0)
+    after = stream.next_stamp
+    assert after.sec + 1e-9 * after.nanosec == pytest.approx(topic.times[-1] + 1.0, abs=1e-6)
 
 
 @pytest.mark.parametrize("time", [-1e-3, 2.0**31 - 1.0, math.inf, math.nan])

@@ -16,7 +16,7 @@ from gymnasium.vector import AutoresetMode
 
 from eel_dynamics import FlowField, Run, Scene, Shear, Simulation, SimulationStopped, Vortex
 from eel_gaits import Law, Term, helix, straight
-from eel_gym import DepthEnv, HeadingEnv, KnotAction, LawAction, SwimmerEnv, WayPointsEnv
+from eel_gym import DepthEnv, HeadingEnv, KnotAction, LawAction, SwimmerEnv, ThreadedVectorEnv, WayPointsEnv
 
 TASKS = {"Heading": HeadingEnv, "Depth": DepthEnv, "WayPoints": WayPointsEnv}
 
@@ -152,6 +152,14 @@ def test_rates_at_knots_move_the_body_and_never_beyond_the_greatest_bend():
     assert np.abs(value).max() <= 2.0 and np.abs(rate).max() <= 10.0
     assert value[-1] == pytest.approx(2.0, abs=1e-6) and rate[-1] == pytest.approx(0.0, abs=1e-5)
     assert action.advance(-np.ones(8), step).reshape(2, 3, 4)[:, 0].max() < 2.0  # and back
+
+
+def test_knots_of_many_swimmers_are_observed_as_of_one():
+    envs, env = ThreadedVectorEnv(3, task=HeadingEnv, action=KnotAction(4)), HeadingEnv(action=KnotAction(4))
+    envs.reset(seed=[5, 6, 7])
+    env.reset(seed=6)
+    for actions in random_actions_of(4, 9).reshape(3, 3, 4):
+        assert np.array_equal(envs.step(actions)[0][1], env.step(actions[1])[0])
 
 
 def test_the_body_bends_as_the_action_says():

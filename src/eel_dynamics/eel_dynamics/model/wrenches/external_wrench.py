@@ -76,7 +76,8 @@ class ExternalWrench(Quantities):
         if callable(given):
             return given
         what = f"external wrench {name}"
-        rows = isinstance(given, (list, tuple, np.ndarray)) and len(given) > 0 and np.ndim(given[0]) > 0
+        several = isinstance(given, (list, tuple)) or (isinstance(given, np.ndarray) and given.ndim > 0)
+        rows = several and len(given) > 0 and np.ndim(given[0]) > 0
         if not rows:
             return tuple(checked_row(what, given, 3).tolist())
         if self.time is None or len(given) != len(self.time):
