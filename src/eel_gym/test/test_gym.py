@@ -352,7 +352,7 @@ def test_a_task_of_ones_own_needs_a_reward_alone():
         def reward(self):
             return float(self.head.velocity[0])
 
-    assert Fast.__doc__.startswith("Swim fast.\n\nObserved, before") and "duration = 20.0" in Fast.__doc__
+    assert Fast.__doc__.startswith("Swim fast.\n\nObserved, ") and "duration = 20.0" in Fast.__doc__
     env = Fast(scene=Scene(planar=True))
     env.reset(seed=1)
     for _ in range(100):
