@@ -23,6 +23,8 @@ from eel_gaits.gaits.registry import GAITS
 from eel_gaits.gaits.settings import FILE_GAITS, numbers_of
 from eel_studies.scene_terms.terms import TERMS
 
+from eel_gym import DepthEnv, HeadingEnv, WayPointsEnv
+
 FILE = Path(__file__).with_name("interface.txt")
 PACKAGES = "eel_common", "eel_gaits", "eel_dynamics", "eel_studies", "eel_gym", "eel_viz"
 
@@ -75,7 +77,8 @@ def options(module: str) -> Iterator[str]:
                     name = " ".join(action.option_strings) or action.dest
                     more = "" if action.choices is None else f" of {text_of(sorted(map(str, action.choices)))}"
                     count = "" if action.nargs is None else f" x {action.nargs}"
-                    yield f"{name} = {text_of(action.default)}{count}{more}"
+                    must = " required" if action.required and action.option_strings else ""
+                    yield f"{name} = {text_of(action.default)}{count}{more}{must}"
 
 
 def lines() -> Iterator[str]:
@@ -88,6 +91,8 @@ def lines() -> Iterator[str]:
     yield from (f"measure {name}: [{unit}]" for name, (unit, *_) in MEASURES.items())
     yield from (f"observed {name}: {text_of(each.dimensions)} [{each.unit}]" for name, each in OBSERVED.items())
     yield from (f"term {name}" for name in TERMS)
+    for task in (DepthEnv, HeadingEnv, WayPointsEnv):
+        yield from (f"{task.__name__} observes {text_of(each)}" for each in task.observed)
     yield from (f"topic {name}: {kind}" for name, kind in {**OWN, **GLOBAL}.items())
 
 

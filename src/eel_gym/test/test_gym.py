@@ -312,6 +312,14 @@ def test_unknown_and_bad_parameters_are_named_in_one_line():
     envs.close()
 
 
+def test_episodes_begin_anywhere_in_the_gait_s_period():
+    env, times = HeadingEnv(), []
+    for seed in range(30):
+        env.reset(seed=seed)
+        times.append(env.starts[0].own_time / env.action.period)
+    assert 0.0 <= min(times) < 0.2 and 0.8 < max(times) <= 1.0
+
+
 def test_step_and_render_before_reset_are_refused():
     env, envs = HeadingEnv(render_mode="rgb_array"), gymnasium.make_vec("Eel/Heading-v0", num_envs=2)
     for act in (lambda: env.step([0.0]), env.render, lambda: envs.step(np.zeros((2, 1)))):
