@@ -101,7 +101,7 @@ def test_a_policy_over_topics_swims_as_in_the_environment(start, fresh_domain, t
     positions = {nanoseconds(each.header.stamp): each.pose.pose.position for each in swim.received["odom"]}
     swim.close()
 
-    act, path, far = policies.Policy(policy), [], 0.0
+    act, path, far = policies.Policy(policy, env), [], 0.0
     observation, _ = env.reset()
     for k in range(1, steps + 1):
         observation, *_ = env.step(act(observation))
@@ -111,6 +111,16 @@ def test_a_policy_over_topics_swims_as_in_the_environment(start, fresh_domain, t
     print(f"{robot or 'the body'}: {steps / 10:g} s, {np.ptp(path, axis=0).max():.3g} m, at most {far:.2g} m apart")
     assert far < 1e-9 and np.ptp(path, axis=0).max() > 0.5
     assert robot or env.heading == pytest.approx(0.6, abs=np.radians(5.0))
+
+
+def test_a_policy_that_does_not_fit_is_refused_by_name(policies, tmp_path):
+    other = tmp_path / "other.npz"
+    other.write_text("no policy")
+    with pytest.raises(ValueError, match=r"policy must be a file of train_policy.py or ppo/train.py, got \S*other.npz"):
+        policies.Policy(other, HeadingEnv())
+    told = "policy must be for 9 observed numbers and 1 of an action, got one for 10 and 1"
+    with pytest.raises(ValueError, match=told):
+        policies.Policy(EXAMPLES / "policy_way_points.json", HeadingEnv())
 
 
 @pytest.fixture

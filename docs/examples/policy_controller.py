@@ -36,18 +36,31 @@ class Policy:
     """A network of layers with tanh between them: `action = policy(observation)`, (A,) of (D,).
 
     file: .json of train_policy.py, one layer with tanh behind it; or .npz with weight_0, bias_0, weight_1 and so on, as
-    ppo/train.py writes it.
+    ppo/train.py writes it. `ValueError` for another file, or a network for other observations or actions than `env`'s.
     """
 
-    def __init__(self, file):
-        if Path(file).suffix == ".json":
-            weights = np.array(json.loads(Path(file).read_text())["weights"])
-            self.layers = [(weights[:, :-1], weights[:, -1])]
-            self.bounded: Any = np.tanh
-        else:
-            with np.load(file) as found:
-                self.layers = [(found[f"weight_{k}"], found[f"bias_{k}"]) for k in range(len(found) // 2)]
-            self.bounded = lambda values: np.clip(values, -1.0, 1.0)
+    def __init__(self, file, env):
+        try:
+            self.layers, self.bounded = self.read(Path(file))
+            found = self.layers[0][0].shape[1], self.layers[-1][0].shape[0]
+        except (ValueError, LookupError, TypeError) as error:
+            raise ValueError(
+                f"policy must be a file of train_policy.py or ppo/train.py, got {file} ({error})"
+            ) from None
+        wanted = *env.observation_space.shape, *env.action_space.shape
+        if found != wanted:
+            rule = f"{wanted[0]} observed numbers and {wanted[1]} of an action"
+            raise ValueError(f"policy must be for {rule}, got one for {found[0]} and {found[1]}: {file}")
+
+    @staticmethod
+    def read(path) -> tuple[Any, Any]:
+        """The layers of a file, each of weights and biases, and what bounds the last one."""
+        if path.suffix == ".json":
+            weights = np.array(json.loads(path.read_text())["weights"])
+            return [(weights[:, :-1], weights[:, -1])], np.tanh
+        with np.load(path) as found:
+            layers = [(found[f"weight_{k}"], found[f"bias_{k}"]) for k in range(len(found) // 2)]
+        return layers, lambda values: np.clip(values, -1.0, 1.0)
 
     def __call__(self, observation):
         values = observation.astype(float)
@@ -65,10 +78,10 @@ class PolicyController(ParameterNode):
 
     def __init__(self):
         super().__init__(NAME, automatically_declare_parameters_from_overrides=False)  # they are declared below
-        self.policy = Policy(self.declare_parameter("policy", str(OWN)).value)
-        robot = self.declare_parameter("robot", "").value
+        file, robot = self.declare_parameter("policy", str(OWN)).value, self.declare_parameter("robot", "").value
         self.declare_parameter("heading", 0.0)
         self.env = HeadingEnv(control_period=STEP, action=JointAction(robot) if robot else None)
+        self.policy = Policy(file, self.env)
         self.action: Any = self.env.action
         self.lead, self.last, self.answers = Lead(STEP, STEP), np.inf, []
         self.odometry: Any = None
