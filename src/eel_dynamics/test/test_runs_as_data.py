@@ -73,6 +73,7 @@ def test_a_saved_run_is_loaded_equal(run, tmp_path):
     assert again == run and hash(again) == hash(run) and again.warnings == run.warnings
     assert all(type(getattr(again, item.name)) is type(getattr(run, item.name)) for item in fields(Run))
     assert again.summary() == run.summary() and again.refined == run.refined
+    assert again.refined.fluid_force.shape == run.fluid_force.shape  # asked for again
     changed = run.position.copy()
     changed[-1, 2] = np.nextafter(changed[-1, 2], 1.0)
     assert replace(run, position=changed) != run and replace(run, steps=run.steps + 1) != run
@@ -364,6 +365,7 @@ def replace_time(run: Run, end: float) -> Run:
 def test_a_run_that_begins_later_is_not_simulated_again():
     """The start of its motion is not known."""
     run = simulate(straight(), 1.0, accuracy="draft", estimate=False, stations=3)
+    assert run.refined.fluid_force is None  # as the run
     later = replace(run, time=run.time + 3.0)
     with pytest.raises(ValueError, match="run must begin at t = 0 to be simulated again, got 3 s"):
         later.refined  # noqa: B018

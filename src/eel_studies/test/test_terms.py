@@ -37,7 +37,7 @@ def test_what_matters_stays_and_what_does_not_goes(plain):
         "nose",
     }  # fmt: skip
     assert plain.recommended.scene.planar and not plain.swim.scene.planar
-    assert plain.recommended.scene.ledger and plain.recommended.duration == 6
+    assert plain.recommended.scene.ledger and plain.recommended.duration == plain.duration == 6
 
 
 def test_only_terms_that_a_scene_has_are_left_out(plain):
