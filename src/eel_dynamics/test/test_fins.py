@@ -365,3 +365,5 @@ def test_each_fin_has_a_name_of_its_own_that_stays_where_it_moves():
         names(0.3, 0.4, name="rudder")
     with pytest.raises(ValueError, match="fin name must be a text of at most 100 characters without spaces"):
         names(0.3, name="a rudder")
+    with pytest.raises(ValueError, match="fin name must be a str, got 3"):
+        Fin.pair(0.3, 1e-3, 2.5, name=3)

@@ -182,5 +182,5 @@ def test_joints_must_lie_within_the_body_and_gaps_are_told(tmp_path):
         with pytest.raises(ValueError, match=words):
             law_of_links(log, places, 1.0)
     kept = (TIME < 2.0) | (TIME > 2.4)
-    with pytest.raises(ValueError, match=r"a gap of 0.4\d* s at"):
+    with pytest.raises(ValueError, match=r"log.csv: .*a gap of 0.4\d* s at"):
         law_of_links(log._replace(time=TIME[kept], angles=ANGLES[kept]), PLACES, 1.0)

@@ -137,6 +137,11 @@ def test_a_file_that_is_no_sequence_is_refused_in_one_line(read, text):
     assert "patrol.yaml" in str(caught.value) and "\n" not in str(caught.value)
 
 
+def test_numbers_beside_gaits_together_are_refused_by_their_line(read):
+    with pytest.raises(ValueError, match=r"line 3, key 'set': goes with gait"):
+        read("steps:\n  - together: [{gait: still}, {gait: straight}]\n    set: {period: 1}\n")
+
+
 def test_the_settings_of_the_node_take_a_file(tmp_path):
     file = tmp_path / "patrol.yaml"
     file.write_text(GOOD)

@@ -154,6 +154,15 @@ def test_rates_at_knots_move_the_body_and_never_beyond_the_greatest_bend():
     assert action.advance(-np.ones(8), step).reshape(2, 3, 4)[:, 0].max() < 2.0  # and back
 
 
+@pytest.mark.parametrize(("value", "reached"), [(1.0, 0.6), (-1.0, -0.2), (0.0, 0.2)])
+def test_a_number_of_the_law_goes_to_the_bound_that_the_action_says(value, reached):
+    action = LawAction(straight(), {"left_bend": (-0.2, 0.6)})
+    action.begin()
+    for _ in range(400):
+        action.advance(np.array([value]), 0.05)
+    assert action.state[0] == pytest.approx(reached, abs=1e-6)
+
+
 def test_knots_of_many_swimmers_are_observed_as_of_one():
     envs, env = ThreadedVectorEnv(3, task=HeadingEnv, action=KnotAction(4)), HeadingEnv(action=KnotAction(4))
     envs.reset(seed=[5, 6, 7])
