@@ -188,3 +188,18 @@ def test_way_points_are_drawn_as_wide_as_the_pilot_takes_them_as_reached():
     from eel_viz.settings import Settings
 
     assert Settings().reach == PilotSettings.reach
+
+
+def test_a_message_is_parsed_once_in_a_build(tmp_path, monkeypatch):
+    from rosidl_parser import parser
+
+    monkeypatch.chdir(tmp_path)
+    definition = "module a { module msg { struct B { double x; }; }; };"
+    parsed = parser.get_ast_from_idl_string(definition)
+    assert list(tmp_path.iterdir()) == []  # not in any folder
+    (tmp_path / "CMakeCache.txt").touch()
+    assert parser.get_ast_from_idl_string(definition) == parsed
+    monkeypatch.setattr(parser, "_parser", "nothing that parses")
+    assert parser.get_ast_from_idl_string(definition) == parsed
+    with pytest.raises(AttributeError, match="parse"):
+        parser.get_ast_from_idl_string(definition.replace("double", "float"))

@@ -4,6 +4,7 @@
 The wheels' CMake files name the Python of the machine that built them (/opt/python/cp3xx-cp3xx/...), which does not
 exist here; CMake then stops with "non-existent path". They are replaced by this interpreter's own include folders.
 One of them reads a list of files as ASCII, and loses those in a folder whose name is not: it is told that it is UTF-8.
+The six generators of a message each parse its definition, which is most of their time: the first keeps what it found.
 """
 
 import re
@@ -18,6 +19,22 @@ BUILDER_NUMPY = re.compile(r"/opt/python/cp3\d+-cp3\d+/lib/python3\.\d+/site-pac
 LIST_OF_FILES = re.compile(r"(file\(STRINGS \S+ idl_tuples)\)")
 BUILDER_PREFIX = re.compile(r"/opt/python/cp3\d+-cp3\d+")
 
+PARSES = "    return _parser.parse(idl_string)\n"
+PARSES_ONCE = """\
+    import hashlib, pickle, tempfile
+    kept = os.path.join('rosidl_parsed', hashlib.sha256(idl_string.encode()).hexdigest())
+    if os.path.exists(kept):
+        with open(kept, 'rb') as file:
+            return pickle.load(file)
+    tree = _parser.parse(idl_string)
+    if os.path.exists('CMakeCache.txt'):  # a folder of a build
+        os.makedirs('rosidl_parsed', exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir='rosidl_parsed', delete=False) as file:
+            pickle.dump(tree, file)
+        os.replace(file.name, kept)
+    return tree
+"""
+
 
 def main() -> None:
     prefix = Path(sys.prefix)
@@ -30,6 +47,8 @@ def main() -> None:
         if fixed != text:
             replace(path, fixed)
             changed += 1
+    parser = Path(sysconfig.get_paths()["purelib"], "rosidl_parser/parser.py")
+    replace(parser, parser.read_text().replace(PARSES, PARSES_ONCE))
     for path in (prefix / "share/ament_index/resource_index/parent_prefix_path").iterdir():
         replace(path, BUILDER_PREFIX.sub(str(prefix), path.read_text()))
     (prefix / "COLCON_IGNORE").touch()

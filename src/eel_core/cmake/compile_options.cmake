@@ -7,6 +7,10 @@ set(CMAKE_CXX_VISIBILITY_PRESET hidden)
 set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+if(NOT DEFINED CMAKE_UNITY_BUILD)   # all files of a target in one piece: each compiles the same templates
+  set(CMAKE_UNITY_BUILD ON)
+  set(CMAKE_UNITY_BUILD_BATCH_SIZE 0)
+endif()
 
 # A product and a sum may become one rounding; sums keep their order, and NaN and infinity are seen: no -ffast-math.
 # Nobody looks at errno or at floating-point traps after arithmetic.
