@@ -4,11 +4,12 @@
 # that is on this machine. What they need of a system, their sizes and hashes are printed.
 #   build.sh         builds
 #   build.sh test    builds what is missing, then installs each wheel where there is neither compiler nor ROS (try.sh)
-# EEL_WHEEL_PYTHONS chooses the Pythons, EEL_WHEEL_LEVELS the levels of the processor.
+# EEL_WHEEL_PYTHONS chooses the Pythons, EEL_WHEEL_LEVELS the levels of the processor, EEL_WHEEL_MACHINE=aarch64 wheels for
+# 64-bit ARM, by the headers of this machine's Pythons (they differ in nothing that is used).
 set -euo pipefail
 tools="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)"
 cd "$tools/../.."
-env="$PWD/.venv-wheels" out="$PWD/out/wheels"
+env="$PWD/.venv-wheels" out="$PWD/out/wheels" machine="${EEL_WHEEL_MACHINE:-x86_64}"
 source "$tools/pythons.sh"
 say() { printf '[wheels] %s\n' "$*"; }
 
@@ -21,7 +22,7 @@ if ! cmp -s tools/wheels/requirements.txt "$env/stamp"; then
         -r tools/wheels/requirements.txt --python "$env/bin/python" --system-certs
     cp tools/wheels/requirements.txt "$env/stamp"
 fi
-export EEL_ZIG="$(echo "$env"/lib/python3.*/site-packages/ziglang/zig)" EEL_ZIG_TARGET=x86_64-linux-gnu.2.17
+export EEL_ZIG="$(echo "$env"/lib/python3.*/site-packages/ziglang/zig)" EEL_ZIG_TARGET="$machine-linux-gnu.2.17"
 export ZIG_GLOBAL_CACHE_DIR="$env/zig" ZIG_LOCAL_CACHE_DIR="$env/zig"
 export CXX="$tools/zig-c++" CMAKE_BUILD_PARALLEL_LEVEL="${CMAKE_BUILD_PARALLEL_LEVEL-$(nproc)}"
 
@@ -37,11 +38,17 @@ git archive --prefix=eel/ HEAD | tar -x -C "$draft"   # which writes the commit 
 uv() { .venv/bin/python tools/install/uv_with_pip_settings.py "$@" --quiet --system-certs; }
 compgen -G "$out/*.tar.gz" > /dev/null || uv build --sdist --out-dir "$out" "$draft/eel"
 while read -r version python; do
-    ! compgen -G "$out/*-cp${version/./}-*.whl" > /dev/null || continue
-    say "wheel for Python $version"
-    uv build --wheel --python "$python" --out-dir "$out/built" "$out"/*.tar.gz \
-        -C "cmake.define.EEL_CORE_LEVELS=${EEL_WHEEL_LEVELS:-v2;v3;v4}"
-    PATH="$env/bin:$PATH" "$env/bin/auditwheel" repair --only-plat --wheel-dir "$out" "$out"/built/*-cp"${version/./}"-*.whl 2> "$draft/said" ||
+    kind="cp${version/./}-*_$machine.whl"
+    ! compgen -G "$out/*-$kind" > /dev/null || continue
+    say "wheel for Python $version on $machine"
+    options=(-C "cmake.define.EEL_CORE_LEVELS=${EEL_WHEEL_LEVELS:-v2;v3;v4}")
+    if [ "$machine" != "$(uname -m)" ]; then
+        options=(-C cmake.define.CMAKE_SYSTEM_NAME=Linux -C "cmake.define.CMAKE_SYSTEM_PROCESSOR=$machine"
+            -C "cmake.define.PYTHON_MODULE_EXTENSION=.cpython-${version/./}-$machine-linux-gnu.so"
+            -C "wheel.tags=cp${version/./}-cp${version/./}-linux_$machine")
+    fi
+    uv build --wheel --python "$python" --out-dir "$out/built" "$out"/*.tar.gz "${options[@]}"
+    PATH="$env/bin:$PATH" "$env/bin/auditwheel" repair --only-plat --wheel-dir "$out" "$out"/built/*-$kind 2> "$draft/said" ||
         { cat "$draft/said"; exit 1; }
 done < <(pythons_here ${EEL_WHEEL_PYTHONS:-3.11 3.12 3.13})
 
