@@ -29,7 +29,7 @@ BROUGHT_BY = {  # imported name: what pip installs, or what of the extras brings
     "zstandard": "mcap",
     "lz4": "mcap",
 }
-OF_THE_SHELL = {"argcomplete", "rich_argparse"}  # of no extra: whoever wants completion and colours installs them
+OF_NO_EXTRA = {"argcomplete", "rich_argparse", "stable_baselines3"}  # who wants them installs them
 OF_ROS = {"ament_index_python"}  # for bags without definitions, where ROS is
 with (ROOT / "pyproject.toml").open("rb") as settings:
     TABLES = tomllib.load(settings)
@@ -67,7 +67,7 @@ def test_entry_points_are_those_of_the_packages():
 
 
 def test_dependencies_and_extras_bring_all_that_is_imported():
-    imported = set().union(*map(library_imports, LIBRARY)) - set(LIBRARY) - {"eel_command"} - OF_THE_SHELL - OF_ROS
+    imported = set().union(*map(library_imports, LIBRARY)) - set(LIBRARY) - {"eel_command"} - OF_NO_EXTRA - OF_ROS
     extras = PROJECT["optional-dependencies"]
     brought = names_of(PROJECT["dependencies"]).union(*map(names_of, extras.values()))
     assert {BROUGHT_BY.get(name, name) for name in imported} - {"pytest"} <= brought
