@@ -172,7 +172,7 @@ def write_beside(name: str, runs: list[Run], folder: Path) -> None:
     for run, recording in zip(runs, recordings, strict=True):
         run.to_rerun(recording)
     with drawn_beside(*recordings, size=(480, 300), bare=True) as beside:
-        write_film(name, beside, folder, fps=6.0, quality=20)
+        write_film(name, beside, folder, fps=6.0, quality=18)
 
 
 def write_film(
