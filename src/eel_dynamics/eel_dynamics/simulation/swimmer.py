@@ -64,7 +64,8 @@ class Swimmer(EqualByFields):
         checked_stations(self.stations, body.length)
         self._set(start=_checked_start(scene, self.start, self.flow), fins=checked_fins(self.fins, body, scene))
         self._set(wrenches=checked_wrenches(self.wrenches, body, bool(scene.planar)))
-        assert self.modes or robot is None  # the robot fits the body
+        if robot is not None:
+            mode_table(robot, body, bool(scene.planar))  # it fits the body
         self._set(most_evaluations=positive("most_evaluations", self.most_evaluations, "per simulated second"))
         self._set(default_transition=positive("default_transition", self.default_transition, "s"))
         self._set(sensors=checked_sensors(self.sensors, body.length), law=self._checked_law())
