@@ -17,7 +17,7 @@ from eel_dynamics.ros.inputs.law_messages import LARGEST_LAW
 from eel_dynamics.ros.loop import law_adopter, sample_output
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.runs import companion
-from eel_dynamics.runs.recording import LEAST_COMPARED
+from eel_dynamics.runs.observed_swim import LEAST_COMPARED
 from eel_dynamics.runs.settled_duration import MOST_PERIODS
 from eel_gaits.film.beat import FEWEST_BEATS
 from eel_gaits.laws.law import MAXIMUM_TERMS

@@ -28,7 +28,7 @@ def said_of(words, capsys) -> str:
     ],
 )
 def test_bad_input_is_refused_before_the_swim(words, named, monkeypatch, capsys):
-    monkeypatch.setattr("eel_dynamics.runs.recording.Recording.swim", lambda *_: pytest.fail("it swims"))
+    monkeypatch.setattr("eel_dynamics.runs.observed_swim.ObservedSwim.swim", lambda *_: pytest.fail("it swims"))
     assert named in said_of(words, capsys)
 
 
@@ -43,5 +43,5 @@ def test_out_of_memory_is_one_line(monkeypatch, capsys):
     def swum(*_, **__):
         raise MemoryError("72 GiB")
 
-    monkeypatch.setattr("eel_dynamics.runs.recording.Recording.swim", swum)
+    monkeypatch.setattr("eel_dynamics.runs.observed_swim.ObservedSwim.swim", swum)
     assert said_of("straight", capsys) == "eel simulate: it does not fit into memory: 72 GiB\n"

@@ -33,7 +33,8 @@ def test_runs_are_saved_swum_again_and_alike_in_batches(tmp_path):
     alone[1].save(tmp_path / "run.nc")
     kept = Run.load(tmp_path / "run.nc")
     assert kept == alone[1] and kept.wrenches == (TABLE,)
-    assert differences(simulate(kept.law, 0.5, scene=kept.scene, wrenches=kept.wrenches, **options), kept) == []
+    own = {name: getattr(kept, name) for name in ("body", "scene", "flow", "robot", "fins", "wrenches")}
+    assert differences(simulate(kept.law, 0.5, **own, **options), kept) == []
     batch.save(tmp_path / "batch.nc")
     assert type(batch).load(tmp_path / "batch.nc") == batch
     with pytest.raises(ValueError, match=r"external wrench at 1 m has no text: it is a function"):

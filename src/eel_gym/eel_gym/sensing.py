@@ -53,7 +53,7 @@ def _parts(settings: SensorSettings, robot: Robot | None) -> list[tuple[str, str
 
 
 class Sensing:
-    """The sensors with these `settings` of `swimmers`, which have the `swimmer`.
+    """The sensors with these `settings` of many `swimmers`, all alike: the `swimmer`.
 
     Attributes:
         values: (n, N) float64, the numbers that `observed_by` names.
@@ -73,7 +73,7 @@ class Sensing:
         """Begin an episode of a swimmer in a `flow`, with noise drawn from its `random` numbers."""
         if self._settings:
             drawn = [replace(each, seed=int(random.integers(2**31))) for each in self._settings]
-            self._suites[index] = SensorSuite(drawn, self._swimmer.with_checked(flow=flow))
+            self._suites[index] = SensorSuite(drawn, self._swimmer.unchecked(flow=flow))
             self.values[:, index] = 0.0
             self._late[index] = Delay()
 

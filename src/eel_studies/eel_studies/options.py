@@ -20,9 +20,9 @@ def add_scene_options(parser: Parser, *left_out: str, several: bool = False) -> 
     add_changes(parser, *left_out)
 
 
-def chosen(name: str | None, options: argparse.Namespace) -> Swim:
-    """The swim of the file or the gait called `name`, changed by the `options`."""
-    swim, numbers = swim_from(name or "falling", options), set_numbers(options.set)
+def chosen(base: str | Swim | None, options: argparse.Namespace) -> Swim:
+    """The `base`, a swim or the name of a file or gait (None: falling), changed by the `options`."""
+    swim, numbers = swim_from(base or "falling", options), set_numbers(options.set)
     return point_at(numbers, swim, {}, swim) if numbers else swim
 
 

@@ -27,13 +27,14 @@ from eel_common.quantity import checked_instance, number
 from eel_common.wording import did_you_mean, shown
 from eel_dynamics.analysis.measures import AT_END, OF_LEDGER, OF_WRENCH, measures_of
 from eel_dynamics.batches.simulate_batch import result_of
-from eel_dynamics.model.body.body import MASSES, NUMBERS, Body
+from eel_dynamics.model.body.body import MASSES, NUMBERS, Body, checked_body
 from eel_dynamics.model.fins.fins import Fin, RollHold, checked_fins
 from eel_dynamics.model.fins.text import GAINS, fins_from_text
 from eel_dynamics.model.flow.plain import KINDS
 from eel_dynamics.model.flow.text import flow_from_text
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.robot.robot import Robot, checked_robot, robot_of
+from eel_dynamics.model.scene import checked_scene
 from eel_dynamics.runs.sampling import checked_times
 from eel_gaits.gaits.registry import find
 
@@ -70,16 +71,16 @@ def without_the_rest(point: Swim, measure: Measure | tuple[str, ...], every_samp
     ledger, wrench = (not of.isdisjoint(measure) for of in (OF_LEDGER, OF_WRENCH))
     scene = point.scene
     scene = replace(scene, ledger=scene.ledger and ledger, internal_wrench=scene.internal_wrench and wrench)
-    point = point.with_checked(scene=scene)
+    point = point.unchecked(scene=scene)
     if every_sample or not AT_END.issuperset(measure):
         return point
     end = float(checked_times(point.duration, point.sample_period)[-1])
-    return point.with_checked(duration=end, sample_period=end) if end else point
+    return point.unchecked(duration=end, sample_period=end) if end else point
 
 
 def run_of_point(point: Swim) -> Run:
     """Simulate one `point`. `SimulationStopped` if it stops early."""
-    swim = result_of(point.recording())
+    swim = result_of(point.observed())
     if swim.stopped is not None:
         raise swim.stopped
     return swim.run
@@ -98,7 +99,9 @@ def base_of(gait: Gait, friction: str = "printed", **given: Any) -> Swim:
         given["robot"] = robot = checked_robot(robot_of(robot) if isinstance(robot, str) else robot)
         if robot is not None and robot.body is not None:
             given = {"body": robot.body} | given
-    return base.changed(**given)
+    for name, check in {"body": checked_body, "scene": checked_scene, "accuracy": Accuracy.of}.items():
+        given |= {name: check(given[name])} if name in given else {}
+    return base.unchecked(**given)  # points are checked as a whole
 
 
 def point_at(values: Numbers, gait: Gait, numbers: Numbers, base: Swim) -> Swim:
@@ -161,8 +164,8 @@ def _point(values: Numbers, gait: Gait, base: Swim) -> Swim:
         robot = _robot_with(robot, groups["robot"])
     try:
         if isinstance(gait, Swim):
-            gait = gait.with_gait(**own) if own else gait
-            law, base = gait.law, base.with_checked(gait=gait.gait)
+            of_gait = gait.fields_of_gait(own) if own else {"law": gait.law, "gait": gait.gait}
+            law, base = of_gait["law"], base.unchecked(**of_gait)
         else:
             law = (find(gait) if isinstance(gait, str) else gait)(**own)
     except (ValueError, TypeError) as error:

@@ -101,6 +101,12 @@ def test_a_term_without_which_the_swim_stops_matters(monkeypatch):
     assert row[1] == "stops" and row[-1] == "matters"
 
 
+def test_a_scene_that_has_no_plane_keeps_its_third_dimension():
+    words = {"gait": "straight", "duration": 1, "accuracy": 1e-2, "flow": "wave amplitude=0.01 wavelength=5"}
+    found = terms(swim_of(words), tolerance=0.5)
+    assert np.isinf(found.effects["third dimension"].worst) and "third dimension" not in found.dropped
+
+
 def test_the_command_writes_a_scene_that_swims_alike(tmp_path, capsys):
     out = tmp_path / "small.yaml"
     assert main(["straight", "--duration", "4", "--tolerance", "0.1", "--out", str(out)]) == 0

@@ -38,7 +38,7 @@ def drag_powers(run) -> np.ndarray:
     run's settings; their sum is the ledger's `drag_power`.
     """
     run = run.in_axes(REP103)
-    swimmer = run.swimmer_at(0, run.x[:1], run.accuracy.as_it_is()).with_checked(fins=())  # fins have their own drag
+    swimmer = run.swimmer_at(0, run.x[:1], run.accuracy.as_it_is()).unchecked(fins=())  # fins have their own drag
     here = discretise(swimmer, swimmer.grid_for(swimmer.shape_needs(run.law)))
     instant, powers = eel_core.Instant(here.swimmer), np.zeros((len(run.time), 6))
     time, relative = np.ascontiguousarray(run.time), run.twist.copy()

@@ -18,7 +18,7 @@ from eel_dynamics.runs.swim import Swim
 
 KINDS: dict[str, Any] = {
     "laws": LAWS,
-    "bodies": (Body, type(None)),
+    "bodies": Body,
     "scenes": Scene,
     "flows": (Flow, type(None)),
     "robots": (Robot, type(None)),
@@ -36,8 +36,12 @@ def swims_of(shared: dict[str, Any], accuracy: Any, parts: dict[str, Any], **giv
     length 1 counts as one for all. `ValueError` names a bad argument and the swimmer's number.
     """
     accuracy = accuracy.tolist() if isinstance(accuracy, np.ndarray) else accuracy
+    own_bodies = {"bodies": [None]} if given["bodies"] is None else {}  # the robots', or the paper's
+    kinds = {name: kind for name, kind in KINDS.items() if name not in own_bodies}
+    Swim(**{name: value for name, value in shared.items() if name != "stations"})  # their errors name no swimmer
     rows = _broadcast(
-        {name: _several(name, given[name], kind) for name, kind in KINDS.items()}
+        own_bodies
+        | {name: _several(name, given[name], kind) for name, kind in kinds.items()}
         | {"accuracy": [*map(Accuracy.of, accuracy if isinstance(accuracy, (list, tuple)) else [accuracy])]}
         | {name: _lists(each) for name, each in parts.items()}
         | {name: _rows(name, given[name], size) for name, size in STATES.items()}

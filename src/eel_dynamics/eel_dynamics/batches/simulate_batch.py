@@ -23,10 +23,11 @@ from eel_dynamics.accuracy.accuracy import STANDARD
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.batches.batch import Batch, batch_of, coordinates_of
 from eel_dynamics.batches.broadcast import swims_of
+from eel_dynamics.model.equality import same
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.recording import Recording, SwimResult, times_of
+from eel_dynamics.runs.observed_swim import ObservedSwim, SwimResult, check_times
 from eel_dynamics.runs.run import Run
-from eel_dynamics.runs.sampling import check_memory, default_sample_period
+from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
 from eel_dynamics.runs.settled_duration import until_settled
 from eel_dynamics.runs.storage.run_contents import OF_EACH, arrays_of_run
 from eel_dynamics.runs.storage.variables import COUNTS, names_with, shape_of
@@ -34,6 +35,7 @@ from eel_dynamics.runs.swim import Swim
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 MOST_THREADS = 1000
+SHARED = "duration", "sample_period", "load", "estimate"  # fields that the swims of a batch have in common
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
@@ -117,16 +119,20 @@ def swum(swims: list[Swim], threads: int | None = None, progress: Callable[[int,
     sample_period = first.sample_period
     if sample_period is None:
         sample_period = default_sample_period({swim.law for swim in swims}, seconds)
-    times, *_ = [times_of(swim, seconds, sample_period) for swim in swims]
+    times = checked_times(seconds, sample_period)
+    for swim in swims:
+        check_times(swim, seconds, times)
+        if any(not same(getattr(swim, name), getattr(first, name)) for name in SHARED):
+            raise ValueError(f"swims of a batch must be alike in {', '.join(SHARED)}")
     profiles = first.stations is not None
     load = bool(first.load) and profiles
     count, points = len(swims), len(first.x)
-    check_memory(count, len(times), points, any(swim.has_wrench for swim in swims), load)
+    check_memory(count, len(times), points, any(swim.has_internal_wrench for swim in swims), load)
     robots = [coordinates_of(swim.robot) for swim in swims]
     sizes = {"time": len(times), "station": points, "fin": max(len(swim.fins) for swim in swims)}
     sizes |= {name: max(each[name] for each in robots) for name in robots[0]}
     names = names_with(
-        wrench=any(swim.has_wrench for swim in swims),
+        wrench=any(swim.has_internal_wrench for swim in swims),
         load=load,
         ledger=any(swim.scene.ledger for swim in swims),
         fins=sizes["fin"],
@@ -140,9 +146,9 @@ def swum(swims: list[Swim], threads: int | None = None, progress: Callable[[int,
     own |= {"error": count * [None], "error_estimates": count * [None]}
 
     def record(index: int) -> None:
-        recording = Recording(Run, swims[index], times, load)
+        observed = ObservedSwim(Run, swims[index], times, load)
         try:
-            found = result_of(recording.to_refine() if first.estimate else recording)
+            found = result_of(observed.to_refine() if first.estimate else observed)
         except SimulationStopped as error:
             own["error"][index] = error
             return
@@ -160,10 +166,10 @@ def swum(swims: list[Swim], threads: int | None = None, progress: Callable[[int,
     return batch_of(own, counts, times, np.array([swim.x for swim in swims]), arrays, start, profiles)
 
 
-def result_of(recording: Recording[Run]) -> SwimResult[Run]:
-    """The swim of a `recording`, which may have stopped early. `SimulationStopped` if it cannot start."""
+def result_of(observed: ObservedSwim[Run]) -> SwimResult[Run]:
+    """The result of an `observed` swim, which may have stopped early. `SimulationStopped` if it cannot start."""
     try:
-        return recording.outcome()
+        return observed.outcome()
     except ValueError as error:
         raise SimulationStopped(0.0, str(error), np.nan, "take a gentler law, or start slower") from None
 

@@ -158,15 +158,12 @@ def add_changes(parser: Parser, *left_out: str, **defaults: Any) -> None:
     add_options(parser, *(each for each in CHANGES if each not in left_out), **own | defaults)
 
 
-def swim_from(name: str | None, options: argparse.Namespace, **words: Any) -> Swim:
-    """The swim of the file or gait called `name`, changed by the `options` of `add_changes`; None: without a law.
+def swim_from(base: str | Swim, options: argparse.Namespace, **words: Any) -> Swim:
+    """The `base`, a swim or the name of a file or gait, changed by the `options` of `add_changes`.
 
     words: further keys of a file, overridden by those of the options.
     """
-    if name is None:
-        swim = Swim()
-    else:
-        swim = load_scene(name) if name.endswith(SUFFIXES) else swim_of({"gait": name})
+    swim = base if isinstance(base, Swim) else load_scene(base) if base.endswith(SUFFIXES) else swim_of({"gait": base})
     given = {field: getattr(options, field, None) for field in FIELDS}
     words |= {field: value for field, value in given.items() if value not in (None, "")}
     return swim_of({**words, "scene": {**words.get("scene", {}), **scene_fields(options.scene)}}, swim)

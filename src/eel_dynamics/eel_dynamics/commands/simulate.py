@@ -166,11 +166,15 @@ def main(options: argparse.Namespace) -> int:
 
 def _swim_of(options: argparse.Namespace, beat: Beat | None, robot: LoggedRobot | None) -> Swim:
     """The swim of the options: of a gait, a file of a motion, the `beat` of a film, or the log of a `robot`."""
-    swim, duration = swim_from(None, options), options.duration
+    duration, body = options.duration, Body.boyer2010()
     if robot is not None:
-        swim = swim.changed(body=robot.body)
-    if beat is not None and (options.body or swim.robot is None or swim.robot.body is None):
-        swim = swim.changed(body=body_for(options.body, beat.film))
+        body = robot.body
+    if beat is not None:
+        body = body_for(options.body, beat.film)
+    words = options if robot is None and beat is None else argparse.Namespace(**vars(options) | {"body": None})
+    swim = swim_from(Swim(body=body), words)
+    if robot is not None or (beat is not None and options.body):
+        swim = swim.unchecked(body=body)  # in place of that of a robot file
     law = _law(options, swim.body, beat, robot)
     if duration is None and beat is not None:
         duration = UNTIL_SETTLED
@@ -183,8 +187,7 @@ def _scene_of_file(options: argparse.Namespace) -> Swim:
     """The swim of a scene's file, changed by the options."""
     for given in filter(None, (options.file, options.midlines, options.joints, options.sequence)):
         raise ValueError(f"{options.gait} has a gait of its own, got {shown(given)} too")
-    swim, numbers = swim_from(options.gait, options), set_numbers(options.set)
-    return swim.with_gait(**numbers) if numbers else swim
+    return swim_from(options.gait, options, **set_numbers(options.set))
 
 
 def _law(options: argparse.Namespace, body: Body, beat: Beat | None, robot: LoggedRobot | None) -> Law | SampledLaw:

@@ -81,17 +81,17 @@ def error_at_stops(run, reference) -> float:
     return torque_at_stops(run.robot, stops_met(run.robot, run.joint_angle), apart) / greatest
 
 
-def with_error_estimate(swim: Any, recording: Any) -> Any:
-    """The `swim` of a `recording` (`Recording`) with the `error_estimate` of its run; or a finer swim, for the target.
+def with_error_estimate(swim: Any, observed: Any) -> Any:
+    """The `swim` of an `ObservedSwim` with the `error_estimate` of its run; or a finer swim, for the target.
 
     A run that stopped early has no estimate. A run is not refined without a target, nor if motors are far too slow, as
     that would take minutes.
     """
     others = []
-    target = recording.swimmer.accuracy.target
-    if swim.stopped is not None or len(recording.times) < 2:
+    target = observed.swimmer.accuracy.target
+    if swim.stopped is not None or len(observed.times) < 2:
         return swim
-    marching = _for_comparison(recording)
+    marching = _for_comparison(observed)
     companion = _finished(marching, swim.run.accuracy.coarser().by_adams(), swim.run.nodes)
     for refinement in range(MOST_REFINEMENTS + 1):
         error = ErrorEstimate(np.inf, None)
@@ -100,7 +100,7 @@ def with_error_estimate(swim: Any, recording: Any) -> Any:
             error = error.with_torque(error_at_stops(swim.compared, companion.compared))
         if refinement and companion is not None:  # a faster fall is agreement by chance
             share = swim.run.accuracy.tolerance / companion.run.accuracy.tolerance
-            if recording.swimmer.scene.friction in ROUGH_FRICTION:
+            if observed.swimmer.scene.friction in ROUGH_FRICTION:
                 share = max(share, (companion.run.nodes / swim.run.nodes) ** BLENDED_ORDER)
             error = error.at_least(share, companion.run.error_estimate)
         others += [] if companion is None else [companion.run]
@@ -109,12 +109,12 @@ def with_error_estimate(swim: Any, recording: Any) -> Any:
         swim = swim._replace(run=replace(swim.run, error_estimate=error))
         if target is None or error.worst <= target / ACCEPTED or refinement == MOST_REFINEMENTS:
             break
-        if refinement == 0 and (slow := recording.slow_motors) is not None and slow.far:
+        if refinement == 0 and (slow := observed.slow_motors) is not None and slow.far:
             break
         if refinement and error.hopeless(target, float(swim.run.time[-1])):  # the first two may be far apart
             break
         tightened = swim.run.accuracy.tightened(target / ACCEPTED / error.worst)
-        finer = _finished(recording, tightened, swim.run.nodes)
+        finer = _finished(observed, tightened, swim.run.nodes)
         if finer is None:
             break
         settings = replace(finer.run.accuracy, target=target)
@@ -122,7 +122,7 @@ def with_error_estimate(swim: Any, recording: Any) -> Any:
     return swim._replace(run=_with_resampling(swim.run, marching, others))
 
 
-def _with_resampling(run, recording, others: list):
+def _with_resampling(run, observed, others: list):
     """The `run` with the interpolation error of its law's rows, if that is a `SampledLaw`.
 
     Two companions, one with every second row and point of the law, differ by at least `1 / RESAMPLING` of this error
@@ -132,7 +132,7 @@ def _with_resampling(run, recording, others: list):
     if not isinstance(law, SampledLaw) or error is None or not others:
         return run
     settings = others[0].accuracy
-    coarse = _finished(recording.of_swimmer(law=law.coarser()), settings)
+    coarse = _finished(observed.of_swimmer(law=law.coarser()), settings)
     if coarse is None:
         return replace(run, error_estimate=replace(error, position=np.inf, resampling=np.inf))
     apart = {name: RESAMPLING * value for name, value in relative_errors(others[0], coarse.run).errors.items()}
@@ -146,16 +146,16 @@ def _with_resampling(run, recording, others: list):
     return replace(run, error_estimate=error)
 
 
-def _for_comparison(recording):
-    """The `recording` reduced for comparison: motion and torque, at some of the instants, with the last.
+def _for_comparison(observed):
+    """The `observed` swim reduced for comparison: motion and torque, at some of the instants, with the last.
 
     Without a ledger Adams' method is cheaper.
     """
-    times = recording.instants
+    times = observed.instants
     if len(times) > MANY_SAMPLES:
         times = times[(len(times) - 1) % COMPARED_EVERY :: COMPARED_EVERY].copy()
-    recording = recording.of_swimmer(scene=_without_ledger(recording.swimmer.scene))
-    return recording._replace(load=False, times=times, every=1)
+    observed = observed.of_swimmer(scene=_without_ledger(observed.swimmer.scene))
+    return observed._replace(load=False, times=times, every=1)
 
 
 @lru_cache(maxsize=64)
@@ -163,24 +163,24 @@ def _without_ledger(scene: Scene) -> Scene:
     return replace(scene, ledger=False)
 
 
-def _finished(recording, accuracy: Accuracy, nodes: int | None = None):
+def _finished(observed, accuracy: Accuracy, nodes: int | None = None):
     """The swim with these settings, on a grid that does not have `nodes`; None if it stops early."""
     try:
-        march = on_another_grid(recording.march, accuracy, nodes)
+        march = on_another_grid(observed.march, accuracy, nodes)
     except (SimulationStopped, ValueError):  # a law that cannot be started
         return None
     try:
-        swim = recording.swim(march)
+        swim = observed.swim(march)
     except SimulationStopped:
         return None
     return swim if swim.stopped is None else None
 
 
-def stable_step(recording, accuracy: Accuracy) -> float | None:
-    """The longest step [s], found by halving that of `accuracy`, with which the swim of `recording` reaches its end.
+def stable_step(observed, accuracy: Accuracy) -> float | None:
+    """The longest step [s], found by halving that of `accuracy`, with which the swim of `observed` reaches its end.
 
     None if `HALVINGS` give none.
     """
     assert accuracy.step is not None
     steps = [accuracy.step * 0.5**halvings for halvings in range(1, HALVINGS + 1)]
-    return next((step for step in steps if _finished(recording, replace(accuracy, step=step)) is not None), None)
+    return next((step for step in steps if _finished(observed, replace(accuracy, step=step)) is not None), None)

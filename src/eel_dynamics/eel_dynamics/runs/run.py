@@ -28,7 +28,7 @@ from eel_dynamics.runs.exchange.messages_of_run import goal_message, messages_of
 from eel_dynamics.runs.exchange.properties_of_run import properties_of_run
 from eel_dynamics.runs.exchange.recorded_run import fields_of_bag
 from eel_dynamics.runs.motions import SmoothingEffect, effect_of_smoothing
-from eel_dynamics.runs.recording import simulated_again
+from eel_dynamics.runs.observed_swim import simulated_again
 from eel_dynamics.runs.run_picture import picture_of_run
 from eel_dynamics.runs.sensed import SensedRun
 from eel_dynamics.runs.storage.netcdf import loaded, write

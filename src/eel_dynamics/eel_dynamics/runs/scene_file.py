@@ -35,6 +35,7 @@ from eel_gaits.gaits.settings import SEQUENCES, Settings
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.body.text import body_of
+from eel_dynamics.model.equality import same
 from eel_dynamics.model.fins.text import fins_from_text, text_of_fins
 from eel_dynamics.model.flow.text import flow_from_text, text_of_flow
 from eel_dynamics.model.initial_state import AT_REST
@@ -83,9 +84,9 @@ def swim_of(words: Any, base: Swim | None = None) -> Swim:
     settings = Settings().changed(gait)
     swim = base or Swim(settings.law(), gait=settings)
     if base is not None and gait:
-        swim = swim.with_gait(**gait)
+        swim = swim.unchecked(**swim.fields_of_gait(gait))
     for word, about in WORDS.items():
-        swim = swim.with_checked(**about.given(swim, words[word])) if word in words else swim
+        swim = swim.unchecked(**about.given(swim, words[word])) if word in words else swim
     return swim.changed()  # checked as a whole
 
 
@@ -94,6 +95,11 @@ def words_of(swim: Swim) -> dict[str, Any]:
     if not isinstance(swim.gait, Settings) or swim.gait.law() != swim.law:
         name = getattr(swim.law, "name", swim.law)
         raise ValueError(f"law {shown(name)} cannot be written: no gait by name gave it")
+    for item in fields(Swim):
+        if item.name not in HELD and not same(getattr(swim, item.name), item.default):
+            raise ValueError(f"{item.name} cannot be written, got {shown(getattr(swim, item.name))}: it has no key")
+    if swim.stations is None:
+        raise ValueError("stations cannot be written, got None: give their number, or their X in m")
     own: dict[str, Any] = {"gait": swim.gait.gait, "file": swim.gait.file, **swim.gait.chosen}
     own |= {word: about.plain(swim) for word, about in WORDS.items()}
     return {word: value for word, value in own.items() if value not in (None, "", {})}
@@ -168,6 +174,21 @@ def _number(name: str, default: Any) -> Word:
     )
 
 
+HELD = {
+    "law",
+    "gait",
+    "body",
+    "scene",
+    "accuracy",
+    "start",
+    "flow",
+    "robot",
+    "fins",
+    "stations",
+    "wrenches",
+    "duration",
+}
+HELD |= {"sample_period", "body_file", "robot_file"}
 WORDS: dict[str, Word] = {  # robot before body, as a given body replaces the robot file's
     "robot": Word(_robot, lambda swim: swim.robot and _name_of(swim, "robot", "parts")),
     "body": Word(_body, _plain_body),

@@ -11,7 +11,7 @@ import numpy as np
 from eel_common.cached import cached_property
 from eel_common.wording import shown
 
-from eel_dynamics.runs.recording import recording_again
+from eel_dynamics.runs.observed_swim import observed_again
 from eel_dynamics.runs.run_data import RunData
 from eel_dynamics.sensors.encoders import Encoders, JointReadings
 from eel_dynamics.sensors.imu import Imu, ImuReadings
@@ -94,9 +94,9 @@ def seen_again(run: RunData, station: float) -> Observations:
     """The swim of a `run`, observed with a sensor at X = `station` [m]."""
     if not run.steps:
         raise ValueError("run must be made by simulate for its sensors to be read, got one from elsewhere")
-    recording = recording_again(run, run.law, run.accuracy.as_it_is()).of_swimmer(sensors=(station,))
+    observed = observed_again(run, run.law, run.accuracy.as_it_is()).of_swimmer(sensors=(station,))
     out: Observations
-    out, _, done, _ = recording.march().record(run.time, False, False)
+    out, _, done, _ = observed.march().record(run.time, False, False)
     there = run.in_axes("rep103").position
     if done < len(run.time) or not np.allclose(out.position, there, rtol=0.0, atol=SAME):
         raise ValueError("run must be one that simulate repeats for its sensors to be read, got another motion")

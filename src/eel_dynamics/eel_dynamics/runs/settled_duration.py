@@ -39,7 +39,7 @@ def settling_time(swimmer: Swimmer) -> float:
     """
     law: Any = swimmer.law
     period, last_ramp = period_of(law, swimmer.body.length), _last_ramp(law)
-    coarse = swimmer.with_checked(accuracy=_coarse(swimmer.accuracy), stations=swimmer.x[:1])
+    coarse = swimmer.unchecked(accuracy=_coarse(swimmer.accuracy), stations=swimmer.x[:1])
     drift = swimmer.current * period  # m
 
     def settled(seen: Observations, done: np.ndarray) -> bool:

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from typing import Any, Self
 
 from eel_common.cached import cached_property
+from eel_common.quantity import number, positive
 from eel_common.wording import shown
 from eel_gaits.gaits.settings import Settings
 
 from eel_dynamics.runs.motions import LAWS, check_motion, law_from
+from eel_dynamics.runs.observed_swim import ObservedSwim, times_of
 from eel_dynamics.runs.progress_monitor import ProgressMonitor
-from eel_dynamics.runs.recording import Recording, times_of
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.sampling import check_memory
 from eel_dynamics.runs.settled_duration import settling_time, until_settled
@@ -35,6 +36,14 @@ class Swim(Swimmer):
     body_file: str = ""  #: the body's file, if any
     robot_file: str = ""  #: the robot's file, if any
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not until_settled(self.duration):
+            number("duration", self.duration, "s", minimum=0.0)
+        if self.sample_period is not None:
+            positive("sample_period", self.sample_period, "s")
+        self._set(load=bool(self.load), estimate=bool(self.estimate))
+
     def _checked_law(self) -> Any:
         if self.law is None or isinstance(self.law, LAWS):
             return super()._checked_law()
@@ -46,26 +55,28 @@ class Swim(Swimmer):
         """The duration [s], also of one until the gait has settled."""
         if until_settled(self.duration):
             return settling_time(self)
-        return self.duration  # type: ignore[return-value]  # `checked_times` refuses another text
+        return float(self.duration)
 
-    def recording(self) -> Recording[Run]:
-        """What is to be recorded of it. `ValueError` for samples that its law, its flow or the memory does not have."""
+    def observed(self) -> ObservedSwim[Run]:
+        """The swim with the instants of its samples. `ValueError` where law, flow or memory do not suffice for them."""
+        if self.stations is None:
+            raise ValueError("stations must be a number of them, or their X in m, got None: only a batch takes it")
         law = law_from(self.law, self.seconds, self.body.length)
-        swim = self if law is self.law else self.with_checked(law=law)
+        swim = self if law is self.law else self.unchecked(law=law)
         times = times_of(swim, self.seconds, self.sample_period)
-        check_memory(1, len(times), len(self.x), self.has_wrench, bool(self.load), 2 if self.estimate else 1)
-        recording = Recording(Run, swim, times, bool(self.load))
-        return recording.to_refine() if self.estimate else recording
+        check_memory(1, len(times), len(self.x), self.has_internal_wrench, bool(self.load), 2 if self.estimate else 1)
+        observed = ObservedSwim(Run, swim, times, bool(self.load))
+        return observed.to_refine() if self.estimate else observed
 
     def run(
         self, progress: Callable[[float, float], None] | None = None, *, stacklevel: int = 2, **changes: Any
     ) -> Run:
         """The run. progress, errors: as in `simulate`. stacklevel: of warnings. changes: of fields, as in `changed`."""
-        recording = (self.changed(**changes) if changes else self).recording()
-        if (slow := recording.slow_motors) is not None:
+        observed = (self.changed(**changes) if changes else self).observed()
+        if (slow := observed.slow_motors) is not None:
             warnings.warn(slow.text, stacklevel=stacklevel)
-        seconds = float(recording.times[-1])
-        run = recording.swim_to_end(ProgressMonitor(seconds, progress, stacklevel + 5).update)
+        seconds = float(observed.times[-1])
+        run = observed.swim_to_end(ProgressMonitor(seconds, progress, stacklevel + 5).update)
         if run.error_estimate is not None and (missed := run.error_estimate.over_target(run.accuracy.target, seconds)):
             warnings.warn(missed, stacklevel=stacklevel)
         return run
@@ -76,7 +87,11 @@ class Swim(Swimmer):
 
     def with_gait(self, **numbers: Any) -> Self:
         """The same with changed `numbers` of the gait. `ValueError` if no gait gave the law."""
+        return self.changed(**self.fields_of_gait(numbers))
+
+    def fields_of_gait(self, numbers: dict[str, Any]) -> dict[str, Any]:
+        """The law and the gait with changed `numbers`. `ValueError` if no gait gave the law."""
         if self.gait is None:
             raise ValueError(f"law {shown(getattr(self.law, 'name', None))} has no numbers: no gait gave it")
         gait = self.gait.changed(numbers)
-        return self.changed(law=gait.law(), gait=gait)
+        return {"law": gait.law(), "gait": gait}

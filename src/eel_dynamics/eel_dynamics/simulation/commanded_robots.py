@@ -38,7 +38,7 @@ class CommandedRobots:
     def __init__(self, count: int, names: Sequence[str], kind: str, swimmer: Swimmer, threads: int = 1):
         assert swimmer.robot is not None
         self._names, self._mode, self.accuracy = tuple(names), MODES[kind], swimmer.settings
-        self.swimmer = swimmer.with_checked(accuracy=self.accuracy, law=NO_LAW)
+        self.swimmer = swimmer.unchecked(accuracy=self.accuracy, law=NO_LAW)
         self._swims = [March(self.swimmer)] * count
         self.grid = self._swims[0].discretisation.grid
         self.heads: Array = np.zeros((13, count))

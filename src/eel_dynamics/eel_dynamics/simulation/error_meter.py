@@ -91,7 +91,7 @@ class ErrorMeter:
             return
         try:
             self._companion = on_another_grid(
-                lambda settings: march.copy_with(march.swimmer.with_checked(accuracy=settings)),
+                lambda settings: march.copy_with(march.swimmer.unchecked(accuracy=settings)),
                 march.swimmer.settings.coarser(),
                 len(march.discretisation.grid.x),
             )
@@ -149,7 +149,7 @@ class ErrorMeter:
             self.begin_again(march, self.estimate(march).growth_rate)
 
     def _include(self, this: Snapshot, other: Snapshot, swimmer: Swimmer):
-        """Add a comparison of two snapshots of one time, of a swimmer with this `swimmer`."""
+        """Add a comparison of two snapshots of one time, of the `swimmer`."""
         apart = _distances(this, other)
         if self._last_position is not None:
             self._path += float(np.linalg.norm(this.position - self._last_position))

@@ -130,13 +130,13 @@ class March:
 
     def change_flow(self, flow: Flow | None):
         """Let the water move by `flow` from now on, at present with the same velocity as before."""
-        self.swimmer = self.swimmer.with_checked(flow=flow)
+        self.swimmer = self.swimmer.unchecked(flow=flow)
         self._fit(self._needs)
         self._hand_over_law()
 
     def change_robot(self, robot: Robot | None):
         """Continue with a robot that differs only in its numbers."""
-        self.swimmer = self.swimmer.with_checked(robot=robot)
+        self.swimmer = self.swimmer.unchecked(robot=robot)
         self._change_grid(self.settings)
 
     def command_fins(self, commands: dict[str, float]):
@@ -147,7 +147,7 @@ class March:
     def apply_wrench(self, wrench: ExternalWrench):
         """Hold a constant `wrench` from now on, instead of the previous one at its station."""
         if all(each.station != wrench.station for each in self.swimmer.wrenches):  # a panel must end there
-            self.swimmer = self.swimmer.with_checked(wrenches=(*self.swimmer.wrenches, ExternalWrench(wrench.station)))
+            self.swimmer = self.swimmer.unchecked(wrenches=(*self.swimmer.wrenches, ExternalWrench(wrench.station)))
         self._held = self._held | {wrench.station: wrench}
         edges = self.swimmer.grid_for(self._needs).edges
         if edges == self.settings.edges:

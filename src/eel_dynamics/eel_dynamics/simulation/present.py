@@ -41,7 +41,7 @@ class Present:
 
     @property
     def swimmer(self) -> Swimmer:
-        """What neither a march nor a reset changes."""
+        """The swimmer at the start. Laws, currents and wrenches that came later are not in it."""
         return self._swimmer
 
     @property

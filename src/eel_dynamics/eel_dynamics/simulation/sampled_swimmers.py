@@ -11,7 +11,6 @@ import eel_core
 from eel_dynamics.accuracy.grid_settings import ShapeNeeds
 from eel_dynamics.accuracy.step_bounds import step_bounds_of
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
-from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 from eel_dynamics.model.flow.flow import Flow, parts_of
 from eel_dynamics.model.flow.functions import FlowField
 from eel_dynamics.model.initial_state import InitialState
@@ -49,9 +48,9 @@ class SampledSwimmers:
 
     def __init__(self, count: int, points: Array, waves: float | None, swimmer: Swimmer, threads: int = 1):
         self.accuracy = swimmer.settings.for_control_steps()
-        swimmer = self.swimmer = swimmer.with_checked(accuracy=self.accuracy)
+        swimmer = self.swimmer = swimmer.unchecked(accuracy=self.accuracy)
         self._points, self._waves, self._threads = points, waves, threads
-        self._starts = [swimmer] * count  # the set-up of each from its start
+        self._starts = [swimmer] * count  # each as it started
         self._make_marches()
         self.heads: Array = np.zeros((13, count))
         self._energy_at_start = np.zeros(count)
@@ -68,7 +67,7 @@ class SampledSwimmers:
             ledger=bool(swimmer.scene.ledger),
             current=swimmer.current,
             weights=self._discretisation.tabulation.weights_of(self._points),
-            transition=DEFAULT_TRANSITION,
+            transition=swimmer.default_transition,
             count=len(self._starts),
             threads=self._threads,
         )

@@ -50,6 +50,8 @@ class Simulation(Present):
             swimmer = Swimmer.of(**fields)
         elif checked_instance("swimmer", swimmer, Swimmer) and fields:
             swimmer = swimmer.changed(**fields)
+        if swimmer.stations is None:
+            raise ValueError("stations must be a number of them, or their X in m, got None: only a batch takes it")
         self._swimmer = swimmer
         self.body, self.scene, self.x, self.robot = swimmer.body, swimmer.scene, swimmer.x, swimmer.robot
         self._march = March(swimmer)
@@ -75,7 +77,7 @@ class Simulation(Present):
             self._on_both(lambda march: march.change_law(law, origin, blend, needs))
             self._meter.keep_apart(self._march)
         else:
-            self._march = March(self._march.swimmer.with_checked(law=law), origin)
+            self._march = March(self._march.swimmer.unchecked(law=law), origin)
             self._meter = ErrorMeter(self._march, self._meter.wanted)
         self.ready = True
 
@@ -238,10 +240,10 @@ class Simulation(Present):
         other.__dict__.update(self.__dict__)
         swimmer = self._swimmer if robot is None else self._swimmer.with_robot(robot)
         if accuracy is not None:
-            swimmer = swimmer.with_checked(accuracy=Accuracy.of(accuracy))
+            swimmer = swimmer.unchecked(accuracy=Accuracy.of(accuracy))
         other._swimmer, other.robot = swimmer, swimmer.robot
         own = self._march.swimmer
-        other._march = self._march.copy_with(swimmer.with_checked(flow=own.flow, wrenches=own.wrenches))
+        other._march = self._march.copy_with(swimmer.unchecked(flow=own.flow, wrenches=own.wrenches))
         other._meter = ErrorMeter(other._march, False)
         other.currents = deepcopy(self.currents)
         return other
@@ -289,7 +291,7 @@ class Simulation(Present):
 
         `ValueError` for a law that cannot begin from the initial state; the simulation is then unchanged.
         """
-        self._march = March(self._swimmer.with_checked(law=self.law if keep_law else None))
+        self._march = March(self._swimmer.unchecked(law=self.law if keep_law else None))
         self.currents = CurrentStream(self._swimmer.default_transition)
         self.ready, self._started = self.law is not None, False
         self._meter = ErrorMeter(self._march, self._meter.wanted)

@@ -6,7 +6,7 @@ from typing import Any, Self
 
 import numpy as np
 from eel_common.cached import cached_property
-from eel_common.quantity import checked_instance, checked_row, positive
+from eel_common.quantity import checked_instance, checked_row, number, positive
 from eel_common.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
@@ -61,17 +61,21 @@ class Swimmer(EqualByFields):
         body = checked_body(robot.body if self.body is None and robot is not None else self.body)
         scene = checked_scene(self.scene)
         self._set(robot=robot, body=body, scene=scene, accuracy=Accuracy.of(self.accuracy))
-        checked_stations(self.stations, body.length)
+        if np.iterable(self.stations):
+            self._set(stations=tuple(checked_stations(self.stations, body.length).tolist()))
+        else:
+            checked_stations(self.stations, body.length)
         self._set(start=_checked_start(scene, self.start, self.flow), fins=checked_fins(self.fins, body, scene))
         self._set(wrenches=checked_wrenches(self.wrenches, body, bool(scene.planar)))
         if robot is not None:
             mode_table(robot, body, bool(scene.planar))  # it fits the body
         self._set(most_evaluations=positive("most_evaluations", self.most_evaluations, "per simulated second"))
         self._set(default_transition=positive("default_transition", self.default_transition, "s"))
+        number("until", self.until, "s", minimum=0.0)
         self._set(sensors=checked_sensors(self.sensors, body.length), law=self._checked_law())
 
-    def _set(self, **checked: Any) -> None:
-        self.__dict__.update(checked)
+    def _set(self, **fields: Any) -> None:
+        self.__dict__.update(fields)
 
     def _checked_law(self) -> Any:
         law = self.law
@@ -90,6 +94,7 @@ class Swimmer(EqualByFields):
         **others: Any,
     ) -> Self:
         """The swimmer of these fields. The parts of the `start` may be given one by one."""
+        start = _as_start(start)
         given = {"position": position, "orientation": orientation, "twist": twist}
         parts: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
         return cls(start=start._replace(**parts), **others)
@@ -98,8 +103,10 @@ class Swimmer(EqualByFields):
         """The same with other fields, as in `of`. All are checked again."""
         return self.of(**self._fields | fields)
 
-    def with_checked(self, **fields: Any) -> Self:
-        """The same with other fields that are known to fit. Nothing is checked."""
+    def unchecked(self, **fields: Any) -> Self:
+        """The same with other fields, which are not checked: they fit, or the whole is checked later (`changed`)."""
+        if unknown := fields.keys() - self.__dataclass_fields__.keys():
+            raise TypeError(f"{type(self).__name__} has no field {', '.join(sorted(unknown))}")
         made = object.__new__(type(self))
         made._set(**self._fields | fields)
         return made
@@ -110,11 +117,11 @@ class Swimmer(EqualByFields):
 
     def starting(self, start: InitialState, flow: Flow | None) -> Self:
         """The same with another start and flow. `ValueError` for one that the scene does not allow."""
-        return self.with_checked(start=_checked_start(self.scene, start, flow), flow=flow)
+        return self.unchecked(start=_checked_start(self.scene, start, flow), flow=flow)
 
     def with_robot(self, robot: Robot | None) -> Self:
         """The same with other numbers of the robot. `ValueError` for other parts, or at other places."""
-        changed = self.with_checked(robot=checked_robot(robot))
+        changed = self.unchecked(robot=checked_robot(robot))
         parts = changed.robot.parts if changed.robot and changed.modes else ()  # they fit the body
         if [*map(_place, parts)] != [*map(_place, self.robot.parts if self.robot else ())]:
             raise ValueError("robot must have the same parts at the same places to go on")
@@ -132,7 +139,7 @@ class Swimmer(EqualByFields):
         return checked_stations(self.stations, self.body.length)
 
     @property
-    def has_wrench(self) -> bool:
+    def has_internal_wrench(self) -> bool:
         """Whether the internal wrench along the body is computed."""
         return self.scene.internal_wrench and self.stations is not None
 
@@ -233,9 +240,15 @@ def _place(part: Any) -> tuple[Any, ...]:
     return type(part), *where, getattr(getattr(part, "actuator", None), "has_spring", False)
 
 
+def _as_start(start: Any) -> InitialState:
+    if not isinstance(start, (tuple, list)) or len(start) != len(InitialState._fields):
+        raise ValueError(f"start must be an InitialState, its position, orientation and twist, got {shown(start)}")
+    return InitialState(*start)
+
+
 def _checked_start(scene: Scene, start: Any, flow: Any) -> InitialState:
     """The start. `ValueError` for a start or flow that `scene` does not allow, or for a head out of the water."""
-    start = checked_state(scene.planar, *start)
+    start = checked_state(scene.planar, *_as_start(start))
     flow = checked_flow(flow, scene.planar)
     check_covers(flow, 0.0)
     if flow is not None and (out := flow.outside(0.0, start.position)):

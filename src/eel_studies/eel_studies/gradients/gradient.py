@@ -122,12 +122,12 @@ def gradient(
     at = {name: number(f"parameter {name}", value) for name, value in parameters.items()}
     limit = positive("most_evaluations", most_evaluations, "per simulated second")
     base = base_of(gait, body=body, scene=scene, robot=robot, accuracy=fixed_steps(accuracy))
-    base = base.changed(duration=duration, stations=stations, estimate=False, most_evaluations=limit)
+    base = base.unchecked(duration=duration, stations=stations, estimate=False, most_evaluations=limit)
     point = _point(at, gait, numbers, base)
     settings = point.accuracy.in_scene(point.scene)
     if sample_period is None:
         sample_period = default_sample_period([point.law], duration)
-    base, point = (each.changed(sample_period=sample_period) for each in (base, point))
+    base, point = (each.unchecked(sample_period=sample_period) for each in (base, point))
     tell, swims = progress_of(progress, "swims"), 1 + 2 * len(at)
 
     lines: tuple[str, ...] = ()
@@ -138,7 +138,7 @@ def gradient(
 
     def taken(settings: Accuracy, apart: np.ndarray, before: int, limit: float) -> _Differences:
         moved = [at] + [at | {name: float(at[name] + h)} for name, h in zip([*at] * 2, [*apart, *-apart], strict=True)]
-        points = [_point(values, gait, numbers, base.changed(accuracy=settings)) for values in moved]
+        points = [_point(values, gait, numbers, base.unchecked(accuracy=settings)) for values in moved]
         middle, *beside = on_one_grid(points, min(limit, step_of(points[0])))
         beside = [without_the_rest(each, measure, may_jump(each.scene)) for each in beside]
         runs: list[Run] = []

@@ -20,7 +20,7 @@ import numpy as np
 from eel_common.command.command import command
 from eel_common.command.command_line import Parser
 from eel_common.wording import shown
-from eel_dynamics.commands.options import add_options, add_repeated, named_texts, scene_of, set_numbers
+from eel_dynamics.commands.options import add_options, add_repeated, named_texts, set_numbers
 from eel_dynamics.model.robot.robot import robot_of
 
 from eel_dynamics import Robot, Run, Swim
@@ -113,11 +113,8 @@ def _swim(options: argparse.Namespace) -> Swim:
         axes = {axis: float(getattr(demand, axis).peak["torque"].max()) for axis in ("yaw", "pitch")}
         torques = ", ".join(f"{torque:.3g} N m in {axis}" for axis, torque in axes.items())
         print(f"{name}: the imposed swim takes at most {torques} of {DEMAND} joints an axis\n")
-    base = chosen(None, options)
-    body = run.body if options.body is None else base.body
-    scene = scene_of(options.scene, run.scene)
-    duration = float(run.time[-1]) if options.duration is None else base.duration
-    return base.changed(law=run.law, gait=None, body=body, scene=scene, duration=duration)
+    base = Swim(law=run.law, body=run.body, scene=run.scene, duration=float(run.time[-1]))
+    return chosen(base, options)
 
 
 def _robot(options: argparse.Namespace) -> Robot:

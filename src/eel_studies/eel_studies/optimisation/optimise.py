@@ -80,7 +80,7 @@ def optimise(
     (cost,) = checked_measures("cost", checked_instance("cost", cost, str), estimate=False)
     base = base_of(gait, friction="blended", body=body, scene=scene, robot=robot, accuracy=fixed_steps(accuracy))
     wrench = base.scene.internal_wrench or cost == "greatest_torque"
-    base = base.changed(scene=replace(base.scene, current=(0.0, 0.0, 0.0), internal_wrench=wrench))
+    base = base.unchecked(scene=replace(base.scene, current=(0.0, 0.0, 0.0), internal_wrench=wrench))
     problem = GaitProblem(tuple(bounds), low, high, gait, dict(numbers or {}), base, cost, int(periods), threads)
     for place in np.vstack((np.zeros(len(low)), np.ones(len(low)), 0.5 * np.ones(len(low)))):
         try:

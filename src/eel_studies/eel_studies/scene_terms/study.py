@@ -137,18 +137,18 @@ def terms(swim: Swim, tolerance: float = 0.02) -> Terms:
     fine = Accuracy.of(min(FINER * tolerance, COARSEST_COMPARED))
     exact = Accuracy.of(float(f"{min(EXACT_ENOUGH * tolerance, COARSEST):.3g}"))
     scene = replace(swim.scene, internal_wrench=True, ledger=True)
-    (whole,) = attempts([swim.changed(scene=scene, accuracy=fine)])
+    (whole,) = attempts([swim], scene=scene, accuracy=fine, estimate=True)
     if isinstance(whole, Exception):
         raise whole
     compared = swim.changed(scene=scene, duration=float(whole.time[-1]), sample_period=float(np.diff(whole.time)[0]))
     parts = terms_of(compared)
     most = max(LEAST_EVALUATIONS, DEARER * whole.evaluations / float(whole.time[-1]))
-    swum = attempts([each.changed(accuracy=fine) for each in parts.values()], most_evaluations=most)
+    swum = attempts(parts.values(), accuracy=fine, most_evaluations=most, estimate=True)
     effects = {name: _effect(run, whole) for name, run in zip(parts, swum, strict=True)}
     small = [name for name in parts if effects[name].worst <= tolerance and _may_go(parts[name], swim)]
     dropped, restored = sorted(small, key=lambda name: effects[name].worst), []
     while True:
-        (run,) = attempts([without(compared, dropped).changed(accuracy=exact)])
+        (run,) = attempts([without(compared, dropped)], accuracy=exact, estimate=True)
         together = _effect(run, whole)
         if together.worst <= tolerance or not dropped:
             break

@@ -20,13 +20,13 @@ Off = Callable[[Swim], Swim]  # a swim -> the same without the term
 
 
 def _scene(**fields: Any) -> Off:
-    return lambda swim: swim.changed(scene=replace(swim.scene, **fields))
+    return lambda swim: swim.unchecked(scene=replace(swim.scene, **fields))
 
 
 def _body(**fields: Any) -> Off:
     def off(swim: Swim) -> Swim:
         changed = swim.body.changed(**fields)
-        return swim if changed == swim.body else swim.changed(body=changed)
+        return swim if changed == swim.body else swim.unchecked(body=changed)
 
     return off
 
@@ -46,7 +46,7 @@ def _joints(**fields: Any) -> Off:
             known = {*vars(joint), *(vars(joint.actuator) if joint.actuator is not None else ())}
             own = {name: value for name, value in fields.items() if name in known}
             robot = robot.changed(joint.name, **own) if own and robot is not None else robot
-        return swim.changed(robot=robot)
+        return swim.unchecked(robot=robot)
 
     return off
 
@@ -56,14 +56,14 @@ def _one_mode(swim: Swim) -> Swim:
     if swim.robot is None:
         return swim
     parts = [part if isinstance(part, Joint) else replace(part, modes=1) for part in swim.robot.parts]
-    return swim.changed(robot=Robot(parts, name=swim.robot.name, body=swim.robot.body, notes=swim.robot.notes))
+    return swim.unchecked(robot=Robot(parts, name=swim.robot.name, body=swim.robot.body, notes=swim.robot.notes))
 
 
 def _on_the_axis(swim: Swim) -> Swim:
     """The `swim` of a body whose mass lies on its axis."""
     given = swim.body.arguments["centre_of_mass_offset"]
     off = callable(given) or np.any(given)
-    return swim.changed(body=swim.body.changed(centre_of_mass_offset=0.0)) if off else swim
+    return swim.unchecked(body=swim.body.changed(centre_of_mass_offset=0.0)) if off else swim
 
 
 def planar(swim: Swim) -> Swim:
@@ -75,7 +75,7 @@ def planar(swim: Swim) -> Swim:
     orientation = np.array([0.0, 0.0, z, w]) / np.hypot(z, w) if np.hypot(z, w) > 0.0 else AT_REST.orientation
     start = swim.start._replace(orientation=orientation, twist=swim.start.twist * (0, 0, 1, 1, 1, 0))
     scene = replace(swim.scene, planar=True, current=(*swim.scene.current[:2], 0.0))
-    return swim.changed(law=law, start=start, scene=scene, fins=())
+    return swim.unchecked(law=law, start=start, scene=scene, fins=())
 
 
 TERMS: dict[str, Off] = {
@@ -95,12 +95,14 @@ TERMS: dict[str, Off] = {
     "weight": _scene(weight=False),
     "mass off the axis": _on_the_axis,
     "current": _scene(current=(0.0, 0.0, 0.0)),
-    "flow": lambda swim: swim.changed(flow=None),
+    "flow": lambda swim: swim.unchecked(flow=None),
     "gradient of the flow": _scene(flow_gradient=False),
-    "fins": lambda swim: swim.changed(fins=()),
-    "added mass of the fins": lambda swim: swim.changed(fins=tuple(replace(fin, added_mass=0.0) for fin in swim.fins)),
+    "fins": lambda swim: swim.unchecked(fins=()),
+    "added mass of the fins": lambda swim: swim.unchecked(
+        fins=tuple(replace(fin, added_mass=0.0) for fin in swim.fins)
+    ),
     "third dimension": planar,
-    "compliance of the robot": lambda swim: swim.changed(robot=None),
+    "compliance of the robot": lambda swim: swim.unchecked(robot=None),
     "limits of the servos": _joints(torque_limit=None, speed_limit=None),
     "rotors": _joints(rotor_inertia=0.0),
     "hard stops": _joints(limits=None),

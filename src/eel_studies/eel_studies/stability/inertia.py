@@ -42,7 +42,7 @@ def of_straight(ratio: float, slenderness: float) -> float:
 
 def of_bent(ratio: float, size: float) -> float:
     """Greatest condition number for the robot over a period, with a wave of `size` times the paper's amplitude."""
-    swimmer = Simulation(scene=_water(ratio), accuracy="draft", stations=None, law=straight() * size)
+    swimmer = Simulation(scene=_water(ratio), accuracy="draft", stations=[0.0], law=straight() * size)
     return max(condition_of(inertia_at(swimmer, time)) for time in 2.0 + np.arange(INSTANTS) / INSTANTS)
 
 
@@ -55,7 +55,7 @@ def inertias(body: Body, ratio: float, accuracy: str | float = "draft") -> tuple
     """Inertia matrices (6, 6) [kg] about the head, rotation first, of the straight body of `ratio` times the water's
     density, and of its added mass."""
     scene = _water(ratio)
-    here = Simulation(body=body, scene=scene, accuracy=accuracy, stations=None).discretisation
+    here = Simulation(body=body, scene=scene, accuracy=accuracy, stations=[0.0]).discretisation
     none = np.zeros_like(here.sections.mass)
     dry = here.sections._replace(added2=none, added3=none, inertia1=here.sections.inertia1 - here.sections.added_roll)
     own = straight_inertia(here.grid, dry, 0.0, body.length)

@@ -169,5 +169,5 @@ def _cell(outcome: str, text: str = "", **about: Any) -> np.ndarray:
 def _swum(swim: Swim, target: float) -> Run | Exception:
     duration = float(swim.duration)
     most = MOST_EVALUATIONS * max(1.0, -np.log10(target)) * min(max(1.0, duration), LONGEST) / duration
-    how = {"sample_period": duration / SAMPLES, "stations": STATIONS, "most_evaluations": most}
+    how = {"sample_period": duration / SAMPLES, "stations": STATIONS, "most_evaluations": most, "estimate": True}
     return attempt(swim.changed(scene=replace(swim.scene, ledger=True)), **how)

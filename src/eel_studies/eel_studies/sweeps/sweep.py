@@ -21,7 +21,6 @@ import numpy as np
 from eel_common.command.progress import progress_of
 from eel_common.quantity import checked_instance
 from eel_common.wording import WorkStopped, one_line, shown
-from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import checked_measures, described
 from eel_dynamics.analysis.settling import tell_unsettled
 from eel_dynamics.batches.simulate_batch import available_cores
@@ -75,7 +74,7 @@ def sweep(
     accuracy: AccuracyLike | None = None,
     sample_period: float | None = None,
     stations: Stations | None = None,
-    estimate: bool = True,
+    estimate: bool | None = None,
     measure: Measure | tuple[str, ...] | None = None,
     out: str | Path | None = None,
     scheduler: Any = None,
@@ -84,7 +83,7 @@ def sweep(
     progress: Progress = None,
     overwrite: bool = False,
     recordings: str | Path | None = None,
-    most_evaluations: float = MOST_EVALUATIONS,
+    most_evaluations: float | None = None,
 ) -> Any:
     """Simulate every combination of the values in `grid`.
 
@@ -134,18 +133,19 @@ def sweep(
         duration=duration,
         sample_period=sample_period,
         stations=stations,
+        estimate=estimate,
         most_evaluations=most_evaluations,
-    ).changed(estimate=bool(estimate))
+    )
     duration, sample_period = base.duration, base.sample_period
     if not until_settled(duration):
         checked_times(duration, default_sample_period([], duration) if sample_period is None else sample_period)
     if not callable(measure):
-        measure = tuple(dict.fromkeys([*checked_measures("measure", measure, bool(estimate)), "settled"]))
+        measure = tuple(dict.fromkeys([*checked_measures("measure", measure, base.estimate), "settled"]))
     _check_count("workers", workers)
     _check_count("chunk", chunk)
     try:
         points = [
-            point_at(dict(zip(names, values, strict=True)), gait, numbers or {}, base).with_checked(gait=None)
+            point_at(dict(zip(names, values, strict=True)), gait, numbers or {}, base).unchecked(gait=None)
             for values in itertools.product(*axes)
         ]
         for point in points if until_settled(duration) else ():

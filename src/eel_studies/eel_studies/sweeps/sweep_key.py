@@ -29,8 +29,7 @@ def key_of(points: list[Swim], measure: Measure | tuple[str, ...]) -> str:
     It is a hash of the points, the measure's code and closure, and the software's version.
     `ValueError` for a function that cannot be hashed.
     """
-    content = hashlib.sha256(repr((points[0].estimate, points[0].most_evaluations)).encode())
-    content.update(VERSION.encode())
+    content = hashlib.sha256(VERSION.encode())
     content.update(_content_of_function("measure", measure) if callable(measure) else repr(measure).encode())
     bodies = {}
     for point in points:
@@ -38,7 +37,8 @@ def key_of(points: list[Swim], measure: Measure | tuple[str, ...]) -> str:
             bodies[id(point.body)] = _content_of_body(point.body)
         content.update(bodies[id(point.body)])
         own = plain_of(point.law), point.scene, point.accuracy, point.duration, point.sample_period
-        content.update(repr(own).encode())
+        how = point.estimate, point.load, point.most_evaluations, point.sensors, point.default_transition
+        content.update(repr((own, how)).encode())
         content.update(np.asarray(point.stations, dtype=float).tobytes())
         content.update(_content_of_flow(point.flow) + repr(point.fins).encode())
         content.update(repr(plain_of(point.wrenches)).encode() if point.wrenches else b"")

@@ -182,7 +182,7 @@ def measure(
         measured.append(Measured(each.accuracy, position, torque, seconds, run))  # type: ignore[arg-type]
     say("the model without each of its terms")
     parts = {"": swim} | terms_of(swim)
-    fine = [each.changed(accuracy=Accuracy.of(FINE).in_scene(each.scene).as_it_is()) for each in parts.values()]
+    fine = [each.unchecked(accuracy=Accuracy.of(FINE).in_scene(each.scene).as_it_is()) for each in parts.values()]
     whole, *poorer = attempts(fine, estimate=False)
     found = zip(list(parts)[1:], poorer, strict=True)
     pairs = {name: run for name, run in found if isinstance(run, Run)} if isinstance(whole, Run) else {}

@@ -36,7 +36,7 @@ class SwimResult(NamedTuple, Generic[Kind]):
     stopped: SimulationStopped | None
 
 
-class Recording(NamedTuple, Generic[Kind]):
+class ObservedSwim(NamedTuple, Generic[Kind]):
     """The samples to record of a `swimmer`, at `times` (T,) [s] from 0 on.
 
     kind: class of the run. load: whether to record the water's load. estimate: whether to estimate the run's error, and
@@ -50,28 +50,27 @@ class Recording(NamedTuple, Generic[Kind]):
     estimate: bool = False
     every: int = 1
 
-    def of_swimmer(self, **changes: Any) -> "Recording[Kind]":
+    def of_swimmer(self, **changes: Any) -> "ObservedSwim[Kind]":
         """The same with other fields of the `swimmer`, which fit."""
-        return self._replace(swimmer=self.swimmer.with_checked(**changes))
+        return self._replace(swimmer=self.swimmer.unchecked(**changes))
 
-    def to_refine(self) -> "Recording[Kind]":
+    def to_refine(self) -> "ObservedSwim[Kind]":
         """The same for a run whose error is estimated.
 
         The torque of a robot jumps when motors and stops reach their limits. Only instants that are close together show
         an error there.
         """
         gaps, swimmer = len(self.times) - 1, self.swimmer
-        every = -(-LEAST_COMPARED // gaps) if swimmer.robot is not None and swimmer.has_wrench and gaps else 1
-        recording = self._replace(estimate=True, every=every)
+        every = -(-LEAST_COMPARED // gaps) if swimmer.robot is not None and swimmer.has_internal_wrench and gaps else 1
+        observed = self._replace(estimate=True, every=every)
         if not swimmer.accuracy.target:
-            return recording
-        return recording.of_swimmer(accuracy=replace(swimmer.accuracy, refinable=True))
+            return observed
+        return observed.of_swimmer(accuracy=replace(swimmer.accuracy, refinable=True))
 
     @property
     def slow_motors(self) -> SlowMotors | None:
         """Motors that cannot follow the law, if any."""
-        law = self.swimmer.law
-        return None if law is None else slow_motors(self.swimmer.modes, law, float(self.times[-1]))
+        return slow_motors(self.swimmer.modes, self.swimmer.law, float(self.times[-1]))
 
     @property
     def instants(self) -> np.ndarray:
@@ -84,12 +83,12 @@ class Recording(NamedTuple, Generic[Kind]):
     def march(self, accuracy: Accuracy | None = None) -> March:
         """Its march at the start, with the settings `accuracy` if given."""
         accuracy = self.swimmer.accuracy if accuracy is None else accuracy
-        return March(self.swimmer.with_checked(accuracy=accuracy, until=float(self.times[-1])))
+        return March(self.swimmer.unchecked(accuracy=accuracy, until=float(self.times[-1])))
 
     def swim(self, march: March, look: Callable[[float], None] | None = None) -> SwimResult[Kind]:
         """Swim with this `march`, which must be at its start. look: as in `Simulation.record`."""
         instants, swimmer, start = self.instants, self.swimmer, march.energy_at_start
-        out, works, done, stopped = march.record(instants, swimmer.has_wrench, self.load, look)
+        out, works, done, stopped = march.record(instants, swimmer.has_internal_wrench, self.load, look)
         steps, _, evaluations = march.core.counts
         arrays = arrays_of(out, works, start, march.joints, done, bool(swimmer.scene.ledger))
         others: dict[str, Any] = {
@@ -126,36 +125,41 @@ class Recording(NamedTuple, Generic[Kind]):
         raise stopped
 
 
-def recording_again(
+def observed_again(
     run: Kind,
     law: Law | SampledLaw,
     accuracy: Accuracy,
     most_evaluations: float = MOST_EVALUATIONS,
     finer: int = 1,
     load: bool = False,
-) -> Recording[Kind]:
+) -> ObservedSwim[Kind]:
     """The swim of `run` with another law or accuracy, `finer` samples, or its `load`; without an error estimate.
 
     `ValueError` if the run begins after t = 0.
     """
     if run.time[0] != 0.0:
         raise ValueError(f"run must begin at t = 0 to be simulated again, got {run.time[0]:g} s")
-    swimmer = run.swimmer_at(0, run.x, accuracy, most_evaluations).with_checked(law=law)
+    swimmer = run.swimmer_at(0, run.x, accuracy, most_evaluations).unchecked(law=law)
     sample_period = float(run.time[1] - run.time[0]) / finer if len(run.time) > 1 else 1.0
     times, load = times_of(swimmer, float(run.time[-1]), sample_period), load or run.fluid_force is not None
-    check_memory(1, len(times), len(swimmer.x), swimmer.has_wrench, load)
-    return Recording(type(run), swimmer, times, load)
+    check_memory(1, len(times), len(swimmer.x), swimmer.has_internal_wrench, load)
+    return ObservedSwim(type(run), swimmer, times, load)
 
 
 def simulated_again(run: Kind, *changes: Any, **others: Any) -> Kind:
-    """The run of `recording_again`, which has these arguments, in the axes of `run`."""
-    return recording_again(run, *changes, **others).swim_to_end().in_axes(run.axes)
+    """The run of `observed_again`, which has these arguments, in the axes of `run`."""
+    return observed_again(run, *changes, **others).swim_to_end().in_axes(run.axes)
 
 
 def times_of(swimmer: Swimmer, duration: float, sample_period: float | None) -> np.ndarray:
     """Times (T,) [s] of the samples of a swim of `duration` [s]. `ValueError` where its law or flow is shorter."""
-    check_duration(swimmer.law, duration)
     period = default_sample_period([swimmer.law], duration) if sample_period is None else sample_period
     times = checked_times(duration, period)
-    check_covers(swimmer.flow, float(times[-1]))
+    check_times(swimmer, duration, times)
     return times
+
+
+def check_times(swimmer: Swimmer, duration: float, times: np.ndarray) -> None:
+    """`ValueError` where the law of a `swimmer` is shorter than `duration` [s], or its flow than `times` (T,) [s]."""
+    check_duration(swimmer.law, duration)
+    check_covers(swimmer.flow, float(times[-1]))
