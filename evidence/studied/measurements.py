@@ -155,8 +155,8 @@ def rows() -> list[Row]:
         for a, b in pairs
     ]
     exponent = min(exponents), max(exponents)
-    cost = [at_speed(SPEED, *((found.mean_speed, found.cost_of_transport) for found in pair)) for pair in pairs]
-    cost = min(cost), max(cost)
+    each = [at_speed(SPEED, *((found.mean_speed, found.cost_of_transport) for found in pair)) for pair in pairs]
+    cost = min(each), max(each)
     group, alone = (oxygen * OXYGEN * 1e-3 for oxygen in (21.3, 32.0))
     uniform, like = mamba(False), mamba(True)
     ratio = like.mean_speed / uniform.mean_speed

@@ -77,7 +77,7 @@ def test_a_changed_swimmer_has_no_value_of_the_old_one():
         ({"start": ((0, 0, 0), (0, 0, 0, 1))}, "start must be an InitialState"),
         (
             {"robot": Robot.named("eight_servos"), "body": Body.spindle(0.2, 20.0)},
-            "joint 'joint_2' position and width must lie inside",
+            "joint 'joint_2' position and width",
         ),
         ({"wrenches": [ExternalWrench(1.2)]}, "external wrench station must lie on the body"),
         ({"stations": 1}, "stations must be 2 or more"),

@@ -122,12 +122,12 @@ def gradient(
     at = {name: number(f"parameter {name}", value) for name, value in parameters.items()}
     limit = positive("most_evaluations", most_evaluations, "per simulated second")
     base = base_of(gait, body=body, scene=scene, robot=robot, accuracy=fixed_steps(accuracy))
-    base = base.unchecked(duration=duration, stations=stations, estimate=False, most_evaluations=limit)
     point = _point(at, gait, numbers, base)
     settings = point.accuracy.in_scene(point.scene)
     if sample_period is None:
         sample_period = default_sample_period([point.law], duration)
-    base, point = (each.unchecked(sample_period=sample_period) for each in (base, point))
+    own = {"duration": duration, "sample_period": sample_period, "stations": stations, "most_evaluations": limit}
+    base, point = base.unchecked(**own, estimate=False), point.changed(**own, estimate=False)
     tell, swims = progress_of(progress, "swims"), 1 + 2 * len(at)
 
     lines: tuple[str, ...] = ()
