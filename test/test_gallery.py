@@ -10,10 +10,14 @@ import browser
 import gallery
 import numpy as np
 import pytest
+from contrast import contrast_in
+from eel_viz.plots import series
+from eel_viz.scene3d import colours
 from PIL import Image
 
 from eel_dynamics import simulate
 from eel_gaits import straight
+from eel_viz import entities
 
 ROOT = Path(__file__).resolve().parents[1]
 needs_browser = pytest.mark.skipif(browser.found() is None, reason="no Chromium: apt-get install chromium")
@@ -40,9 +44,12 @@ def site(tmp_path_factory):
     Image.new("RGB", (16, 9)).save(folder / "_static" / "swim.webp")
     policy = re.search(r'POLICY = """(.*)"""', (ROOT / "docs" / "conf.py").read_text())
     for theme in ("light", "dark"):
-        (folder / f"{theme}.html").write_text(PAGE.format(policy=policy[1], theme=theme))
+        page = PAGE.format(policy=policy[1], theme=theme)
+        (folder / f"{theme}.html").write_text(page)
+        (folder / f"plots-{theme}.html").write_text(page.replace('id="swim"', 'id="plots"'))
     run = simulate(straight(), 3.0, accuracy="draft", estimate=False, sample_period=0.25, stations=11)
-    run.to_rerun(folder / "recordings" / "swim.rrd", blueprint="swimmer")
+    for name, blueprint in (("swim", "swimmer"), ("plots", "overview")):
+        run.to_rerun(folder / "recordings" / f"{name}.rrd", blueprint=blueprint, rate=0.0)
     with browser.served(folder) as address:
         yield address
 
@@ -94,6 +101,26 @@ def test_a_click_opens_the_recording_in_the_page_s_theme_its_time_runs_and_nothi
     assert len(sent) > 5 and strangers == []
     page.value("document.querySelectorAll('.swim button')[1].click()")  # close
     assert page.value("document.querySelectorAll('canvas').length") == 0
+
+
+@needs_browser
+@pytest.mark.soak
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_curves_and_grids_have_a_contrast_of_3_in_either_theme(theme, site, tmp_path):
+    with browser.browser(tmp_path) as page:
+        page.open(f"{site}/plots-{theme}.html", 1100, 900)
+        page.wait("document.querySelectorAll('.swim button').length > 0")
+        page.value(HEARD.format(which=0))
+        page.wait("heard.some((event) => event.type === 'recording_open')", limit=180.0)
+        end, seen = time.monotonic() + 180.0, {"nothing": 0.0}
+        while min(seen.values()) < 3.0:
+            assert time.monotonic() < end, seen
+            time.sleep(5.0)
+            image = np.asarray(Image.open(io.BytesIO(page.screenshot("canvas"))).convert("RGB")).astype(int)
+            plots = image[:, image.shape[1] // 2 :]
+            seen = {name: contrast_in(plots, colours.curve(colour)) for name, colour in series.SERIES[entities.POWER]}
+            seen["grid"] = contrast_in(plots, colours.TICK)
+        assert (image[5, -40:].mean() > 200) == (theme == "light")
 
 
 @needs_browser
