@@ -14,16 +14,22 @@ suite=(--base-paths src tools/tf2_msgs)   # the wheels of ROS lack tf2_msgs; ROS
 
 mapfile -t packages < <(colcon list --base-paths src --names-only --topological-order)
 [ $# = 0 ] || packages=("$@")
+# One copy for all, newer than what earlier calls compiled.
+rm -rf "$alone/all"
+mkdir -p "$alone"
+cp -r src "$alone/all"
+cp -r tools/tf2_msgs "$alone/all/tf2_msgs"
+find "$alone/all" \( -name '*.egg-info' -o -name __pycache__ \) -prune -exec rm -rf {} +
+touch "$alone/all/COLCON_IGNORE"
 failed=""
 for package in "${packages[@]}"; do
     rm -rf "$alone/src"
     mkdir -p "$alone/src"
     held=()
-    while read -r name path _; do
-        cp -rp "$path" "$alone/src/$name"   # as old as they are, or all is compiled again
+    while read -r name _; do
+        cp -rp "$alone/all/$name" "$alone/src/"
         [ "$name" = tf2_msgs ] || held+=("$name")
     done < <(colcon list "${suite[@]}" --packages-up-to "$package")
-    find "$alone/src" \( -name '*.egg-info' -o -name __pycache__ \) -prune -exec rm -rf {} +
     cd "$alone"
     rm -rf "build/$package/test_results" "build/$package/pytest.xml"
     status=ok
