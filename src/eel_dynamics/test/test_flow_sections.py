@@ -61,9 +61,9 @@ class FreeBody:
         turn = np.exp(1j * roll)
         local = velocity / turn
         simulation = Simulation(
-            pointed(*half_axes),
-            Scene(resistive=False, nose=False, wake=False, density=density),
-            1e-9,
+            body=pointed(*half_axes),
+            scene=Scene(resistive=False, nose=False, wake=False, density=density),
+            accuracy=1e-9,
             stations=STATIONS,
             law=Law(name="straight body"),
             position=(0.0, centre.real, centre.imag),
@@ -147,9 +147,9 @@ def test_in_vorticity_a_round_section_has_the_lift_of_its_area_times_the_shear(s
     )
     velocity, place = np.array([0.0, 0.4, -0.3]), np.array([0.0, 0.2, 0.5])
     simulation = Simulation(
-        pointed(0.03, 0.03),
-        Scene(resistive=False, nose=False, wake=False, density=1500.0),
-        1e-9,
+        body=pointed(0.03, 0.03),
+        scene=Scene(resistive=False, nose=False, wake=False, density=1500.0),
+        accuracy=1e-9,
         stations=STATIONS,
         law=Law(name="straight body"),
         position=place,

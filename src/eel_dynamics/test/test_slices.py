@@ -155,7 +155,7 @@ def test_what_costs_more_on_the_way_stops_with_what_to_change(monkeypatch):
 @pytest.fixture
 def hurried(monkeypatch):
     """A wall clock by which every look is a second after the one before."""
-    for module in ("eel_dynamics.runs.simulate", "eel_common.command.progress"):
+    for module in ("eel_dynamics.runs.progress_monitor", "eel_common.command.progress"):
         ticks = itertools.count()
         clock = type("Clock", (), {"monotonic": lambda ticks=ticks: float(next(ticks))})
         monkeypatch.setattr(f"{module}.time", clock)
@@ -189,7 +189,7 @@ def test_a_swim_is_interrupted_from_the_keyboard(monkeypatch):
     wanted = simulate(falling(), 1.0, accuracy=1e-5)
     with monkeypatch.context() as patch:
         step_by_step(patch)
-        patch.setattr("eel_dynamics.runs.simulate.ProgressMonitor.update", press)
+        patch.setattr("eel_dynamics.runs.progress_monitor.ProgressMonitor.update", press)
         with pytest.raises(KeyboardInterrupt):
             simulate(falling(period=0.9), 1.0, accuracy=1e-5)
     np.testing.assert_array_equal(simulate(falling(), 1.0, accuracy=1e-5).position, wanted.position)
