@@ -3,16 +3,20 @@
 
 import copy
 import pickle
+from dataclasses import dataclass
 from itertools import pairwise
+from typing import ClassVar
 
 import numpy as np
 import pytest
 from eel_dynamics.model import Body, Joint, Muscle, PassiveTail, Robot, Servo, Torque
 from eel_dynamics.model.robot.compiled import HINGE, mode_table
+from eel_dynamics.model.robot.kinds import KINDS
 from eel_dynamics.model.robot.ready import READY
 from scipy.integrate import quad
 
-from eel_gaits import Law, Term, falling
+from eel_dynamics import simulate
+from eel_gaits import Law, Term, falling, straight
 
 BODY = Body.boyer2010()
 NAN, INF = float("nan"), float("inf")
@@ -224,3 +228,22 @@ def test_the_moment_of_a_muscle_is_projected_on_its_modes():
     for row, mode in zip(muscle.projection, muscle.modes, strict=True):
         exact = quad(lambda x, mode=mode: table.shape(np.array([x]))[mode, 0] * np.sin(3.0 * x), 0.3, 0.9)[0]
         assert row @ moment == pytest.approx(exact, abs=1e-13)
+
+
+def test_a_new_kind_of_part_needs_its_class_and_a_line_of_kinds(monkeypatch, tmp_path):
+    """A keel: a passive tail of another kind, with a list of its own in files, and numbers by name."""
+
+    @dataclass(frozen=True, repr=False)
+    class Keel(PassiveTail):
+        what: ClassVar[str] = "keel"
+        key: ClassVar[str] = "keels"
+
+    monkeypatch.setitem(KINDS, "keels", Keel)
+    path = tmp_path / "keeled.yaml"
+    path.write_text("body: boyer2010\nkeels: [{start: 0.6, bending_stiffness: 0.3, damping: 0.01, name: keel}]\n")
+    keeled = Robot.from_file(path)
+    assert type(keeled.parts[0]) is Keel and keeled.with_numbers({"keel.damping": 0.02}).parts[0].damping == 0.02
+    tailed = Robot([PassiveTail(0.6, 0.3, 0.01, name="keel")])
+    options = {"accuracy": "draft", "estimate": False}
+    run, other = (simulate(straight(), 0.5, robot=robot, **options) for robot in (keeled, tailed))
+    assert run.mode_amplitude.tobytes() == other.mode_amplitude.tobytes() and run.mode_amplitude.any()

@@ -24,14 +24,13 @@ from eel_common.wording import shown
 from eel_dynamics.model.fins.fins import Fin, RollHold
 from eel_dynamics.model.flow.plain import KINDS
 from eel_dynamics.model.robot.actuators import Servo
-from eel_dynamics.model.robot.continuous import Muscle, PassiveTail
-from eel_dynamics.model.robot.joint import Joint
+from eel_dynamics.model.robot.kinds import KINDS as PARTS_OF_ROBOT
 from eel_gaits.gaits.registry import GAITS
 
 from eel_dynamics import Accuracy, Scene, Swim
 from eel_studies.points import POSITIONS, VELOCITIES, point_at
 
-PARTS = Scene, Fin, RollHold, Joint, Servo, PassiveTail, Muscle  # whose numbers have units
+PARTS = Scene, Fin, RollHold, Servo, *PARTS_OF_ROBOT.values()  # whose numbers have units
 UNITS = {"spin": "turns/s", "flow_speed": "m/s", "step": "s", "centre_of_mass_offset": "m", "mass_per_length": "kg/m"}
 UNITS |= dict.fromkeys(POSITIONS, "m") | dict(zip(VELOCITIES, ("rad/s",) * 3 + ("m/s",) * 3, strict=True))
 RESOLUTION = 36.0  # points per body length for given settings in time: the error in space stays below 1e-3

@@ -18,7 +18,6 @@ from eel_dynamics.model.body.body import Body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.fins.fins import Fin
 from eel_dynamics.model.flow.flow import Flow
-from eel_dynamics.model.robot.joint import Joint
 from eel_dynamics.model.robot.robot import Robot
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.wrenches.external_wrench import ExternalWrench
@@ -174,9 +173,7 @@ class Batch(ObservedArrays):
 
 def coordinates_of(robot: Robot | None) -> dict[str, int]:
     """The numbers of joints and modes of a `robot`, as sizes of these dimensions."""
-    parts = () if robot is None else robot.parts
-    modes = [part.modes for part in parts if not isinstance(part, Joint)]
-    return {"joint": len(parts) - len(modes), "mode": sum(modes)}
+    return {"joint": 0, "mode": 0} if robot is None else {"joint": len(robot.joints), "mode": robot.mode_count}
 
 
 def batch_of(

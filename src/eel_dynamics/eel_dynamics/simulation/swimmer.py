@@ -123,7 +123,7 @@ class Swimmer(EqualByFields):
         """The same with other numbers of the robot. `ValueError` for other parts, or at other places."""
         changed = self.unchecked(robot=checked_robot(robot))
         parts = changed.robot.parts if changed.robot and changed.modes else ()  # they fit the body
-        if [*map(_place, parts)] != [*map(_place, self.robot.parts if self.robot else ())]:
+        if [each.geometry for each in parts] != [each.geometry for each in (self.robot.parts if self.robot else ())]:
             raise ValueError("robot must have the same parts at the same places to go on")
         return changed
 
@@ -232,12 +232,6 @@ class Swimmer(EqualByFields):
         if self.robot is None:
             return settings
         return settings.for_robot(any(servo and servo.has_spring for servo in self.robot.servos))
-
-
-def _place(part: Any) -> tuple[Any, ...]:
-    """Kind and place of a part of a robot, and whether it has its own coordinates."""
-    where = (getattr(part, name, None) for name in ("position", "start", "end", "width", "modes", "axis"))
-    return type(part), *where, getattr(getattr(part, "actuator", None), "has_spring", False)
 
 
 def _as_start(start: Any) -> InitialState:

@@ -13,7 +13,7 @@ from eel_dynamics.model.body.hull import BY_SHAPE, EDGE_ON, PLATE
 from eel_dynamics.model.initial_state import AT_REST
 from eel_dynamics.runs.swim import Swim
 
-from eel_dynamics import Gust, Joint, Robot, Uniform
+from eel_dynamics import Gust, Robot, Uniform
 from eel_gaits import Law
 
 Off = Callable[[Swim], Swim]  # a swim -> the same without the term
@@ -55,7 +55,7 @@ def _one_mode(swim: Swim) -> Swim:
     """The `swim` of a robot whose tails and muscles bend in one mode only."""
     if swim.robot is None:
         return swim
-    parts = [part if isinstance(part, Joint) else replace(part, modes=1) for part in swim.robot.parts]
+    parts = [replace(part, modes=1) if hasattr(part, "modes") else part for part in swim.robot.parts]
     return swim.unchecked(robot=Robot(parts, name=swim.robot.name, body=swim.robot.body, notes=swim.robot.notes))
 
 

@@ -6,7 +6,7 @@ joint, a Legendre polynomial P_n(z), z from -1 to 1, on that of a continuous par
 section axes: q of a joint is the bend of the curvature, which the library's angle is times `sign`.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -20,16 +20,13 @@ from numpy.polynomial import legendre
 from eel_dynamics.model.body.body import Body
 from eel_dynamics.model.body.shapes import values_along
 from eel_dynamics.model.robot.actuators import Servo, Torque
-from eel_dynamics.model.robot.continuous import Muscle, PassiveTail
-from eel_dynamics.model.robot.joint import STOP_DEPTH, Joint
-from eel_dynamics.model.robot.part import AXES
+from eel_dynamics.model.robot.joint import STOP_DEPTH
+from eel_dynamics.model.robot.part import HINGE
 from eel_dynamics.model.robot.robot import Robot
 
-HINGE = -1  # degree of a joint's mode
 GAUSS = legendre.leggauss(16)  # of each interval of a reference, and of a continuous part
 # Equal intervals of a continuous part: for a bending_stiffness(X) that is not smooth or changes locally, and a moment.
 PARTS_OF_SUPPORT, PARTS_OF_MOMENT = 256, 16
-LONE_WIDTH = 0.05  # of the length: width of the only joint in an axis
 BETWEEN = np.array(((1.0, -1.0), (-1.0, 1.0)))  # stiffness matrix of a unit spring between two coordinates
 SAME = 1e-9  # of the length: closer places count as one
 
@@ -120,10 +117,10 @@ def mode_table(robot: Robot, body: Body, planar: bool = False) -> ModeTable:
 
     `ValueError` names the part, the field and the value that do not fit the body.
     """
-    parts = [_located(part, robot, body) for part in robot.parts]
+    parts = [part.located(_beside(part, robot), body) for part in robot.parts]
     _check(parts, body, planar)
     supports = _supports(parts, body)
-    degrees = [[HINGE] if isinstance(part, Joint) else range(part.modes) for part in parts]
+    degrees = [part.degrees for part in parts]
     sizes = [*map(len, degrees)]
     *firsts, total = np.concatenate(([0], np.cumsum(sizes))).astype(int).tolist()
     placed = list(zip(parts, firsts, strict=True))
@@ -134,7 +131,7 @@ def mode_table(robot: Robot, body: Body, planar: bool = False) -> ModeTable:
         given = [getattr(part, name, None) for part in parts]
         return np.repeat([of_others if value is None else value for value in given], sizes, axis=0)
 
-    sign = np.repeat([float(AXES[part.axis][1]) if isinstance(part, Joint) else 1.0 for part in parts], sizes)
+    sign = np.repeat([part.sign for part in parts], sizes)
     rest, armature = np.zeros((2, size))
     rest[:total], armature[:total] = sign * column("rest_angle", 0.0), column("armature", 0.0)
     stiffness, damping = np.zeros((2, size, size))
@@ -167,8 +164,8 @@ def mode_table(robot: Robot, body: Body, planar: bool = False) -> ModeTable:
         stop_stiffness=column("stop_stiffness", 0.0),
         stop_damping=column("stop_damping", 0.0) / STOP_DEPTH,
         motors=motors,
-        torques=tuple((mode, part.actuator) for part, mode in placed if isinstance(_actuator(part), Torque)),
-        muscles=tuple(_muscle(part, first) for part, first in placed if isinstance(part, Muscle)),
+        torques=tuple((mode, part.actuator) for part, mode in placed if isinstance(part.actuator, Torque)),
+        muscles=tuple(_muscle(part, first) for part, first in placed if part.moment is not None),
         points=points,
         projection=projection,
         free=_free(parts, supports, body),
@@ -179,18 +176,9 @@ def mode_table(robot: Robot, body: Body, planar: bool = False) -> ModeTable:
 # -- places
 
 
-def _located(part: Any, robot: Robot, body: Body) -> Any:
-    """`part` with the width, or the end, that follows from its neighbours and the body."""
-    if isinstance(part, PassiveTail):
-        return part if part.end is not None else replace(part, end=body.length)
-    if isinstance(part, Muscle) or part.width is not None:
-        return part
-    others = [each.position for each in robot.joints if each.component == part.component and each is not part]
-    distances = [abs(place - part.position) for place in others]
-    nearest = min(distances, default=2.0 * LONE_WIDTH * body.length)
-    if nearest == 0.0:
-        raise ValueError(f"joints of one axis must have positions of their own, got {part.position:g} m twice")
-    return replace(part, width=0.5 * nearest)
+def _beside(part: Any, robot: Robot) -> list[float]:
+    """X [m] of the other joints of its axis."""
+    return [each.position for each in robot.joints if each.component == part.component and each is not part]
 
 
 def _supports(parts: list[Any], body: Body) -> list[tuple[float, float]]:
@@ -214,18 +202,8 @@ def _check(parts: list[Any], body: Body, planar: bool) -> None:
         called, (start, end) = f"{part.what} {shown(part.name)}", part.support
         if planar and part.component == 1:
             raise ValueError(f"{called} axis must be yaw in a planar scene, got {part.axis}")
-        if isinstance(part, Joint):
-            said = f"got {start:g} to {end:g} m (position {part.position:g}, width {part.width:g})"
-            if start <= 0.0 or end >= body.length:
-                raise ValueError(f"{called} position and width must lie inside (0, {body.length:g}) m, {said}")
-            if not body.blunt_nose and start < body.panel_ends[0] - 1e-12 * body.length:
-                raise ValueError(
-                    f"{called} position and width must lie behind the nose's first panel, from {body.panel_ends[0]:g} "
-                    f"m on (there is almost no inertia ahead), {said}"
-                )
-        elif end > body.length or start >= body.length:
-            raise ValueError(f"{called} start and end must lie in 0 to {body.length:g} m, got {start:g} to {end:g}")
-        other = seen.setdefault((isinstance(part, Joint), part.component, start, end), part)
+        part.check_place(body)
+        other = seen.setdefault((min(part.degrees), part.component, start, end), part)
         if other is not part:
             raise ValueError(
                 f"{called} must have a support of its own, got {start:g} to {end:g} m, which is that of "
@@ -238,7 +216,7 @@ def _check(parts: list[Any], body: Body, planar: bool) -> None:
 
 def _springs(part: Any, start: float, end: float) -> tuple[Any, Any]:
     """Stiffness and damping (n, n) of the modes of one part, without its motor."""
-    if isinstance(part, Joint):
+    if HINGE in part.degrees:
         return part.stiffness, part.damping
     x, weight = _quadrature(start, end, PARTS_OF_SUPPORT)
     basis = np.array([_legendre(degree, start, end, x) for degree in range(part.modes)])
@@ -260,7 +238,7 @@ def _profile(part: Any, name: str, x: np.ndarray) -> np.ndarray:
     return values
 
 
-def _muscle(part: Muscle, first: int) -> MuscleTable:
+def _muscle(part: Any, first: int) -> MuscleTable:
     points, weight = _quadrature(part.start, part.end, PARTS_OF_MOMENT)
     basis = np.array([_legendre(degree, part.start, part.end, points) for degree in range(part.modes)])
     return MuscleTable(first + np.arange(part.modes), part.moment, points, basis * weight)
@@ -281,14 +259,10 @@ def _motors(placed: list[Any], size: int) -> tuple[tuple[Motor, ...], int]:
     """The servos of `placed` parts with their first mode, and the number of coordinates for `size` modes."""
     motors = []
     for part, mode in placed:
-        if isinstance(servo := _actuator(part), Servo):
+        if isinstance(servo := part.actuator, Servo):
             motors.append(Motor(servo, mode, size if servo.has_spring else mode))
             size += servo.has_spring
     return tuple(motors), size
-
-
-def _actuator(part: Any) -> Any:
-    return part.actuator if isinstance(part, Joint) else None
 
 
 # -- the law
@@ -301,8 +275,8 @@ def _references(placed: list[Any], total: int, body: Body) -> tuple[np.ndarray, 
     """
     modes, rules = [], []
     for axis in (1, 2):
-        soft = [part.support for part, _ in placed if not isinstance(part, Joint) and part.component == axis]
-        joints = [each for each in placed if _actuator(each[0]) and each[0].component == axis]
+        soft = [part.support for part, _ in placed if HINGE not in part.degrees and part.component == axis]
+        joints = [each for each in placed if each[0].actuator and each[0].component == axis]
         middles = [0.5 * (one.position + other.position) for (one, _), (other, _) in pairwise(joints)]
         for (joint, mode), start, end in zip(joints, [0.0, *middles], [*middles, body.length], strict=False):
             start = max([start, *(last for _, last in soft if last <= joint.position)])
@@ -322,6 +296,6 @@ def _free(parts: list[Any], supports: list[Any], body: Body) -> tuple[tuple[int,
     found: list[tuple[int, float, float]] = []
     for axis in (1, 2):
         own = [(part, place) for part, place in zip(parts, supports, strict=True) if part.component == axis]
-        driven = any(_actuator(part) for part, _ in own)
+        driven = any(part.actuator for part, _ in own)
         found += [(axis, 0.0, body.length)] if driven else [(axis, *place) for _, place in own]
     return tuple(found)

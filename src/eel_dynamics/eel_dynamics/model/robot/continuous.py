@@ -8,15 +8,16 @@ Their curvature is a sum of Legendre polynomials over the part. Per section the 
 EI: `bending_stiffness`, eta: `damping`, K: the curvature in section axes (positive: down, to the right).
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from eel_common.quantity import checked_instance, checked_row, documented, quantity, required
 from eel_common.wording import shown
 from eel_gaits.laws.law import Law
 
+from eel_dynamics.model.body.body import Body
 from eel_dynamics.model.robot.part import MOST_MODES, Part
 
 Profile = float | Callable[..., object]
@@ -50,6 +51,7 @@ class ContinuousPart(Part):
 
     start: float
     end: float | None
+    modes: int
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -65,6 +67,27 @@ class ContinuousPart(Part):
         assert self.end is not None
         return self.start, self.end
 
+    @property
+    def place(self) -> float:
+        return self.start
+
+    @property
+    def degrees(self) -> Sequence[int]:
+        return range(self.modes)
+
+    @property
+    def geometry(self) -> tuple[Any, ...]:
+        return type(self), self.start, self.end, self.modes, self.axis
+
+    def located(self, beside: Sequence[float], body: Body) -> Self:
+        return self if self.end is not None else replace(self, end=body.length)  # type: ignore[call-arg]  # a field below
+
+    def check_place(self, body: Body) -> None:
+        start, end = self.support
+        if end > body.length or start >= body.length:
+            called = f"{self.what} {shown(self.name)} start and end"
+            raise ValueError(f"{called} must lie in 0 to {body.length:g} m, got {start:g} to {end:g}")
+
 
 @documented
 @dataclass(frozen=True, repr=False)
@@ -75,6 +98,7 @@ class PassiveTail(ContinuousPart):
     """
 
     what: ClassVar[str] = "passive tail"
+    key: ClassVar[str] = "tails"
 
     start: float = required("m", "X where it begins", 0.0)
     bending_stiffness: Profile = required("N m^2", "EI, a number or a function of X [m]", 0.0, profile=True)
@@ -91,6 +115,7 @@ class Muscle(ContinuousPart):
     """A part that muscles bend against its own stiffness. Immutable; `ValueError` names a bad field."""
 
     what: ClassVar[str] = "muscle"
+    key: ClassVar[str] = "muscles"
 
     start: float = required("m", "X where it begins", 0.0)
     end: float = required("m", "X where it ends", 0.0, exclusive=True)

@@ -16,16 +16,19 @@ with the axis "-yaw" or "-pitch" to the right or down. With "z" or "y", as of a 
 behind the joint about +z or +y (REP-103) of the part ahead: its tail end goes to the right, or up.
 """
 
-from dataclasses import dataclass
-from typing import ClassVar
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
 
 from eel_common.quantity import checked_instance, documented, quantity, required
 from eel_common.wording import shown
 
+from eel_dynamics.model.body.body import Body
 from eel_dynamics.model.robot.actuators import Actuator, Servo, Torque
-from eel_dynamics.model.robot.part import Part, checked_range
+from eel_dynamics.model.robot.part import AXES, HINGE, Part, checked_range
 
 LONGEST_NAME = 100
+LONE_WIDTH = 0.05  # of the length: width of the only joint in an axis
 STOP_DEPTH = 0.01  # rad beyond a limit, where the stop has its `stop_damping`
 
 
@@ -35,6 +38,7 @@ class Joint(Part):
     """A joint. Immutable; `ValueError` names a bad field."""
 
     what: ClassVar[str] = "joint"
+    key: ClassVar[str] = "joints"
 
     position: float = required("m", "X of its middle, from the nose", 0.0, exclusive=True)
     axis: str = quantity(
@@ -75,3 +79,36 @@ class Joint(Part):
     def support(self) -> tuple[float, float]:
         assert self.width is not None
         return self.position - 0.5 * self.width, self.position + 0.5 * self.width
+
+    @property
+    def sign(self) -> float:
+        return float(AXES[self.axis][1])
+
+    @property
+    def place(self) -> float:
+        return self.position
+
+    @property
+    def degrees(self) -> Sequence[int]:
+        return (HINGE,)
+
+    @property
+    def geometry(self) -> tuple[Any, ...]:
+        return type(self), self.position, self.width, self.axis, getattr(self.actuator, "has_spring", False)
+
+    def located(self, beside: Sequence[float], body: Body) -> "Joint":
+        if self.width is not None:
+            return self
+        nearest = min((abs(place - self.position) for place in beside), default=2.0 * LONE_WIDTH * body.length)
+        if nearest == 0.0:
+            raise ValueError(f"joints of one axis must have positions of their own, got {self.position:g} m twice")
+        return replace(self, width=0.5 * nearest)
+
+    def check_place(self, body: Body) -> None:
+        called, (start, end) = f"joint {shown(self.name)} position and width", self.support
+        said = f"got {start:g} to {end:g} m (position {self.position:g}, width {self.width:g})"
+        if start <= 0.0 or end >= body.length:
+            raise ValueError(f"{called} must lie inside (0, {body.length:g}) m, {said}")
+        if not body.blunt_nose and start < body.panel_ends[0] - 1e-12 * body.length:
+            behind = f"must lie behind the nose's first panel, from {body.panel_ends[0]:g} m on"
+            raise ValueError(f"{called} {behind} (there is almost no inertia ahead), {said}")

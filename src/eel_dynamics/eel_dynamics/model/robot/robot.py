@@ -11,6 +11,7 @@ import math
 import os
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -21,8 +22,9 @@ from eel_common.wording import did_you_mean, not_one_of, shown
 
 from eel_dynamics.model.body.body import Body
 from eel_dynamics.model.robot.actuators import Servo
-from eel_dynamics.model.robot.continuous import Muscle, PassiveTail
 from eel_dynamics.model.robot.joint import LONGEST_NAME, Joint
+from eel_dynamics.model.robot.kinds import KINDS
+from eel_dynamics.model.robot.part import HINGE, Part
 from eel_dynamics.model.robot.ready import READY
 from eel_dynamics.model.robot.robot_file import robot_in_yaml
 from eel_dynamics.model.robot.urdf.reader import robot_in_urdf
@@ -43,23 +45,24 @@ class Robot:
         notes: content of its file that the robot ignores, in words.
     """
 
-    parts: tuple[Joint | PassiveTail | Muscle, ...]
+    parts: tuple[Any, ...]
     name: str
     body: Body | None
     notes: tuple[str, ...] = field(compare=False)
 
     def __init__(
         self,
-        parts: Iterable[Joint | PassiveTail | Muscle],
+        parts: Iterable[Part] | Part,
         *,
         name: str = "robot",
         body: Body | None = None,
         notes: Iterable[str] = (),
     ) -> None:
-        given = [parts] if isinstance(parts, KINDS) else parts
+        given = [parts] if isinstance(parts, Part) else parts
         if isinstance(given, (str, bytes)) or not isinstance(given, Iterable):
             raise ValueError(f"robot parts must be joints, passive tails and muscles, got {shown(parts)}")
-        listed = sorted((checked_instance("a robot's part", each, KINDS) for each in given), key=_place)
+        checked = [checked_instance("a robot's part", each, tuple(KINDS.values())) for each in given]
+        listed = sorted(checked, key=lambda part: part.place)
         if len(listed) > MOST_PARTS:
             raise ValueError(f"robot parts must be at most {MOST_PARTS}, got {len(listed)}")
         if not isinstance(name, str) or len(name) > LONGEST_NAME:
@@ -73,6 +76,11 @@ class Robot:
     def joints(self) -> tuple[Joint, ...]:
         """Its joints, from the nose to the tail."""
         return tuple(part for part in self.parts if isinstance(part, Joint))
+
+    @property
+    def mode_count(self) -> int:
+        """The number of modes of its continuous parts."""
+        return sum(len(part.degrees) for part in self.parts if HINGE not in part.degrees)
 
     def joint(self, name: str) -> Joint:
         """The joint called `name`. `ValueError` for an unknown name."""
@@ -88,7 +96,7 @@ class Robot:
     @property
     def ramp_ends(self) -> list[float]:
         """Times [s] of beginnings and ends of ramps in muscles' moments, where a derivative jumps."""
-        terms = (term for part in self.parts if isinstance(part, Muscle) for term in part.moment.terms)
+        terms = (term for part in self.parts if part.moment is not None for term in part.moment.terms)
         return sorted({time for term in terms for ramp in term.envelope for time in (ramp.start, ramp.end)})
 
     @property
@@ -166,14 +174,12 @@ class Robot:
         raise ValueError(f"robot file must be .yaml, .yml, .urdf or .xml, got {shown(str(path))}")
 
 
-KINDS = (Joint, PassiveTail, Muscle)
 UNLIMITED = ("torque_limit", "speed_limit", "series_stiffness")  # None is no limit, or no spring
 SORTS: dict[str, Callable[[Any], bool]] = {  # kinds of parts by name
     "joints": lambda part: isinstance(part, Joint),
-    "servos": lambda part: isinstance(getattr(part, "actuator", None), Servo),
-    "tails": lambda part: isinstance(part, PassiveTail),
-    "muscles": lambda part: isinstance(part, Muscle),
+    "servos": lambda part: isinstance(part.actuator, Servo),
 }
+SORTS |= {key: partial(lambda kind, part: isinstance(part, kind), kind) for key, kind in KINDS.items()}
 
 
 def robot_of(text: str) -> Robot | None:
@@ -199,10 +205,6 @@ def checked_robot(robot: Any) -> Robot | None:
         return None
     made: Robot = robot
     return made
-
-
-def _place(part: Joint | PassiveTail | Muscle) -> float:
-    return part.position if isinstance(part, Joint) else part.start
 
 
 def _named(parts: list[Any]) -> tuple[Any, ...]:

@@ -36,13 +36,11 @@ from eel_gaits.laws.term import Term
 
 from eel_dynamics.model.body.body import Body
 from eel_dynamics.model.robot.actuators import Servo, Torque
-from eel_dynamics.model.robot.continuous import Muscle, PassiveTail, ProfileTable
-from eel_dynamics.model.robot.joint import Joint
+from eel_dynamics.model.robot.continuous import ProfileTable
+from eel_dynamics.model.robot.kinds import KINDS
 from eel_dynamics.model.robot.ready import SERVOS
 
-LISTS: dict[str, type[Any]] = {"joints": Joint, "tails": PassiveTail, "muscles": Muscle}
 ACTUATORS: dict[str, type[Any]] = {"servo": Servo, "torque": Torque}
-FILE = ("name", "body", *LISTS)
 POINTS = 201  # points of a table that replaces a function
 
 
@@ -59,7 +57,7 @@ def plain_of_robot(robot: Any, length: float) -> dict[str, Any]:
     refused (`ValueError`), as no file holds code.
     """
     plain: dict[str, Any] = {"name": robot.name}
-    for key, kind in LISTS.items():
+    for key, kind in KINDS.items():
         parts = [_plain_part(part, length) for part in robot.parts if isinstance(part, kind)]
         if parts:
             plain[key] = parts
@@ -100,9 +98,9 @@ def robot_arguments(root: Any, folder: Path = Path()) -> dict[str, Any]:
     """
     if not isinstance(root, Mapping):
         raise Misplaced("line 1", f"a robot must have keys such as joints, got {shown(root)}")
-    check_keys(root, FILE)
+    check_keys(root, ("name", "body", *KINDS))
     found: dict[str, Any] = {"parts": []}
-    for key, kind in LISTS.items():
+    for key, kind in KINDS.items():
         for entries in _list(root, key):
             found["parts"] += _parts(kind, entries, root, key)
     if not found["parts"]:
@@ -116,17 +114,17 @@ def robot_arguments(root: Any, folder: Path = Path()) -> dict[str, Any]:
 
 def _parts(kind: type[Any], entries: Any, root: Mapping[str, Any], key: str) -> list[Any]:
     """The parts of one entry: several joints, if it has several positions."""
-    given = dict(_fields(entries, root, key))
-    if kind is Joint:
+    given, names = dict(_fields(entries, root, key)), {item.name for item in fields(kind)}
+    if "actuator" in names:
         own = {name: value for name, value in given.items() if name not in ACTUATORS}
         given = own | {"actuator": _actuator(entries)}
     for name in ("bending_stiffness", "damping"):
-        if kind is not Joint and isinstance(given.get(name), Mapping):
+        if "actuator" not in names and isinstance(given.get(name), Mapping):
             given[name] = _built(ProfileTable, given[name])
-    if kind is Muscle:
+    if "moment" in names:
         given["moment"] = _moment(entries)
     places = given.get("position")
-    if kind is not Joint or not isinstance(places, list):
+    if "position" not in names or not isinstance(places, list):
         return [_built(kind, entries, given)]
     if "name" in given:
         fail(entries, "name", "goes with one position")
