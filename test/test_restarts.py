@@ -156,6 +156,7 @@ def test_nodes_die_and_come_back(start_to_kill, fresh_domain, tmp_path):
     "the same while the visualiser stands still (SIGSTOP) until the second one's time has passed the first one's",
     "another publisher: a third recording, of the second node alone",
 )
+@pytest.mark.soak
 def test_a_dynamics_node_that_is_found_late_begins_a_new_recording(start_to_kill, fresh_domain, tmp_path):
     start = start_to_kill
     swim = SwimClient(domain=fresh_domain, topics=("curvature",))

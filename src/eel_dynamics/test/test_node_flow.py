@@ -133,6 +133,7 @@ def test_a_run_that_is_over_waits_for_who_is_behind(start, client):
     "waited for `subscriber_timeout`, once, or until Fast DDS forgets it, 20 s after its last sign; then WARN, and all "
     "others that keep up get every sample",
 )
+@pytest.mark.soak
 def test_a_stuck_subscriber_delays_a_run_once_and_costs_the_others_nothing(start, client, tmp_path):
     """One that is itself 5000 samples behind when another is given up loses what it had no room for. The node's history
     and what is on the way hold some 8,000 samples."""

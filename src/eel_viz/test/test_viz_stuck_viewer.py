@@ -75,6 +75,7 @@ def growth(process, full: float) -> tuple[float, list[str]]:
 @pytest.mark.fault(
     "subscribers", "a viewer's port that accepts and never answers", "said; nobody waits, memory stays bounded"
 )
+@pytest.mark.soak
 def test_a_server_that_never_reads(mute, show, tmp_path):
     grown, said = growth(show("connect", mute, 55.0), 10.0)
     assert grown < ALLOWED
