@@ -139,7 +139,7 @@ def test_the_version_is_told_where_the_mechanics_cannot_be_loaded(monkeypatch, c
 
 @pytest.mark.parametrize("installed", [False, True])
 def test_a_command_that_cannot_be_imported_is_one_line(installed, monkeypatch, capsys):
-    """pip is told the name of the distribution only where it need not fetch it."""
+    """A hint names eel-swimmer only where it is installed: pip would not find it elsewhere."""
     known = {"eel-swimmer": version.VERSION} if installed else {}
 
     def version_of(name):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sweeps of gaits that settle: each point swims until it has, and what has not is told."""
+"""Sweeps of gaits that settle: each point swims until its gait has settled. Points that never settle are counted."""
 
 import pytest
 from eel_studies.sweeps import command

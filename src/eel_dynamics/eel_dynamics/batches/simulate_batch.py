@@ -125,7 +125,7 @@ def swum(swims: list[Swim], threads: int | None = None, progress: Callable[[int,
         if any(not same(getattr(swim, name), getattr(first, name)) for name in SHARED):
             raise ValueError(f"swims of a batch must be alike in {', '.join(SHARED)}")
     profiles = first.stations is not None
-    load = bool(first.load) and profiles
+    load = first.load and profiles
     count, points = len(swims), len(first.x)
     check_memory(count, len(times), points, any(swim.has_internal_wrench for swim in swims), load)
     robots = [coordinates_of(swim.robot) for swim in swims]

@@ -209,10 +209,10 @@ class Run(SensedRun):
         possible."""
         finer = math.ceil(rate * float(np.max(np.diff(self.time), initial=0.0)) - 1e-9)
         again = self._again(finer=finer, load=load and self.scene.internal_wrench) if finer > 1 else None
-        if again is None or len(again.time) != finer * (len(self.time) - 1) + 1:
-            return self.with_load() if load else self
-        alike = np.allclose(again.position[::finer], self.position, atol=1e-9)
-        return again if alike else self.with_load() if load else self
+        whole = again is not None and len(again.time) == finer * (len(self.time) - 1) + 1
+        if again is not None and whole and np.allclose(again.position[::finer], self.position, atol=1e-9):
+            return again
+        return self.with_load() if load else self
 
     def finely_sampled(self) -> "Run":
         """The same run, simulated anew with `FINER` samples in each sample period, for peaks (`analysis.peaks`).

@@ -174,21 +174,6 @@ def _number(name: str, default: Any) -> Word:
     )
 
 
-HELD = {
-    "law",
-    "gait",
-    "body",
-    "scene",
-    "accuracy",
-    "start",
-    "flow",
-    "robot",
-    "fins",
-    "stations",
-    "wrenches",
-    "duration",
-}
-HELD |= {"sample_period", "body_file", "robot_file"}
 WORDS: dict[str, Word] = {  # robot before body, as a given body replaces the robot file's
     "robot": Word(_robot, lambda swim: swim.robot and _name_of(swim, "robot", "parts")),
     "body": Word(_body, _plain_body),
@@ -214,3 +199,4 @@ WORDS: dict[str, Word] = {  # robot before body, as a given body replaces the ro
         lambda swim: swim.flow and text_of_flow(swim.flow),
     ),
 }
+HELD = {"law", "gait", "start", "body_file", "robot_file"} | WORDS.keys()  # fields of a swim that a file can hold

@@ -59,13 +59,12 @@ class Swim(Swimmer):
 
     def observed(self) -> ObservedSwim[Run]:
         """The swim with the instants of its samples. `ValueError` where law, flow or memory do not suffice for them."""
-        if self.stations is None:
-            raise ValueError("stations must be a number of them, or their X in m, got None: only a batch takes it")
+        self.check_stations()
         law = law_from(self.law, self.seconds, self.body.length)
         swim = self if law is self.law else self.unchecked(law=law)
         times = times_of(swim, self.seconds, self.sample_period)
-        check_memory(1, len(times), len(self.x), self.has_internal_wrench, bool(self.load), 2 if self.estimate else 1)
-        observed = ObservedSwim(Run, swim, times, bool(self.load))
+        check_memory(1, len(times), len(self.x), self.has_internal_wrench, self.load, 2 if self.estimate else 1)
+        observed = ObservedSwim(Run, swim, times, self.load)
         return observed.to_refine() if self.estimate else observed
 
     def run(

@@ -49,7 +49,7 @@ MARCHED, SINGULAR, UNFINISHED = (eel_core.STATUSES.index(name) for name in ("mar
 class March:
     """A march of a `swimmer` from its start under its law, whose own t = 0 lies at `origin` [s].
 
-    It begins on a grid of these `settings`, or a finer one that the law needs. Without a law the body is straight.
+    Without a law the body is straight.
     `ValueError` if the law cannot begin, `SimulationStopped` if the energy of the initial state is not finite.
 
     Attributes:
@@ -65,7 +65,7 @@ class March:
     """
 
     @np.errstate(over="ignore", invalid="ignore")  # values that are not finite are reported
-    def __init__(self, swimmer: Swimmer, origin: float = 0.0, settings: GridSettings | None = None):
+    def __init__(self, swimmer: Swimmer, origin: float = 0.0):
         law = swimmer.law
         self.swimmer, self.time, self._time_scale = swimmer, 0.0, swimmer.time_scale
         self._needs = swimmer.shape_needs(law)
@@ -73,8 +73,7 @@ class March:
         self._held: dict[float, ExternalWrench] = {}  # by station [m]: applied wrenches
         self._next_jump = math.inf  # s, of an external wrench
         self._reference = np.zeros((0, 0))  # references of a robot's servos, from the law's factors
-        wanted = swimmer.grid_for(self._needs)
-        self.core = eel_core.March(*self._on_grid(wanted if settings is None else settings.at_least(wanted)))
+        self.core = eel_core.March(*self._on_grid(swimmer.grid_for(self._needs)))
         self._places = self.core.row
         self.joints: JointMotion | None = None
         self.follower = LawFollower(self.discretisation.tabulation, swimmer.default_transition, law, origin)

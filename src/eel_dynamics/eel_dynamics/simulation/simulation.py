@@ -50,8 +50,7 @@ class Simulation(Present):
             swimmer = Swimmer.of(**fields)
         elif checked_instance("swimmer", swimmer, Swimmer) and fields:
             swimmer = swimmer.changed(**fields)
-        if swimmer.stations is None:
-            raise ValueError("stations must be a number of them, or their X in m, got None: only a batch takes it")
+        swimmer.check_stations()
         self._swimmer = swimmer
         self.body, self.scene, self.x, self.robot = swimmer.body, swimmer.scene, swimmer.x, swimmer.robot
         self._march = March(swimmer)

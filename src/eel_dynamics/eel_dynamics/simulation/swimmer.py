@@ -138,6 +138,11 @@ class Swimmer(EqualByFields):
         """X (M,) [m] of the stations."""
         return checked_stations(self.stations, self.body.length)
 
+    def check_stations(self) -> None:
+        """`ValueError` without stations, which only a swimmer of a batch may lack."""
+        if self.stations is None:
+            raise ValueError("stations must be a number of them, or their X in m, got None: only a batch takes it")
+
     @property
     def has_internal_wrench(self) -> bool:
         """Whether the internal wrench along the body is computed."""
